@@ -140,7 +140,7 @@ def test_a_goal_that_suspends_itself_continues_with_its_next_step() -> None:
     [
         (
             ".suspend(g(1)); .wait(10); .resume(g(1)); .wait(10)",
-            "pending suspended resumed executing achieved finished",
+            "pending suspended resumed pending executing achieved finished",
         ),
         (".succeed_goal(g(1)); .wait(10)", "pending achieved finished"),
         (".drop_event(g(1)); .wait(10)", "pending dropped finished"),

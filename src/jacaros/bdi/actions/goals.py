@@ -18,7 +18,7 @@ from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import OWN_SUSPENSION, OwnSuspension, is_action
+from jacaros.bdi.state.waiting import is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import rename, resolve
@@ -245,19 +245,13 @@ def drop_all_desires(ctx: Context) -> None:
 
 
 @internal_action(".suspend", arity=(0, 1), suspends=True, body_only=True)
-def suspend(ctx: Context, goal: Term = None) -> object:
+def suspend(ctx: Context, goal: Term = None) -> None:
     """``.suspend [(G)]`` suspends the intentions with the goal (or the calling one) until `.resume`."""
-    current = ctx.intention
     if goal is None:
-        assert current is not None
-        goals.suspend_intention(ctx.agent, current, OWN_SUSPENSION)
+        assert ctx.intention is not None
+        goals.suspend_intention(ctx.agent, ctx.intention)
     else:
-        reason = structure("suspended", rename(goal))
-        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted, reason))
-    if current is None or current.suspended is None:
-        return None
-    # The step lasts until the intention is resumed, so that a last step does not end its goal before that.
-    return OwnSuspension(current)
+        _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted))
 
 
 @internal_action(".resume", arity=1, suspends=True)
@@ -274,8 +268,8 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
         waiting = candidate.waiting
-        lost = goals.is_preempted(candidate)
-        if waiting is not None and waiting.reason is not OWN_SUSPENSION and not lost:
+        held = goals.is_preempted(candidate) or (why is not None and waiting is not None and waiting.ended)
+        if waiting is not None and not held:
             # As in Jason, an intention that is suspended while it waits is reported with what it waits for.
             why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)

@@ -152,8 +152,6 @@ def handle_event(agent: Circumstance) -> Intention | None:  # noqa: C901 - writt
                 if push(agent, intention, goal, annotations):
                     if intention.suspended is None:
                         agent.intentions.append(intention)
-                    else:
-                        intention.parked = True
                 agent.current = None
                 return None
             # `begin_intention`, written out for what is usual.
@@ -279,7 +277,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
                     undo(trail, 0)
                 else:
                     trail.clear()
-        if agent.stopped or intention.dropped:
+        if agent.stopped or intention.dropped or (goal is None and intention.suspended is not None):
             break
 
         if goal is None:
@@ -302,10 +300,7 @@ def execute_usual(agent: Circumstance, intention: Intention, fuel: int) -> int: 
                             agent.finish(intention)
                         break
             if intentions or events or agent.incoming.called or fuel <= 0:
-                if intention.suspended is None:
-                    intentions.append(intention)
-                else:
-                    intention.parked = True
+                intentions.append(intention)
                 break
             frame = frames[-1]
             continue

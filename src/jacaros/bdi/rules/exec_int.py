@@ -16,7 +16,6 @@ from jacaros.bdi.state.intention import STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal
-from jacaros.bdi.state.waiting import OWN_SUSPENSION
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
@@ -33,11 +32,7 @@ def select_intention(agent: Circumstance) -> Intention | None:
         if not agent.intentions:
             agent.let_in()
         intention = agent.selections.select_intention()
-        if intention is None:
-            return None
-        if intention.suspended is not None:
-            intention.parked = True
-        elif not intention.dropped:
+        if intention is None or not intention.dropped:
             return intention
     return None
 
@@ -49,8 +44,8 @@ def execute(agent: Circumstance, intention: Intention) -> None:
         agent.atomic, agent.atomic_over = None, False
     frame: Frame = intention.frames[-1]
     posted = None if frame[STEP] is None else _step(agent, intention, frame)
-    if agent.stopped or intention.dropped:
-        pass
+    if agent.stopped or intention.dropped or (posted is None and intention.suspended is not None):
+        pass  # if it has suspended itself, it goes on after this step, or ends with it, once it is resumed
     elif posted is SUSPENDED:
         if agent.features.meta:
             tell_waiting(agent, intention)
@@ -111,7 +106,9 @@ def _report(agent: Circumstance, fault: Exception) -> None:
         agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
 
 
-def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
+def announce(
+    agent: Circumstance, intention: Intention | None, goal: Goal, annotations: EventAnnotations
+) -> None:
     """Notify waiting intentions that a goal or event has been posted."""
     if agent.waits.events:
         agent.notify_event_waits((goal, intention, annotations, None))
@@ -122,5 +119,5 @@ def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations:
 def tell_waiting(agent: Circumstance, intention: Intention) -> None:
     """Notify observers that an intention waits."""
     waiting = intention.waiting
-    if waiting is not None and waiting.reason is not OWN_SUSPENSION:
+    if waiting is not None:
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

@@ -80,7 +80,7 @@ class Incoming:
         percepts: noticed, in groups that belong together.
         tasks: housekeeping for the beginning of the next cycle: functions, and their arguments after the agent.
         called: there may be something to look at besides events and intentions: the input here, restless conditions that
-            intentions wait for, a suspension, special features of the agent, or selections that are not plain.
+            intentions wait for, special features of the agent, or selections that are not plain.
             Code that adds to one of them sets it.
     """
 
@@ -188,7 +188,7 @@ class Waits:
         abandoned: ids of questions that no intention waits for: a late answer is discarded.
         alarms: calls that are due at a moment, by number.
         alarms_made: number of alarms so far.
-        suspended_events: goal events whose goal was suspended before it became an intention.
+        suspended_events: those of suspended intentions, and of goals that were suspended before they began.
         needs: the resources that plans and goals have requested, by the number of the act.
         preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
         requeued: external events without plan that are to be tried again (``events=requeue``).
@@ -385,10 +385,8 @@ class Circumstance:
         return intention
 
     def make_ready(self, intention: Intention) -> None:
-        """Let an intention take part in the next cycles; a suspended one is parked."""
-        if intention.suspended is not None:
-            intention.parked = True
-        else:
+        """Let an intention take part in the next cycles; a suspended one once it is resumed."""
+        if intention.suspended is None:
             self.selections.note_intention(intention)
             self.intentions.append(intention)
         if not self.running:
@@ -465,6 +463,12 @@ class Circumstance:
     def is_in_turn(self, intention: Intention) -> bool:
         """Return whether an intention waits for its turn."""
         return intention in self.intentions or intention in self.crowd
+
+    def take_out(self, intention: Intention) -> None:
+        """Take an intention out of those that can run."""
+        for queue in (self.intentions, self.crowd):
+            if intention in queue:
+                queue.remove(intention)
 
     def let_in(self) -> None:
         """Let intentions of the crowd take part: as many as there is room for, and at least one."""
