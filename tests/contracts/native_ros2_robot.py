@@ -2,6 +2,7 @@
 
 python native_ros2_robot.py serve        serves /native/count, and parameters, on several threads
 python native_ros2_robot.py block        the same with one thread, which is blocked while it counts, without feedback
+python native_ros2_robot.py forget       a node whose first response about its parameters is lost
 python native_ros2_robot.py goal NAME    sends two goals there and cancels the second; prints what it learns
 python native_ros2_robot.py ask NODE     reads and writes parameters of a node; prints what it learns
 """
@@ -61,6 +62,24 @@ def serve(node: Any, blocking: bool) -> None:
     executor.spin()
 
 
+def forget(node: Any) -> None:
+    def answer(_: Any, response: Any) -> Any:
+        response.result.names = ["speed"]
+        return response
+
+    service = node.create_service(ListParameters, f"/{node.get_name()}/list_parameters", answer)
+    send, lost = service.send_response, []
+
+    def send_but_the_first(response: Any, header: Any) -> None:
+        if lost:
+            send(response, header)
+        lost.append(response)
+
+    service.send_response = send_but_the_first
+    print("ready", flush=True)
+    rclpy.spin(node)
+
+
 def wait(node: Any, future: Any) -> Any:
     rclpy.spin_until_future_complete(node, future, timeout_sec=20)
     return future.result()
@@ -106,9 +125,11 @@ def ask(node: Any, other: str) -> None:
 
 
 rclpy.init()
-made = rclpy.create_node(f"native_{sys.argv[1]}")
+made = rclpy.create_node(f"native_{sys.argv[1]}", start_parameter_services=sys.argv[1] != "forget")
 if sys.argv[1] in ("serve", "block"):
     serve(made, sys.argv[1] == "block")
+elif sys.argv[1] == "forget":
+    forget(made)
 elif sys.argv[1] == "goal":
     send_goals(made, sys.argv[2])
 else:

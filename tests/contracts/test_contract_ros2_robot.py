@@ -166,6 +166,13 @@ def test_parameters_of_a_killed_and_restarted_node_are_read(graph: Any, pair: Pa
         assert left.get_parameter("speed", node, timeout=60) == 0.5
 
 
+def test_a_question_about_parameters_is_repeated_when_the_response_is_lost(graph: Any, pair: Pair) -> None:
+    """A server that discovers the client late, as on a busy machine, loses its first response."""
+    left, _ = pair
+    with running(graph, "forget"):
+        assert left.parameter_names("/native_forget", timeout=60) == ["speed"]
+
+
 def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
     cruiser = graph.peer("cruiser")
     cruiser.declare("lanes", 4, only_even=True, minimum=0, maximum=10)

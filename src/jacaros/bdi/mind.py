@@ -11,6 +11,7 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
+    cycle,
     forks,
     functions,
     goals,
@@ -208,13 +209,12 @@ class Mind(Circumstance):
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
-        needs.note(self, event[2])
         supervised_goals.adopt(self, event)
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
         """Run at most *fuel* reasoning cycles; return True if there is more to do."""
-        more = self.engine.run(self, fuel)
+        more = cycle.run(self, fuel)
         if self.waits.needs:
             needs.sweep(self)
         return more
@@ -338,7 +338,6 @@ class Mind(Circumstance):
     ) -> Posted:
         """Return a posted goal with annotations."""
         annotations = own_annotations(items, tail)
-        needs.note(self, annotations)
         return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
@@ -357,7 +356,6 @@ class Mind(Circumstance):
         annotations = own_annotations(annotations_of(term))
         if kind != "!":
             return Posted(goal, annotations)
-        needs.note(self, annotations)
         return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
@@ -372,7 +370,7 @@ class Mind(Circumstance):
         """Return whether there is a plan for a test goal of the running intention."""
         if self.library.selects[kind] is not None:
             return True
-        current = self.current if self.features.subplans else None
+        current = self.current
         return current is not None and any(
             subplans.has_inner(self, frame, kind) for frame in subplans.scopes(current)
         )

@@ -25,7 +25,7 @@ from jacaros.bdi.state.supervision import SUPERVISION, GoalSupervision, is_super
 from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
-FORMAT = 4
+FORMAT = 5
 """Version of the format."""
 
 _FIELDS = (
@@ -42,7 +42,7 @@ _PARTS = {
     "incoming": ("called", "messages", "tasks"),
     "counts": ("cycles", "intentions", "next_check", "next_look"),
 }
-_QUEUES = ("events", "intentions", "crowd")
+_QUEUES = ("events", "intentions")
 _INTERRUPTED = (
     (functor("env_failure_reason", 1), atom("interrupted")),
     (functor("error_msg", 1), String("the agent was stored and restored while the action was under way")),
@@ -117,6 +117,8 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     mind.beliefs.held_percepts, mind.library.blamed = held["held_percepts"], held["blamed"]
     for name in _QUEUES:
         getattr(mind, name).extend(held[name])
+    for intention in mind.alive.values():
+        mind.note_plans(intention)
     for percepts in reversed(held["percepts"]):
         mind.incoming.percepts.appendleft(
             percepts if same_host else [p for p in percepts if p.kind == "signal"]
@@ -221,9 +223,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         for event in original.events
         if (intention := event[EVENT_INTENTION]) is None or _can_be_copied(original, intention)
     ]
-    part["intentions"] = [
-        each for each in (*original.intentions, *original.crowd) if _can_be_copied(original, each)
-    ]
+    part["intentions"] = [each for each in original.intentions if _can_be_copied(original, each)]
     part["derived"] = deriving.stored(original, original.program)
     writer = Writer(original, shared=True)
     entry = writer.write(part)
@@ -236,6 +236,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         clone.counts.intentions += 1
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
+        clone.note_plans(intention)
     deriving.resume(clone, clone.program, held["derived"])
     clone.architecture.ready()
 

@@ -41,14 +41,12 @@ class Chosen(Urgent):
 
     __slots__ = ("_choose", "_mind")
 
+    chooses = True
+
     def __init__(self, mind: Mind, choose: Callable[..., object]) -> None:
         super().__init__(mind)
         self._mind, self._choose = mind, choose
         self.look_anew()
-
-    def _calm_down(self) -> None:
-        super()._calm_down()
-        self.plain = False
 
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None

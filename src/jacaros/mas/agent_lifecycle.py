@@ -39,6 +39,7 @@ class AgentLifecycle:
         classes: creates agents of user-defined classes.
         code: the project's Python code.
         seed: seed of the run.
+        plain: run plans without generated code.
         situate: gives each agent its place in the environment.
         when_made: called with every agent before it begins.
 
@@ -55,6 +56,7 @@ class AgentLifecycle:
         classes: AgentClasses,
         code: PythonCode,
         seed: int,
+        plain: bool,
         situate: Situate,
         when_made: Callable[[AgentHost], None] | None = None,
     ) -> None:
@@ -64,6 +66,7 @@ class AgentLifecycle:
         self._classes = classes
         self._code = code
         self._seed = seed
+        self._plain = plain
         self._situate = situate
         self._when_made = when_made
         self.when_ended: Callable[[str], None] = lambda name: None
@@ -101,7 +104,7 @@ class AgentLifecycle:
         """Return the plans of a program. Agents with the same program share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            made = ProgramPlans(program.plans, new_engine(self._code.actions))
+            made = ProgramPlans(program.plans, new_engine(self._code.actions, self._plain))
             self._plans[id(program.plans)] = made
             self._uncompiled.append(made)
         return made

@@ -1,7 +1,8 @@
 """Run options, from the command line or a Python program."""
 
+import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,6 +37,8 @@ class RunOptions(GraphAddress):
         restricted: agents accept no plans from others (``tellHow``), read and write no files, and create no Python objects;
             see docs/explanation/trust.md.
         explain: keep the history of the run from its start, for `Mas.explain` and ``.why``.
+        plain: run plans and rules as the language defines them, without generated code. The default is what
+            ``JACAROS_PLAIN`` in the environment says.
         diagnostics: publish the state of agents and connection on ``/diagnostics``. None: on real graphs only.
     """
 
@@ -57,6 +60,7 @@ class RunOptions(GraphAddress):
     guard: bool = False
     restricted: bool = False
     explain: bool = False
+    plain: bool = field(default_factory=lambda: os.environ.get("JACAROS_PLAIN", "0") not in ("", "0"))
 
     @property
     def real_graph(self) -> bool:

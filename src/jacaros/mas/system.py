@@ -151,6 +151,7 @@ class System:
             classes,
             code,
             self._seed,
+            self.options.plain,
             self._situate,
             when_made,
         )

@@ -9,9 +9,13 @@ from typing import Any
 
 import jacaros.bdi.actions.standard  # noqa: F401 - fills the registry of internal actions
 from jacaros.asl.loader import load_program
+from jacaros.asl.nodes import Program
+from jacaros.bdi.actions.internal_action import STANDARD, InternalAction
+from jacaros.bdi.engines import new_engine
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.state.act import Act, Completion
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.text import text
 
@@ -173,9 +177,15 @@ def mind(
     """An agent with this program, begun but not yet run; the host gives access to it."""
     host = RecordingHost(complete)
     tree, _ = load_program(path or f"{name}.asl", program, _reader(path))
-    host.agent = Mind(name, tree, host, options)
+    host.agent = Mind(name, tree, host, options, plans=plans_of(tree))
     host.agent.start()
     return host
+
+
+def plans_of(program: Program, actions: Mapping[str, InternalAction] = STANDARD) -> ProgramPlans:
+    """The plans of a program, run by the engine that the environment names."""
+    plain = os.environ.get("JACAROS_PLAIN", "0") not in ("", "0")
+    return ProgramPlans(program.plans, new_engine(actions, plain))
 
 
 def _reader(path: str) -> Callable[[str, str], tuple[str, str]]:

@@ -1,12 +1,8 @@
 """The agent option ``belief_limit``: an endlessly growing belief base costs an agent only some of its goals."""
 
-import pytest
 from recording_host import RecordingHost, believed, mind
 
-from jacaros.bdi.fast import beliefs
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import BeliefTables
-from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.values import SOURCE_PERCEPT, structure
@@ -36,23 +32,12 @@ def test_a_step_that_exceeds_the_limit_fails_with_the_reason() -> None:
     assert len(believed(host, "grown")) == 8
 
 
-def test_a_large_limit_holds_although_beliefs_are_counted_occasionally(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(beliefs, "SMALL", 10)
-    host = limited(GROW, 30_000)
+def test_beliefs_that_come_and_go_do_not_use_up_a_large_limit() -> None:
+    host = limited(GROW.replace("+grown(N)", "-+now(N); if (N mod 2 == 0) { +grown(N) }"), 3_000)
     assert host.printed == [
-        "29999 belief_limit in line 5",
-        "there are 30000 beliefs (option belief_limit), most of them grown/1 (29998)",
+        "5996 belief_limit in line 5",
+        "there are 3000 beliefs (option belief_limit), most of them grown/1 (2997)",
     ]
-    assert host.agent.beliefs.__class__ is BoundedBeliefs
-
-
-def test_few_beliefs_are_not_counted() -> None:
-    host = mind(GROW.replace("!fill(N + 1)", "if (N < 2000) { !fill(N + 1) }"))
-    host.run()
-    assert len(believed(host, "grown")) == 2000
-    assert host.agent.beliefs.__class__ is BeliefTables
 
 
 def test_replaced_and_deleted_beliefs_make_room() -> None:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from recording_host import RecordingHost, mind
+from recording_host import RecordingHost, mind, plans_of
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import beliefs_of
@@ -145,7 +145,7 @@ def test_a_mind_restored_for_another_program_drops_underived_beliefs() -> None:
     data = json.loads(json.dumps(stored(host.agent)))
     old = host.agent
     program = nodes.Program(old.program.beliefs, old.program.goals, old.program.plans)
-    host.agent = Mind(old.name, program, host, old.options, old.engine.actions)
+    host.agent = Mind(old.name, program, host, old.options, plans=plans_of(program, old.engine.actions))
     restore(host.agent, data, same_host=True)
     assert len(host.agent.beliefs[functor("d", 0)]) == 0
     assert len(host.agent.beliefs[functor("e", 1)]) == 2
@@ -251,7 +251,9 @@ def restored(host: RecordingHost) -> None:
     data = json.dumps(stored(old))
     for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
-    host.agent = Mind(old.name, old.program, host, old.options, old.engine.actions)
+    host.agent = Mind(
+        old.name, old.program, host, old.options, plans=plans_of(old.program, old.engine.actions)
+    )
     restore(host.agent, json.loads(data), same_host=True)
 
 

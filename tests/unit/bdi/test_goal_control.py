@@ -3,6 +3,10 @@
 import pytest
 from recording_host import mind, printed
 
+from jacaros.bdi.rules import goals
+from jacaros.bdi.state.triggers import trigger
+from jacaros.terms.values import functor
+
 WAITING = (
     "!begin. +!w(X, Y) <- .wait(1000). -!w(X, Y) <- .print(failed(X)). +!begin <- !!w(1, a); .wait(10); "
 )
@@ -174,3 +178,15 @@ def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
              .nth(1, Found, Inner); .print(Inner); .nth(2, Found, Outer); .print(Outer).
         """
     assert printed(program)[:2] == ["at(4,{ ?k(7); .print(7) })", "at(3,{ !h(X,3); .print(end) })"]
+
+
+@pytest.mark.parametrize("action", ["drop_event(b)", "drop_all_events"])
+def test_dropping_the_event_of_a_suspended_intention_drops_the_intention(action: str) -> None:
+    host = mind(f"!s. +!s <- .{action}; .print(dropped). +!b <- .print(b).")
+    agent = host.agent
+    intention = agent.new_intention()
+    agent.queue(((trigger("+", "!", functor("b", 0)),), intention, (), None))
+    goals.suspend_intention(agent, intention)
+    host.run(seconds=1)
+    assert host.printed == ["dropped"]
+    assert intention.dropped

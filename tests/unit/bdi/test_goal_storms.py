@@ -16,7 +16,7 @@ from jacaros.bdi.rules.belief_update import tell
 from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.terms.text import text
-from jacaros.terms.values import Term, Var, atom, structure
+from jacaros.terms.values import Term, Var, structure
 
 PROGRAM = """
 +!task(N,K) <- .print(N, " begins"); !sub(N,K); .print(N, " ends").
@@ -129,7 +129,7 @@ class Storm:
         elif what == "drop event":
             goals.drop_events(self.agent, goal)
         elif what == "suspend":
-            goals.suspend_goal(self.agent, goal, atom("storm"))
+            goals.suspend_goal(self.agent, goal)
             if whole and number not in self.failed:
                 self.still.add(number)
         else:

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from recording_host import RecordingHost, mind
+from recording_host import RecordingHost, mind, plans_of
 
 from jacaros.asl.loader import load_program, parse_term
 from jacaros.asl.lowering import lower_value
@@ -160,7 +160,7 @@ def _continue() -> None:
     host = RecordingHost()
     host.time = given["time"]
     program, _ = load_program("tester.asl", given["program"], None)
-    host.agent = Mind("tester", program, host)
+    host.agent = Mind("tester", program, host, plans=plans_of(program))
     restore(host.agent, given["mind"])
     host.run()
     json.dump(outcome(host), sys.stdout)

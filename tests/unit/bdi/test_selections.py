@@ -3,7 +3,6 @@
 import pytest
 from recording_host import RecordingHost, mind
 
-from jacaros.bdi.engines import is_plain
 from jacaros.bdi.rules.selections import Fair
 from jacaros.bdi.state.event import Event
 from jacaros.bdi.state.intention import Intention
@@ -77,8 +76,7 @@ def test_a_policy_decides_how_many_messages_are_read_in_a_cycle() -> None:
         assert 3 - len(host.agent.incoming.messages) == read
 
 
-@pytest.mark.skipif(is_plain(), reason="the rules ask for every event")
-def test_fast_paths_do_not_consult_a_plain_policy() -> None:
+def test_a_plain_policy_is_not_asked_for_each_event() -> None:
     class Refusing(Fair):
         def select_event(self) -> Event | None:
             raise AssertionError

@@ -6,7 +6,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from recording_host import RecordingHost, mind
+from recording_host import RecordingHost, mind, plans_of
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_kinds import NotStorable
@@ -48,7 +48,9 @@ def restored(host: RecordingHost) -> Mind:
     text = json.dumps(stored(old))
     for alarm in old.waits.alarms.values():
         alarm.timer.cancel()
-    host.agent = Mind(old.name, old.program, host, old.options, old.engine.actions)
+    host.agent = Mind(
+        old.name, old.program, host, old.options, plans=plans_of(old.program, old.engine.actions)
+    )
     restore(host.agent, json.loads(text), same_host=True)
     return host.agent
 

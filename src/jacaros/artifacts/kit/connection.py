@@ -12,7 +12,7 @@ from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
-from jacaros.ros.graph import GraphContents, latching
+from jacaros.ros.graph import GraphContents, TopicInfo, latching
 from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
 
@@ -100,8 +100,9 @@ def _watch(backend: Backend, connection: Connection) -> None:
 
 
 class MissingTopic:
-    """Log a warning if a topic has no publisher after `MISSING_AFTER` seconds, or one whose latched message was missed.
+    """Log a warning if no message of a topic has arrived after `MISSING_AFTER` seconds, and the graph shows why.
 
+    It has no publisher, or one whose latched message was missed, or a rosbridge server that may not convert its type.
     Nothing is logged while the graph cannot be reached; the backend reports that.
 
     Args:
@@ -148,18 +149,25 @@ class MissingTopic:
                 topic = f"topic {self._subscription.topic} ({self._type_name})"
                 self._log(f"no message on {topic}; the graph cannot be queried: {unknown}")
                 return
-        if self._subscription.publisher_count == 0:
+        info = contents.topics.get(self._subscription.topic)
+        # The count may be unknown where another process is asked for it; the contents are what it just said.
+        if self._subscription.publisher_count == 0 and not (info and info.publishers):
             self._report_missing(contents)
-        elif not self._subscription.latched:
-            self._report_latched(contents)
+        else:
+            self._report_silent(info)
 
-    def _report_latched(self, contents: GraphContents) -> None:
+    def _report_silent(self, info: TopicInfo | None) -> None:
         topic = self._subscription.topic
-        nodes = latching(contents.topics.get(topic))
+        nodes = "" if self._subscription.latched else latching(info)
         if nodes:
             self._log(
                 f"no message on topic {topic}: {nodes} latches its messages, and earlier ones were not requested\n"
                 "  help: write `qos: latched` (in Python: qos=LATCHED)"
+            )
+        elif info is not None and self._backend.name == "rosbridge":
+            self._log(
+                f"no message on topic {topic} ({self._type_name}) yet, although it has a publisher\n"
+                "  help: a rosbridge server sends nothing if it cannot convert the type; its log says so"
             )
 
     def _report_missing(self, contents: GraphContents) -> None:

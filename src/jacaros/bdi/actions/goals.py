@@ -21,7 +21,7 @@ from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.waiting import is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
-from jacaros.terms.substitution import rename, resolve
+from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     Annotated,
@@ -354,7 +354,7 @@ def _outer_done(ctx: Context, current: Intention) -> object:
     assert current.outer is not None
     owner, frame = current.outer
     if not owner.dropped and any(frame is other for other in owner.frames):
-        queued = ctx.agent.is_in_turn(owner)
+        queued = owner in ctx.agent.intentions
         achieve(ctx.agent, owner, next(i for i, other in enumerate(owner.frames) if other is frame))
         if goals.goes_on(ctx.agent, owner) and not queued:
             ctx.agent.make_ready(owner)

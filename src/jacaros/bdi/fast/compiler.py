@@ -10,13 +10,11 @@ from typing import Any
 
 from jacaros.asl.walk import walk
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.fast import beliefs, loop
 from jacaros.bdi.fast.generated.unit import write_body
 from jacaros.bdi.fast.plan_by_plan import PlanByPlan
 from jacaros.bdi.fast.searches import Searches
 from jacaros.bdi.fast.units import Units, executed
 from jacaros.bdi.rules.interpreter import Interpreter
-from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.intention import NextStep
@@ -47,12 +45,6 @@ class Compiler(Interpreter):
         self._functions: dict[Any, Any] = {}
         self._begun = False
         self._one_by_one: dict[Trigger, PlanByPlan] = {}
-
-    run = staticmethod(loop.run)
-
-    def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
-        """Return a belief base that counts its beliefs only if there are many."""
-        return beliefs.belief_base(self, agent, limit)
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """What chooses among plans for one kind of event."""

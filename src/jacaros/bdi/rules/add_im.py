@@ -5,9 +5,12 @@ from jacaros.bdi.rules import meta_events, needs, subplans
 from jacaros.bdi.rules.goal_failure import has_room, too_deep, unplanned
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Event
-from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations, apart
+from jacaros.bdi.state.observing import MindObserver
+from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import Goal
+from jacaros.terms.values import BY_SELF
 from jacaros.trace import Cause
 
 
@@ -15,56 +18,55 @@ def select_plan(
     agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None = None
 ) -> Frame | None:
     """Rules RelPl, ApplPl and SelAppl: return the frame of the selected plan; sub-plans of *intention* are tried first."""
-    trail = agent.trail
+    trail, selections, frame = agent.trail, agent.selections, None
     trail.serial += 1
-    if agent.features.subplans and intention is not None:
-        inner = subplans.select_in_scope(agent, intention, goal, annotations)
-        if inner is not None:
-            trail.clear()
-            return inner
-    frame = agent.selections.select_option(goal, annotations, intention)
-    trail.clear()
+    if intention is not None and intention.frames and intention.frames[-1][PLAN].nested:
+        frame = subplans.select_in_scope(agent, intention, goal, annotations)
+    if frame is None:
+        if selections.chooses or selections.option_filter.rows:
+            frame = selections.select_option(goal, annotations, intention)
+        else:
+            select = agent.library.selects[goal[0]]
+            frame = None if select is None else select(agent, goal, annotations)
+    if trail:
+        trail.clear()
     return frame
 
 
 def select_for_reasons(
     agent: Circumstance,
+    observer: MindObserver,
     goal: Goal,
     annotations: EventAnnotations,
     intention: Intention | None,
     cause: Cause | None,
 ) -> tuple[Frame | None, Cause | None]:
     """Select a plan and notify the observer; return also the cause of what the plan does."""
-    observer = agent.observers.mind
-    if observer is None:
-        return select_plan(agent, goal, annotations, intention), cause
     asked = apart(goal)  # heads of plans bind variables of the goal
     frame = select_plan(agent, goal, annotations, intention)
     return frame, observer.selected(asked, annotations, intention, frame, cause)
 
 
 def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
-    """Rule AddIM: put a plan for the goal on the intention; return False if the intention cannot continue now."""
-    frame, _ = select_for_reasons(agent, goal, annotations, intention, None)
-    if frame is None or not add_frame(agent, intention, frame):
-        return go_without(agent, intention, goal, annotations, frame)
-    return not agent.features.needs or needs.acquire(agent, intention)
+    """Rule AddIM: put a plan for the goal on the intention; return False if the intention cannot continue now.
 
-
-def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
-    """Put the frame of a plan on the stack; it replaces its caller if that has nothing left to do (tail call).
-
-    Return False if it exceeds the limit; it is on the stack then nevertheless.
+    The plan replaces its caller if that has nothing left to do (tail call).
     """
-    frames = intention.frames
-    plan, trigger = frame[PLAN], frame[GOAL][0]
+    observer = agent.observers.mind
+    if observer is None:
+        frame = select_plan(agent, goal, annotations, intention)
+    else:
+        frame, _ = select_for_reasons(agent, observer, goal, annotations, intention, None)
+    if frame is None:
+        return go_without(agent, intention, goal, annotations, None)
+    frames, kind = intention.frames, goal[0]
     if (
         frames
         and (caller := frames[-1])[STEP] is None
-        and caller[GOAL][0] is trigger
-        and trigger.on_fail is not None
-        and agent.options.tail_calls
+        and caller[GOAL][0] is kind
         and caller[PLAN].replaceable
+        and kind.on_fail is not None
+        and agent.options.tail_calls
         and not (agent.waits.needs and needs.is_of(agent, intention, len(frames) - 1))
     ):
         frames[-1] = frame
@@ -74,11 +76,24 @@ def add_frame(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
             agent.atomic_over = True
     else:
         frames.append(frame)
-    if plan.atomic:
-        agent.atomic, agent.atomic_over = intention, False
-    if agent.features.meta and trigger.kind and not trigger.failing:
-        meta_events.frame_state(agent, intention, frame, "executing")
-    return len(frames) <= agent.options.goal_depth or has_room(agent, intention)
+    usual = (annotations is BY_SELF or kind.failing) and len(frames) <= agent.options.goal_depth
+    return (usual and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame)
+
+
+def begin_plan(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
+    """Do what comes before the first step of a plan on the stack; return False if the intention cannot continue now."""
+    plan: Plan = frame[PLAN]
+    if plan.special:
+        if plan.atomic:
+            agent.atomic, agent.atomic_over = intention, False
+        agent.note_plan(intention, plan)
+    if agent.features.meta:
+        kind = frame[GOAL][0]
+        if kind.kind and not kind.failing:
+            meta_events.frame_state(agent, intention, frame, "executing")
+    if len(intention.frames) > agent.options.goal_depth and not has_room(agent, intention):
+        return go_without(agent, intention, frame[GOAL], frame[ANNOTATIONS], frame)
+    return needs.acquire(agent, intention)
 
 
 def go_without(
@@ -96,28 +111,15 @@ def go_without(
     if posted is None:
         return False
     event: Event = (posted.goal, intention, posted.annotations, None)
-    if not is_alone(agent):
+    if agent.conditioned or (
+        agent.atomic is None and (agent.events or agent.intentions or agent.incoming.called)
+    ):
         agent.post(event)
         return False
     agent.note(posted.goal[0])
     if agent.waits.events:
         agent.notify_event_waits(event)
     return push(agent, intention, posted.goal, posted.annotations)
-
-
-def is_alone(agent: Circumstance) -> bool:
-    """Return whether nothing else needs the next cycle."""
-    if agent.atomic is not None:
-        return not agent.features.goal_conditions
-    return not (
-        agent.events
-        or agent.intentions
-        or agent.incoming.messages
-        or agent.incoming.tasks
-        or agent.incoming.percepts
-        or (agent.waits.conditions and agent.waits.conditions.restless)
-        or agent.features.goal_conditions
-    )
 
 
 def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:

@@ -109,6 +109,17 @@ def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
     return agent.may_handle(kind) or agent.options.events != "discard"
 
 
+def is_quiet(agent: Circumstance) -> bool:
+    """Return whether nothing but plans for its event needs to know of a belief that changes."""
+    return not (
+        agent.waits.events
+        or agent.waits.conditions
+        or agent.observers.hear_beliefs
+        or agent.library.reactions.of
+        or agent.options.events != "discard"
+    )
+
+
 def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
     """Note that a belief changed: awaited conditions on such beliefs are tested again."""
     if agent.waits.conditions and agent.waits.conditions.changed(symbol, row):
@@ -292,7 +303,8 @@ def external_change(
     kind = table.added if operator == "+" else table.deleted
     if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
-    note_change(agent, symbol, row)
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:

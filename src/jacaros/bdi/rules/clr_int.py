@@ -19,7 +19,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         frame = frames[-1]
         if frame[0] is not None:
             return True
-        if frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
+        if frame[PLAN].special and frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
             GoalConditionWait(intention).attach(frame, None)
             return False
         trigger = frame[GOAL][0]
@@ -41,10 +41,12 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
 
 def end_achieved_goals(agent: Circumstance) -> None:
     """Goals whose goal condition holds are achieved, whatever their plans are at."""
-    for intention in list(agent.alive.values()):
+    for number, intention in sorted(agent.conditioned.items()):
+        if all(frame[PLAN].goal_condition is None for frame in intention.frames):
+            agent.conditioned.pop(number, None)
         for index, frame in enumerate(intention.frames):
             if frame[PLAN].goal_condition is not None and _is_achieved(agent, frame):
-                queued = agent.is_in_turn(intention)
+                queued = intention in agent.intentions
                 achieve(agent, intention, index)
                 if intention.frames:
                     queued = queued or not pop_finished(agent, intention)

@@ -3,9 +3,6 @@
 Each cycle takes in new input, handles one event, and lets one intention run one step.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from jacaros.bdi.rules import failure, meta_events, waits
 from jacaros.bdi.rules.clr_int import end_achieved_goals
 from jacaros.bdi.rules.exec_int import execute, select_intention
@@ -30,114 +27,85 @@ def run(agent: Circumstance, fuel: int) -> bool:
     if agent.options.search_limit and fuel > 1:
         # Each cycle gets the whole budget of searches.
         return all(run(agent, 1) for _ in range(fuel))
-    with turn(agent):
-        end = agent.counts.cycles + fuel
-        while agent.counts.cycles < end and not agent.stopped:
-            if not _cycle(agent):
-                return not agent.stopped and has_work(agent)
-            if is_done(agent):
-                return False
-        return not agent.stopped
-
-
-@contextmanager
-def turn(agent: Circumstance) -> Iterator[None]:
-    """Mark that an agent has its turn: new input need not wake it, and functions in terms are evaluated for it."""
-    begin_turn(agent)
+    if agent.beliefs.budget is not None:
+        agent.beliefs.budget.renew()
+    # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
         if agent.sleep == "asleep":
             meta_events.awake(agent)
-        yield
+        return _cycles(agent, agent.counts.cycles + fuel)
     finally:
         agent.running = False
         RUNNING.reset(before)
         if agent.counts.cycles >= agent.counts.next_check:
-            look_at_names(agent)
+            agent.beliefs.forget_names()
+            agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
 
 
-def look_at_names(agent: Circumstance) -> None:
-    """Drop the names that the agent no longer uses."""
-    agent.beliefs.forget_names()
-    agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
+def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cycle is here
+    """Sense, deliberate and act until the cycle *end*; return whether there is more to do.
+
+    When nothing else needs a cycle, the next one would select the event and the intention of this one. So `execute`
+    stays with an intention until something does: another event or intention, or input (`Incoming.called`).
+    """
+    counts, incoming, always = agent.counts, agent.incoming, agent.options.percept_interval == 1
+    while counts.cycles < end and not agent.stopped:
+        chosen: Intention | bool | None = None
+        if agent.held is None:
+            if incoming.called or not always:
+                look_around(agent, counts.cycles)
+            if agent.events:
+                if agent.atomic is None:
+                    handle_event(agent)
+                else:
+                    handle_atomic_event(agent, agent.atomic)
+        else:
+            chosen = _continue_held(agent)
+        if chosen is None:
+            if agent.held is not None:
+                break
+            if agent.conditioned:
+                end_achieved_goals(agent)
+            chosen = select_intention(agent)
+            if chosen is None:
+                chosen = _waits(agent)
+            elif agent.observers.step is not None and is_held_before_step(agent, chosen):
+                break
+        if chosen is False:
+            break
+        if chosen is not True:
+            left = fuel = end - counts.cycles
+            try:
+                left = execute(agent, chosen, fuel)
+            except InternalError:
+                raise
+            except Exception as fault:
+                failure.drop_after_error(agent, agent.current or chosen, fault)
+                left -= 1
+            counts.cycles += fuel - left
+            if agent.waits.requeued:
+                agent.events.extendleft(reversed(agent.waits.requeued))
+                agent.waits.requeued.clear()
+        if not (agent.events or agent.intentions or incoming.called or agent.features.edges):
+            return False  # the next cycle would find nothing to do
+    # Without cycles left it was not seen yet that nothing is to be done: that takes another look.
+    return not agent.stopped and (counts.cycles >= end or has_work(agent))
 
 
-def begin_turn(agent: Circumstance) -> None:
-    """Do what is due at the beginning of a turn: renew budgets, and let in the crowd of intentions."""
-    options = agent.options
-    if options.search_limit and agent.beliefs.budget is not None:
-        agent.beliefs.budget.renew()
-    if agent.crowd:
-        agent.let_in()
-
-
-def _cycle(agent: Circumstance) -> bool:
-    """Run one reasoning cycle; return False if there is nothing to do."""
-    if (agent.incoming.called or agent.options.percept_interval != 1) and agent.held is None:
-        look_around(agent, agent.counts.cycles)
-    return deliberate(agent)
-
-
-def deliberate(agent: Circumstance) -> bool:
-    """Run a reasoning cycle after taking in new input; return False if nothing is left to do, or the agent is held."""
-    if agent.held is not None:
-        return _continue_held(agent)
-    if agent.events:
-        _take_up_event(agent)
-        if agent.held is not None:
-            return False
-    return _select_and_execute(agent)
-
-
-def _continue_held(agent: Circumstance) -> bool:
-    """Finish the cycle in which an observer held the agent."""
+def _continue_held(agent: Circumstance) -> Intention | bool | None:
+    """Finish the deliberation in which an observer held the agent; return None if an intention is still to be selected."""
     if agent.observers.step is not None and agent.observers.step.paused:
         return False
     intention = take_held_intention(agent)
     if intention is not None:
-        return _execute(agent, intention)
+        return intention
     ends_cycle = isinstance(agent.held, HeldEvent) and agent.held.ends_cycle
     event = take_held_event(agent)
     if event is not None:
         handle_held_event(agent, event)
-        if agent.held is not None:
-            return False
-    if ends_cycle:
-        return True
-    return _select_and_execute(agent)
-
-
-def _select_and_execute(agent: Circumstance) -> bool:
-    if agent.features.goal_conditions:
-        end_achieved_goals(agent)
-    intention = select_intention(agent)
-    if intention is None:
-        return _waits(agent)
-    if is_held_before_step(agent, intention):
-        return False
-    return _execute(agent, intention)
-
-
-def _execute(agent: Circumstance, intention: Intention) -> bool:
-    try:
-        execute(agent, intention)
-    except InternalError:
-        raise
-    except Exception as fault:
-        failure.drop_after_error(agent, agent.current or intention, fault)
-    agent.counts.cycles += 1
-    if agent.waits.requeued:
-        agent.events.extendleft(reversed(agent.waits.requeued))
-        agent.waits.requeued.clear()
-    return True
-
-
-def _take_up_event(agent: Circumstance) -> None:
-    if agent.atomic is not None:
-        handle_atomic_event(agent, agent.atomic)
-    else:
-        handle_event(agent)
+    return (agent.held is None) if ends_cycle else None
 
 
 def _waits(agent: Circumstance) -> bool:
@@ -148,34 +116,37 @@ def _waits(agent: Circumstance) -> bool:
     return bool(agent.incoming or (agent.features.edges and meta_events.fall_asleep(agent)))
 
 
-def is_done(agent: Circumstance) -> bool:
-    """Return whether the next cycle would find nothing to do."""
-    return not (
-        agent.events or agent.intentions or agent.crowd or agent.incoming.called or agent.features.edges
-    )
-
-
 def has_work(agent: Circumstance) -> bool:
     """Return whether there is something to do."""
     if agent.incoming:
         return True
     if agent.atomic is not None:
         return is_ready(agent, agent.atomic) or event_of(agent, agent.atomic) is not None
-    return bool(agent.events or agent.intentions or agent.crowd)
+    return bool(agent.events or agent.intentions)
 
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in new input: percepts, ends of waits, one message."""
+    incoming, conditions = agent.incoming, agent.waits.conditions
     agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
-    housekeeping(agent, looks)
-    if agent.incoming.messages and looks:
+    if looks and incoming.percepts:
+        take_percepts(agent)
+    if incoming.tasks:
+        do_tasks(agent)
+    if conditions:
+        waits.check_conditions(agent)
+        do_tasks(agent)
+    if looks and incoming.messages:
         for message in agent.selections.select_messages():
             read_message(agent, message)
-    agent.incoming.called = bool(
-        agent.incoming
-        or agent.waits.conditions.want_a_look()
-        or agent.features.special
+    incoming.called = bool(
+        incoming.percepts
+        or incoming.messages
+        or incoming.tasks
+        or (conditions and conditions.want_a_look())
+        or agent.conditioned
+        or agent.observers.step is not None
         or not agent.selections.plain
     )
 
@@ -188,14 +159,6 @@ def looks_now(agent: Circumstance, cycle: int) -> bool:
     return True
 
 
-def housekeeping(agent: Circumstance, looks: bool = True) -> None:
-    """Take in input since the last cycle: percepts, ends of waits, conditions that now hold."""
-    if agent.incoming.percepts and looks:
-        take_percepts(agent)
-    do_tasks(agent)
-    check_conditions(agent)
-
-
 def do_tasks(agent: Circumstance) -> None:
     """Run the tasks that are due."""
     while agent.incoming.tasks:
@@ -206,9 +169,3 @@ def do_tasks(agent: Circumstance) -> None:
             raise
         except Exception as fault:
             failure.report_skipped(agent, "delayed change of an intention", fault)
-
-
-def check_conditions(agent: Circumstance) -> None:
-    """Resume the intentions whose awaited condition now holds."""
-    waits.check_conditions(agent)
-    do_tasks(agent)

@@ -11,8 +11,7 @@ from jacaros.bdi.rules.goal_failure import fail_intention
 from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.rules.sel_ev import is_ready
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Posted
-from jacaros.bdi.state.intention import STEP, Frame, Intention
+from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal
@@ -28,74 +27,100 @@ def select_intention(agent: Circumstance) -> Intention | None:
             return None
         agent.intentions.remove(agent.atomic)
         return agent.atomic
-    while agent.intentions or agent.crowd:
-        if not agent.intentions:
-            agent.let_in()
-        intention = agent.selections.select_intention()
+    intentions, plain = agent.intentions, agent.selections.plain
+    while intentions:
+        intention = intentions.popleft() if plain else agent.selections.select_intention()
         if intention is None or not intention.dropped:
             return intention
+        intentions = agent.intentions
     return None
 
 
-def execute(agent: Circumstance, intention: Intention) -> None:
-    """Rules ExecInt and ClrInt: one step of an intention."""
+def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noqa: C901 - the two rules alternate
+    """Rules ExecInt and ClrInt: one step of an intention, and further ones while nothing else needs a cycle.
+
+    Return what is left of *fuel*, the number of steps that it may make. An atomic intention makes one.
+    """
     agent.current = intention
+    last = 0 if agent.atomic is None else fuel - 1
     if agent.atomic_over:
         agent.atomic, agent.atomic_over = None, False
-    frame: Frame = intention.frames[-1]
-    posted = None if frame[STEP] is None else _step(agent, intention, frame)
-    if agent.stopped or intention.dropped or (posted is None and intention.suspended is not None):
-        pass  # if it has suspended itself, it goes on after this step, or ends with it, once it is resumed
-    elif posted is SUSPENDED:
-        if agent.features.meta:
+    frames, trail = intention.frames, agent.trail
+    events, intentions, incoming = agent.events, agent.intentions, agent.incoming
+    listened = agent.waits.events or agent.features.meta or agent.selections.urgencies is not None
+    while True:
+        fuel -= 1
+        frame: Frame = frames[-1]
+        step: Any = frame[0]
+        posted: Any = None
+        if step is not None:
+            try:
+                posted = step(agent, frame)
+            except InternalError:
+                raise
+            except Exception as fault:
+                posted = step_failed(agent, intention, fault)
+            if posted is FAILED:
+                posted = step_failed(agent, intention)
+            if trail:
+                trail.clear()
+        if agent.stopped or intention.dropped:
+            break
+        if posted is None:
+            # If it has suspended itself, its step, which may be the last one, is over once it is resumed.
+            if intention.suspended is not None or (frame[0] is None and not pop_finished(agent, intention)):
+                break
+        elif posted is SUSPENDED:
             tell_waiting(agent, intention)
-    elif posted is not None:
-        _pursue(agent, intention, posted)
-    elif frame[STEP] is not None or pop_finished(agent, intention):
-        agent.make_ready(intention)
+            break
+        else:
+            goal, annotations = (
+                (posted, BY_SELF) if posted.__class__ is tuple else (posted.goal, posted.annotations)
+            )
+            if listened:
+                announce(agent, intention, goal, annotations)
+            if fuel <= last or events or intentions or incoming.called:
+                if not _post(agent, intention, goal, annotations):
+                    break
+            elif not push(agent, intention, goal, annotations):
+                break
+            elif agent.atomic is None:
+                continue  # the next cycle, which would handle this event alone, has begun
+            agent.make_ready(intention)
+            break
+        if fuel <= last or events or intentions or incoming.called:
+            if agent.selections.urgencies is None:
+                intentions.append(intention)
+            else:
+                agent.make_ready(intention)
+            break
     agent.current = None
+    return fuel
 
 
-def _step(agent: Circumstance, intention: Intention, frame: Frame) -> Any:
-    """Run the next step of a plan; return its result, or the event for its failure. An unhandled failure ends the
-    intention.
+def _post(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
+    """Queue a goal or event that a step has posted; that of an atomic intention is handled now.
+
+    Return whether the intention can continue.
     """
-    goal: Any = None
-    try:
-        goal = frame[0](agent, frame)
-    except InternalError:
-        raise
-    except Exception as fault:
-        goal = step_failed(agent, intention, fault) or SUSPENDED
-    if goal is FAILED:
-        goal = step_failed(agent, intention) or SUSPENDED
-    agent.trail.clear()
-    return goal
-
-
-def _pursue(agent: Circumstance, intention: Intention, posted: Any) -> None:
-    """Handle the goal or event that a step has posted: in one of the next cycles; that of an atomic intention now."""
-    goal, annotations = (posted.goal, posted.annotations) if posted.__class__ is Posted else (posted, BY_SELF)
-    announce(agent, intention, goal, annotations)
+    event = (goal, intention, annotations, None)
     if agent.atomic is not intention:
-        agent.queue((goal, intention, annotations, None))
-    elif agent.observers.step is not None and is_held_before_event(
-        agent, (goal, intention, annotations, None), ends_cycle=True
-    ):
-        return
-    elif push(agent, intention, goal, annotations):
-        agent.make_ready(intention)
+        agent.events.append(event)
+        return False
+    return not is_held_before_event(agent, event, ends_cycle=True) and push(
+        agent, intention, goal, annotations
+    )
 
 
-def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> Posted | None:
-    """A step failed, or raised an exception: return the event for the nearest handler, or None without one."""
+def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> object:
+    """A step failed, or raised an exception: return the event for the nearest handler, or `SUSPENDED` without one."""
     if agent.trail:
         undo(agent.trail, 0)
     if fault is not None and fault.__class__ is not Fail:
         note_lack_of_memory(agent, fault)
         _report(agent, fault)
     frame: Frame = intention.frames[-1]
-    return fail_intention(agent, intention, failure.step_failure(frame, fault))
+    return fail_intention(agent, intention, failure.step_failure(frame, fault)) or SUSPENDED
 
 
 def _report(agent: Circumstance, fault: Exception) -> None:
@@ -109,15 +134,17 @@ def _report(agent: Circumstance, fault: Exception) -> None:
 def announce(
     agent: Circumstance, intention: Intention | None, goal: Goal, annotations: EventAnnotations
 ) -> None:
-    """Notify waiting intentions that a goal or event has been posted."""
+    """Notify waiting intentions, plans for goal states and queues that a goal or event has been posted."""
     if agent.waits.events:
         agent.notify_event_waits((goal, intention, annotations, None))
+    if agent.atomic is not intention:
+        agent.note(goal[0])
     if agent.features.meta and goal[0].operator == "+" and goal[0].kind:
         meta_events.goal_state(agent, goal, annotations, "pending")
 
 
 def tell_waiting(agent: Circumstance, intention: Intention) -> None:
     """Notify observers that an intention waits."""
-    waiting = intention.waiting
+    waiting = intention.waiting if agent.features.meta else None
     if waiting is not None:
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

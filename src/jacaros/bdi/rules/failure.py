@@ -189,10 +189,12 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
     returned.
     """
     frames = intention.frames
-    found = _handler_index(agent, intention)
+    found = _handler_index(agent, intention) if frames and frames[-1][PLAN].nested else None
+    selects = agent.library.selects
     index, handlers = _goal_below(intention, len(frames), len(intention.handlers))
     while index >= 0:
         frame = frames[index]
+        kind = frame[1][0].on_fail
         if (
             index
             and frames[index - 1][1][0] is SUPERVISED
@@ -201,7 +203,7 @@ def handler_event(agent: Circumstance, intention: Intention, reason: FailureReas
             del intention.handlers[handlers:]
             release_bindings(frame[1], frame[3])
             return index
-        if index == found:
+        if index == found or (found is None and kind is not None and selects[kind] is not None):
             goal = frame[1]
             release_bindings(goal, frame[3])
             # Handlers above it have failed with the goals that they handled.
@@ -224,7 +226,7 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
 
 def handles_own(agent: Circumstance, intention: Intention, kind: Trigger) -> bool:
     """Return whether a goal without a plan has a handler of its own; as in Jason, only the innermost scope counts."""
-    scope = next(subplans.scopes(intention), None) if agent.features.subplans else None
+    scope = next(iter(subplans.scopes(intention)), None)
     if scope is None:
         return agent.library.selects[kind] is not None
     return subplans.has_inner(agent, scope, kind)
@@ -246,7 +248,7 @@ def _handler_index(agent: Circumstance, intention: Intention) -> int:
     innermost scope the bottom goal comes first.
     """
     scoped = False
-    for scope in subplans.scopes(intention) if agent.features.subplans else ():
+    for scope in subplans.scopes(intention):
         index = _first_handled(intention, scoped, partial(subplans.has_inner, agent, scope))
         if index >= 0:
             return index

@@ -50,6 +50,7 @@ def fork(
         branch.handlers = list(parent.handlers)
         branch.on_failed = parent.on_failed
         branch.forks = (*parent.forks, (point, number))
+        agent.note_plans(branch)
         agent.make_ready(branch)
         if agent.atomic is parent:
             agent.atomic = branch

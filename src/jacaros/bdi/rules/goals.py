@@ -151,7 +151,7 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
     for event in goal_events(agent, goal):
         remove_event(agent, event)
         _event_state(agent, event, "dropped", "finished")
-    for event in list(agent.events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if (
             (intention := event[EVENT_INTENTION]) is not None
             and _is_goal(event)
@@ -194,7 +194,7 @@ def drop_all_goal_events(agent: Circumstance) -> None:
 
 def drop_all_events(agent: Circumstance) -> None:
     """Drop all pending events, with the intentions that posted them."""
-    for event in list(agent.events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if (intention := event[EVENT_INTENTION]) is not None:
             drop_intention(agent, intention)
     agent.events.clear()
@@ -314,7 +314,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
             continue
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
-        queued = agent.is_in_turn(intention)
+        queued = intention in agent.intentions
         end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)

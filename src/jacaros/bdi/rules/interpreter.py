@@ -4,12 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jacaros.bdi.actions.internal_action import InternalAction
-from jacaros.bdi.rules import cycle
 from jacaros.bdi.rules.applicable_plans import Selection
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.query import interpret_rule
-from jacaros.bdi.state.belief_base import BeliefTables
-from jacaros.bdi.state.bounded_beliefs import BoundedBeliefs
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.engine import Every, Select
 from jacaros.bdi.state.intention import NextStep
@@ -29,12 +26,6 @@ class Interpreter:
 
     def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         self.actions = actions
-
-    run = staticmethod(cycle.run)
-
-    def belief_base(self, agent: Circumstance, limit: int) -> BeliefTables:
-        """Return a belief base that counts its beliefs."""
-        return BoundedBeliefs(agent, limit, self)
 
     def begin(self, agent: Circumstance) -> None:
         """Do nothing: nothing needs preparation."""

@@ -132,18 +132,14 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     branches of a fork.
     """
     agent.observers.goal = observer
-    agent.features.meta = agent.features.special = agent.incoming.called = True
+    agent.features.meta = True
 
 
 def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
-    """Notify an observer of selected plans, beliefs and messages; None ends that.
-
-    The agent then runs by the plain rules: the fast paths do not notify observers.
-    """
+    """Notify an observer of selected plans, beliefs and messages; None ends that."""
     agent.observers.mind = observer
     observers = agent.observers
     observers.hear_beliefs = any(each is not None for each in (observer, observers.step, observers.derived))
-    agent.features.special = agent.incoming.called = True
     agent.features.usual_events = False
 
 

@@ -3,16 +3,9 @@
 from jacaros.bdi.state.act import NEEDS, Act
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.need import Need, Wanted, wanted_in
 from jacaros.bdi.state.waiting import ActWait
 from jacaros.terms.values import String, Term, atom, make_list, structure
-
-
-def note(agent: Circumstance, annotations: EventAnnotations) -> None:
-    """Note that a goal with needs is about to be posted: from the next cycle on, needs are checked."""
-    if not agent.features.needs and isinstance(annotations, tuple) and wanted_in(annotations) is not None:
-        agent.features.needs = agent.features.special = agent.incoming.called = True
 
 
 def acquire(agent: Circumstance, intention: Intention) -> bool:

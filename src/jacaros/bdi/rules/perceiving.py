@@ -3,13 +3,13 @@
 A sensor that is faster than its agent checks whether the last percept has been handled before it sends another one.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from jacaros.bdi.rules import failure
-from jacaros.bdi.rules.belief_update import external_change, insert
+from jacaros.bdi.rules.belief_update import external_change, insert, is_quiet
 from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import Row, literal, take_away
+from jacaros.bdi.state.belief_base import Row, Table, literal, take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION
 from jacaros.bdi.state.intention import GOAL, Intention
@@ -17,66 +17,87 @@ from jacaros.bdi.state.rule import OpenFact
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.errors import InternalError
 from jacaros.terms.collections import detached, holds_collection
-from jacaros.terms.substitution import is_key
+from jacaros.terms.substitution import ATOMIC, is_key
 from jacaros.terms.values import Functor, Term, arguments_of, functor_of
 
 Annotations = tuple[Term, ...]
+Kept = tuple[Functor, Row, bool]
 Holder = tuple[Annotations, Any]
 """The annotations of a property among several with the same values, and the entry of its belief in the table."""
 
 
-def take_in(agent: Circumstance, percepts: list[Percept]) -> None:
-    """Bring the belief base in line with what was noticed in one step, and raise the events, in order."""
-    for percept in percepts:
-        take(agent, percept)
-
-
-def take_percepts(agent: Circumstance, way: Callable[[Circumstance, list[Percept]], None] = take_in) -> None:
+def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
     while agent.incoming.percepts:
         percepts = agent.incoming.percepts.popleft()
+        quiet = is_quiet(agent)
         try:
-            way(agent, percepts)
+            for percept in percepts:
+                take(agent, percept, quiet)
         except InternalError:
             raise
         except Exception as fault:
             failure.report_skipped(agent, "percepts", fault)
 
 
-def take(agent: Circumstance, percept: Percept) -> None:
-    """Add or remove the belief of one percept, and raise its event.
+def take(agent: Circumstance, percept: Percept, quiet: bool) -> None:
+    """Add or remove the belief of one percept, and raise its event; of *quiet* ones only plans want to know.
 
     Raises:
         InternalError: its literal is not a literal.
     """
-    symbol, row = functor_of(percept.literal), arguments_of(percept.literal)
-    if symbol is None:
-        raise InternalError(f"a percept is not a literal: {percept.literal!r}")
-    keyed = all(is_key(argument) and not holds_collection(argument) for argument in row)
-    own: Row | None
-    if percept.kind == "add":
-        own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
-    elif percept.kind == "remove":
-        own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
-    else:
+    symbol, row, keyed = percept.kept or _keep(percept)
+    kind, shown, annotations = percept.kind, percept.literal, percept.annotations
+    table, holders = agent.beliefs[symbol], agent.beliefs.held_percepts
+    own: Row | None = row
+    if kind == "add":
+        if keyed and shown not in holders and row not in table.rows and not table.late:
+            if table.add(row, annotations) is None:
+                return
+            holders[shown] = annotations
+        else:
+            own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
+    elif kind == "remove":
+        if keyed and holders.get(shown) is annotations and table.rows.get(row) is annotations:
+            del holders[shown]  # nothing else makes the agent believe it
+            table.remove(row)
+        else:
+            own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
+    elif not keyed:
         own = _own_row(row)
+    if quiet and agent.library.selects[table.deleted if kind == "remove" else table.added] is None:
+        return
     if own is not None:
-        operator = "-" if percept.kind == "remove" else "+"
-        believed = percept.kind in ("add", "remove")
-        external_change(agent, operator, symbol, own, percept.annotations, percept.cause, believed)
+        operator = "-" if kind == "remove" else "+"
+        external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
+
+
+def _keep(percept: Percept) -> Kept:
+    """Keep functor and arguments of a percept for all minds that share it, and whether it can be looked up by these."""
+    literal = percept.literal
+    if literal.__class__ is tuple:
+        symbol, row = literal[0], literal[1:]
+    else:
+        symbol, row = functor_of(literal), arguments_of(literal)
+    if symbol is None:
+        raise InternalError(f"a percept is not a literal: {literal!r}")
+    keyed = True
+    for argument in row:  # nearly all are numbers, strings and atoms
+        if argument.__class__ not in ATOMIC and (not is_key(argument) or holds_collection(argument)):
+            keyed = False
+    percept.kept = kept = symbol, row, keyed
+    return kept
 
 
 def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Add the belief of a percept that may already be held, by the agent or for other properties with the same values.
+    """Add a percept to a belief that is already held, by the agent or for other properties with the same values.
 
     Return None if the base has no room for it.
     """
     known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
         return _believe_apart(agent, symbol, row, percept, known)
-    refusals = agent.beliefs.refusals
-    insert(agent, symbol, row, percept.annotations)
-    if agent.beliefs.refusals != refusals:
+    if insert(agent, symbol, row, percept.annotations) is None and agent.beliefs[symbol].get(row) is None:
         return None
     agent.beliefs.held_percepts[percept.literal] = percept.annotations
     return row
@@ -110,12 +131,11 @@ def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) ->
     entry = row if place is None else holders.pop(place)[1]
     if holders:
         agent.beliefs.held_percepts[percept.literal] = holders
-    return row if _take_away(agent, symbol, entry, percept) else None
+    return row if _take_away(agent.beliefs[symbol], entry, percept) else None
 
 
-def _take_away(agent: Circumstance, symbol: Functor, entry: Any, percept: Percept) -> bool:
+def _take_away(table: Table, entry: Any, percept: Percept) -> bool:
     """Remove the annotations of a percept from its belief; return False if it is no longer held."""
-    table = agent.beliefs[symbol]
     held = table.get(entry)
     if held is not None:
         take_away(table, entry, held, percept.annotations)
@@ -145,7 +165,7 @@ def _believe_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Pe
 
 def _forget_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
     belief, _, own = agent.beliefs.held_percepts.pop(_identity(symbol, row), (None, row, row))
-    return own if belief is not None and _take_away(agent, symbol, belief, percept) else None
+    return own if belief is not None and _take_away(agent.beliefs[symbol], belief, percept) else None
 
 
 def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
@@ -188,7 +208,6 @@ def _is_change(kind: Trigger, name: str) -> bool:
 def _queued(agent: Circumstance) -> Iterator[Intention]:
     """The intentions that wait for nothing but their turn."""
     yield from agent.intentions
-    yield from agent.crowd
     for event in agent.events:
         intention = event[EVENT_INTENTION]
         if intention is not None:

@@ -42,24 +42,11 @@ def same_plan(left: nodes.Plan, right: nodes.Plan) -> bool:
 
 
 def look_at_plans(agent: Circumstance) -> None:
-    """Update what the mind needs to know of all its plans, including removed ones, which may still run."""
+    """Update what the mind needs to know of all its plans."""
     agent.features.meta_plans = agent.library.has_meta_plans()
     agent.features.meta = agent.observers.goal is not None or agent.features.meta_plans
-    agent.features.subplans = agent.features.subplans or agent.library.has_subplans()
-    agent.features.goal_conditions = agent.features.goal_conditions or agent.library.has_goal_conditions()
-    agent.features.needs = agent.features.needs or any(plan.needs for plan in agent.library.plans)
-    agent.features.special = (
-        agent.features.meta
-        or agent.features.needs
-        or agent.features.subplans
-        or agent.features.goal_conditions
-        or agent.observers.step is not None
-        or agent.observers.mind is not None
-    )
     agent.incoming.called = True
-    agent.features.edges = agent.features.subplans or any(
-        agent.library.selects[kind] is not None for kind in (SLEEPING, AWAKING)
-    )
+    agent.features.edges = agent.may_handle(SLEEPING) or agent.may_handle(AWAKING)
     if not agent.features.edges:
         # No plan would notice; an agent that gets such a plan later is awake then.
         agent.sleep = "awake"

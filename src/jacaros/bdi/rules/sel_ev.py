@@ -1,56 +1,61 @@
 """An event is handled: rule SelEv, and the intention that it begins or continues."""
 
-from jacaros.bdi.rules import failure, meta_events, needs, subplans
-from jacaros.bdi.rules.add_im import log_inapplicable, push, select_for_reasons
+from collections.abc import Sequence
+
+from jacaros.bdi.rules import failure, subplans
+from jacaros.bdi.rules.add_im import begin_plan, log_inapplicable, push, select_for_reasons, select_plan
 from jacaros.bdi.rules.clr_int import remove_event
 from jacaros.bdi.rules.goal_failure import unplanned
 from jacaros.bdi.rules.holding import is_held_before_event
 from jacaros.bdi.rules.proc_msg import RECEIVED, receive_event
-from jacaros.bdi.state.circumstance import CROWD, Circumstance
-from jacaros.bdi.state.event import EVENT_CAUSE, EVENT_INTENTION, Event
-from jacaros.bdi.state.intention import PLAN, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.triggers import Goal
+from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_CAUSE, EVENT_GOAL, EVENT_INTENTION, Event
+from jacaros.bdi.state.intention import PLAN, Intention
+from jacaros.bdi.state.plan import Plan
 from jacaros.errors import InternalError
-from jacaros.terms.values import BY_SELF
 
 
-def handle_event(agent: Circumstance) -> None:
-    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped."""
-    while (event := agent.selections.select_event()) is not None:
-        if is_held_before_event(agent, event) or _is_handled(agent, event):
-            return
+def handle_event(agent: Circumstance, event: Event | None = None) -> None:
+    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
+
+    *event* is the one before which an observer held the agent, if it did.
+    """
+    selections, step = agent.selections, agent.observers.step
+    while event is not None or agent.events:
+        if event is None:
+            event = agent.events.popleft() if selections.plain else selections.select_event()
+            if event is None or (step is not None and is_held_before_event(agent, event)):
+                return
+        try:
+            intention = event[EVENT_INTENTION]
+            if intention is None:
+                if begin_intention(agent, event):
+                    return
+            elif _continue_intention(agent, intention, event):
+                return
+        except InternalError:
+            raise
+        except Exception as fault:
+            skip_event(agent, event, fault)
+        event = None
+
+
+def _continue_intention(agent: Circumstance, intention: Intention, event: Event) -> bool:
+    if intention.dropped:
+        return False
+    agent.current = intention  # contexts may ask for it
+    if push(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS]):
+        agent.make_ready(intention)
+    agent.current = None
+    return True
 
 
 def handle_held_event(agent: Circumstance, event: Event) -> None:
     """Handle the event before which the agent was held."""
     if agent.atomic is not None:
         _push_atomic(agent, agent.atomic, event)
-    elif not _is_handled(agent, event):
-        handle_event(agent)
-
-
-def _is_handled(agent: Circumstance, event: Event) -> bool:
-    try:
-        return _is_taken_up(agent, event)
-    except InternalError:
-        raise
-    except Exception as fault:
-        skip_event(agent, event, fault)
-        return False
-
-
-def _is_taken_up(agent: Circumstance, event: Event) -> bool:
-    goal, intention, annotations, _ = event
-    if intention is None:
-        return begin_intention(agent, event)
-    if intention.dropped:
-        return False
-    agent.current = intention  # contexts may ask for it
-    if push(agent, intention, goal, annotations):
-        agent.make_ready(intention)
-    agent.current = None
-    return True
+    else:
+        handle_event(agent, event)
 
 
 def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
@@ -98,28 +103,25 @@ def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
 def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, _, annotations, cause = event
-    reacted = agent.features.subplans and goal[0].kind == "" and _react(agent, event)
-    frame, why = select_for_reasons(agent, goal, annotations, None, cause)
-    if why is not cause:
-        event = (goal, None, annotations, why)
-    return begin_with(agent, event, frame, reacted)
-
-
-def begin_with(agent: Circumstance, event: Event, frame: Frame | None, reacted: bool) -> bool:
-    """Begin an intention with the frame of the plan for an external event, if there is one."""
-    goal, _, annotations, cause = event
+    kind, observer, reactions = goal[0], agent.observers.mind, agent.library.reactions
+    reacted = bool(reactions.of) and kind.kind == "" and _react(agent, event, reactions[kind])
+    if observer is None:
+        frame = select_plan(agent, goal, annotations)
+    else:
+        frame, cause = select_for_reasons(agent, observer, goal, annotations, None, cause)
     if frame is None:
-        return _begin_without_plan(agent, event, reacted)
+        return _begin_without_plan(agent, (goal, None, annotations, cause), reacted)
     intention = agent.new_intention(cause)
     intention.frames.append(frame)
-    if goal[0].failing:
+    if kind.failing:
         intention.handlers.append(0)
-    if frame[PLAN].atomic:
-        agent.atomic, agent.atomic_over = intention, False
-    if agent.features.meta:
-        meta_events.frame_state(agent, intention, frame, "executing")
-    if not agent.features.needs or needs.acquire(agent, intention):
-        _take_place(agent, intention, goal, annotations)
+    # A goal that needs something has annotations beside its source.
+    plain = not kind.kind or (isinstance(annotations, tuple) and len(annotations) == 1)
+    if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
+        if agent.selections.urgencies is None:
+            agent.intentions.append(intention)
+        else:
+            agent.make_ready(intention)
     return True
 
 
@@ -143,18 +145,10 @@ def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> boo
     return True
 
 
-def _take_place(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
-    """A new intention waits for its first turn."""
-    if len(agent.intentions) >= CROWD and annotations is BY_SELF and goal[0].kind:
-        agent.line_up(intention)
-    else:
-        agent.make_ready(intention)
-
-
-def _react(agent: Circumstance, event: Event) -> bool:
-    """Every intention whose plans have a sub-plan for an external event reacts to it."""
+def _react(agent: Circumstance, event: Event, plans: Sequence[Plan]) -> bool:
+    """Every intention with one of *plans*, which have sub-plans for an external event, reacts to it."""
     goal, _, annotations, cause = event
-    reactions = subplans.react(agent, goal, annotations)
+    reactions = subplans.react(agent, goal, annotations, plans)
     for owner, outer, frame in reactions:
         if agent.observers.mind is not None:
             cause = agent.observers.mind.selected(goal, annotations, None, frame, event[EVENT_CAUSE])

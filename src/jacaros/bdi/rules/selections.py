@@ -28,6 +28,8 @@ class Fair:
 
     __slots__ = ("agent", "option_filter", "plain", "refused", "urgencies")
 
+    chooses = False
+
     def __init__(self, agent: Circumstance) -> None:
         self.agent = agent
         self.plain = True
@@ -52,11 +54,8 @@ class Fair:
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
     ) -> Frame | None:
-        """Return the first applicable plan; with rules that filter plans, the first one that passes."""
+        """Return the first applicable plan that passes the rules that filter plans."""
         agent = self.agent
-        if not self.option_filter.rows:
-            select = agent.library.selects[goal[0]]
-            return None if select is None else select(agent, goal, annotations)
         for frame in options(agent, goal, annotations):
             if _passes(agent, frame, intention):
                 self.refused = False
@@ -77,11 +76,6 @@ class Fair:
 
     def note_message(self, message: SpeechAct) -> None:
         """Do nothing: the message is read last."""
-
-    def may_line_up(self, intention: Intention) -> bool:
-        """True: every intention may."""
-        del intention
-        return True
 
 
 def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:

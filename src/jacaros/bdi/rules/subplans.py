@@ -1,6 +1,6 @@
 """Plans inside plans: they handle events while their plan is pursued, and see its variables."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.circumstance import Circumstance
@@ -24,12 +24,16 @@ def select_in_scope(
     return None
 
 
-def scopes(intention: Intention) -> Iterator[Frame]:
-    """Yield the frames whose sub-plans the plan on top can use, the innermost first.
+def scopes(intention: Intention) -> Iterable[Frame]:
+    """Return the frames whose sub-plans the plan on top can use, the innermost first.
 
     A failed plan stays on top while its failure is handled.
     """
-    frame: Frame | None = intention.frames[-1] if intention.frames else None
+    frames = intention.frames
+    return _scopes(intention, frames[-1]) if frames and frames[-1][PLAN].nested else ()
+
+
+def _scopes(intention: Intention, frame: Frame | None) -> Iterator[Frame]:
     while frame is not None:
         if frame[PLAN].subplans:
             yield frame
@@ -59,11 +63,12 @@ def _select(agent: Circumstance, frame: Frame, goal: Goal, annotations: EventAnn
 
 
 def _select_function(agent: Circumstance, plan: Plan, kind: Trigger) -> Select | None:
-    found: Select | None = plan.subselects.get(kind)
-    if found is None and (plans := [inner for inner in plan.subplans if concerns(inner, kind)]):
+    if kind not in plan.subselects:
+        plans = [inner for inner in plan.subplans if concerns(inner, kind)]
         if len(plan.subselects) >= MANY_NAMES:
             plan.subselects.clear()
-        found = plan.subselects[kind] = agent.engine.select(kind, plans, plan)
+        plan.subselects[kind] = agent.engine.select(kind, plans, plan) if plans else None
+    found: Select | None = plan.subselects[kind]
     return found
 
 
@@ -73,14 +78,21 @@ def has_inner(agent: Circumstance, frame: Frame, kind: Trigger) -> bool:
 
 
 def react(
-    agent: Circumstance, goal: Goal, annotations: EventAnnotations
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, plans: Sequence[Plan]
 ) -> list[tuple[Intention, Frame, Frame]]:
     """Return sub-plans that react to an external event: for each intention the applicable one nearest to the top.
 
-    Each with the intention, the frame of the outer plan, and the new frame.
+    Args:
+        agent: whose intentions react.
+        goal, annotations: the event.
+        plans: those with sub-plans for events of its kind.
+
+    Returns:
+        each with the intention, the frame of the outer plan, and the new frame.
     """
     found = []
-    for intention in list(agent.alive.values()):
+    holders = {number: each for plan in plans for number, each in agent.holders.get(plan, {}).items()}
+    for _, intention in sorted(holders.items()):
         for frame in reversed(intention.frames):
             inner = _select(agent, frame, goal, annotations)
             if inner is not None:

@@ -29,7 +29,9 @@ ATTEMPTS = functor("attempts", 1)
 def _plan(label: Functor) -> Plan:
     """A plan without a body, for the frames between the plans of a goal."""
     node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(label.name)), None, nodes.Body())
-    return Plan(node, label)
+    plan = Plan(node, label)
+    plan.nested = True  # it stands between a goal and the plan that posted it
+    return plan
 
 
 _SUPERVISING, _WAITING = _plan(SUPERVISED.functor), _plan(PAUSE)

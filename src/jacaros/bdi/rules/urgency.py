@@ -155,10 +155,6 @@ class Urgent(Fair):
         self._ranked, self.plain = False, True
         self._queue_by(CalmQueue)
 
-    def may_line_up(self, intention: Intention) -> bool:
-        """Return whether a new intention may have to wait until there are few."""
-        return not self.urgency_of(intention)
-
     # --- how urgent something is ---------------------------------------------------------------------------
 
     def of_plan(self, plan: Plan) -> int:

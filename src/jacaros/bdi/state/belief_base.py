@@ -2,9 +2,10 @@
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator
+from math import inf
 from typing import Any
 
-from jacaros.bdi.state.budget import SearchBudget
+from jacaros.bdi.state.budget import Budget, SearchBudget
 from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
 from jacaros.bdi.state.rule import Answers, Entry, OpenFact
@@ -170,8 +171,13 @@ class Table:
 
         Gives the annotations back, None when the base refuses.
         """
-        if self._base is not None and self._base.searching:
-            self._part(self._base.searching)
+        base = self._base
+        if base is not None:
+            if base.room < 1 and not base.admits():
+                return None
+            base.room -= 1
+            if base.searching:
+                self._part(base.searching)
         if last:
             if not self.late:
                 self.late = Late()
@@ -179,18 +185,16 @@ class Table:
             self._note(row, 1)
             return annotations
         self.rows[row] = annotations
+        if self._mixed is not None:
+            self._mixed.add(row)
         if row.__class__ is not tuple:
             self.others += 1
-            if self._mixed is not None:
-                self._mixed.add(row)
             self._note(row, 1)
             return annotations
         if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
             self._changed()  # no rule answers before the newest fact
         if self.indexes:
             self._add_to_indexes(row)
-        if self._mixed is not None:
-            self._mixed.add(row)
         return annotations
 
     def _note(self, entry: Entry, change: int) -> None:
@@ -358,10 +362,15 @@ def _put(index: Index, key: Term, row: Row) -> None:
 class BeliefTables(dict[Functor, Table]):
     """Tables by functor, made on first use.
 
+    Args:
+        engine: runs the rules.
+        limit: how many beliefs there may be, rules included.
+        refusing: refuses those beyond it: the step that adds one fails, one from outside is logged.
+
     Attributes:
         searching: number of the internal action that a search is calling, 0 while none is.
         next_call: returns the number of the next one.
-        refusals: number of beliefs from outside that were refused (`jacaros.bdi.state.bounded_beliefs`).
+        room: number of beliefs that can be added without a look at the limit: deleted ones are counted when it is used up.
         budget: how much may be searched; None for no limit.
         engine: runs the rules.
         held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
@@ -369,12 +378,15 @@ class BeliefTables(dict[Functor, Table]):
         namespace_properties: properties that programs give to namespaces.
     """
 
-    refusals = 0
     budget: SearchBudget | None = None
 
-    def __init__(self, engine: Engine | None = None) -> None:
+    def __init__(
+        self, engine: Engine | None = None, limit: float = inf, refusing: Budget | None = None
+    ) -> None:
         super().__init__()
         self.engine = engine
+        self.room = self._limit = limit
+        self._refusing = refusing
         self.searching = 0
         self.held_percepts: dict[Term, Any] = {}
         self.namespace_properties: dict[str, dict[Term, Term]] = {}
@@ -383,6 +395,20 @@ class BeliefTables(dict[Functor, Table]):
     def __missing__(self, functor: Functor) -> Table:
         table = self[functor] = Table(functor, self)
         return table
+
+    def admits(self) -> bool:
+        """Count the beliefs, and return whether there is room for one more.
+
+        Raises:
+            Failure: there is no room, and a step adds the belief.
+        """
+        held = sum(map(len, self.values()))
+        self.room = self._limit - held
+        if self.room < 1 and self._refusing is not None:
+            largest = max(self.values(), key=len)
+            name = f"{largest.functor.name}/{largest.functor.arity}"
+            self._refusing.refuse(held, f", most of them {name} ({len(largest)})")
+        return self.room >= 1
 
     def forget_names(self) -> None:
         """Drop the empty tables when there are many tables: their names may never be used again.

@@ -12,10 +12,11 @@ from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
 from jacaros.bdi.state.condition_waits import ConditionWaits
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
-from jacaros.bdi.state.intention import Frame, Intention
+from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
@@ -28,8 +29,6 @@ from jacaros.trace import Cause
 
 INTERVAL = 1_000
 """Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
-CROWD = 2000
-"""Intentions that take turns.  With more of them, goals that the agent sets itself (``!!g``) begin one by one."""
 
 
 class ProjectFunctions(Protocol):
@@ -79,9 +78,9 @@ class Incoming:
         messages: received.
         percepts: noticed, in groups that belong together.
         tasks: housekeeping for the beginning of the next cycle: functions, and their arguments after the agent.
-        called: there may be something to look at besides events and intentions: the input here, restless conditions that
-            intentions wait for, special features of the agent, or selections that are not plain.
-            Code that adds to one of them sets it.
+        called: there may be something to look at besides events and intentions, so no intention stays in its turn: the
+            input here, restless conditions that intentions wait for, goal conditions, an observer of steps, or selections
+            that are not plain. Code that adds to one of them sets it.
     """
 
     __slots__ = ("called", "messages", "percepts", "tasks")
@@ -223,34 +222,20 @@ class Waits:
 
 
 class Features:
-    """What the plans and options of an agent require in each cycle.
+    """What is true of all plans and observers of an agent together.
 
     Attributes:
         meta: plans or an observer react to changes of goal states.
         meta_plans: plans do.
-        goal_conditions: plans have goal conditions, which are tested in every cycle.
-        subplans: plans have plans of their own.
-        needs: plans or goals need resources.
-        special: meta, goal_conditions, subplans or needs, or an observer of its reasons, or one that may hold the agent.
         edges: there may be plans for falling asleep and awaking.
         usual_events: external events without a plan are skipped, events of belief changes in plans belong to the
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = (
-        "edges",
-        "goal_conditions",
-        "meta",
-        "meta_plans",
-        "needs",
-        "special",
-        "subplans",
-        "usual_events",
-    )
+    __slots__ = ("edges", "meta", "meta_plans", "usual_events")
 
     def __init__(self, options: Options) -> None:
-        self.needs = False
-        self.meta = self.meta_plans = self.goal_conditions = self.subplans = self.special = self.edges = False
+        self.meta = self.meta_plans = self.edges = False
         self.usual_events = options.events == "discard" and not options.new_focus
 
 
@@ -269,9 +254,9 @@ class Circumstance:
         incoming: input, taken in at the beginning of the next cycle.
         events: the queue of events, oldest first.
         intentions: those that can run, in turn; others are waiting, suspended, or in an event.
-        crowd: intentions for goals that the agent set itself while `CROWD` others can run. They join these as others end,
-            and one in each turn anyway, so that an agent with more and more goals of its own keeps running its other plans.
         alive: every intention that is not over, by id.
+        holders: for each plan with sub-plans the intentions that have, or had, it on their stacks, by id.
+        conditioned: the intentions with goal conditions on their stacks, which are tested in each cycle, by id.
         selections: which message, event, plan and intention goes first.
         current: the intention whose step is running.
         atomic: the intention that has an atomic plan on its stack, or None.
@@ -297,15 +282,16 @@ class Circumstance:
         "atomic_over",
         "beliefs",
         "budgets",
+        "conditioned",
         "context",
         "counts",
-        "crowd",
         "current",
         "engine",
         "events",
         "features",
         "functions",
         "held",
+        "holders",
         "incoming",
         "intentions",
         "library",
@@ -345,14 +331,17 @@ class Circumstance:
         self.current: Intention | None = None
         self.budgets = budgets(self)
         self.engine = plans.engine
-        self.beliefs: BeliefTables = plans.engine.belief_base(self, options.belief_limit)
+        self.beliefs: BeliefTables = BeliefTables(
+            plans.engine, options.belief_limit, self.budgets["belief_limit"]
+        )
         if options.search_limit:
             self.beliefs.budget = SearchBudget(options.search_limit)
         self.library = PlanLibrary(plans)
         self.events: deque[Event] = deque()
         self.intentions: deque[Intention] = deque()
-        self.crowd: deque[Intention] = deque()
         self.alive: dict[int, Intention] = {}
+        self.holders: dict[Plan, dict[int, Intention]] = {}
+        self.conditioned: dict[int, Intention] = {}
         self.atomic: Intention | None = None
         self.atomic_over = False
         self.incoming = Incoming()
@@ -384,10 +373,25 @@ class Circumstance:
         self.alive[intention.id] = intention
         return intention
 
+    def note_plan(self, intention: Intention, plan: Plan) -> None:
+        """Note a plan on the stack of an intention that is looked for from outside: by events, or in each cycle."""
+        if plan.subplans:
+            self.holders.setdefault(plan, {})[intention.id] = intention
+        if plan.node.goal_condition is not None:
+            self.conditioned[intention.id] = intention
+            self.incoming.called = True
+
+    def note_plans(self, intention: Intention) -> None:
+        """Note all plans on the stack of a copied or restored intention."""
+        for frame in intention.frames:
+            if frame[PLAN].special:
+                self.note_plan(intention, frame[PLAN])
+
     def make_ready(self, intention: Intention) -> None:
         """Let an intention take part in the next cycles; a suspended one once it is resumed."""
         if intention.suspended is None:
-            self.selections.note_intention(intention)
+            if self.selections.urgencies is not None:
+                self.selections.note_intention(intention)
             self.intentions.append(intention)
         if not self.running:
             self.architecture.ready()
@@ -403,6 +407,9 @@ class Circumstance:
         if intention.handlers:
             intention.handlers.clear()
         self.alive.pop(intention.id, None)
+        if self.holders or self.conditioned:
+            for held in (self.conditioned, *self.holders.values()):
+                held.pop(intention.id, None)
         if self.atomic is intention:
             self.atomic = None
             self.atomic_over = False
@@ -412,7 +419,8 @@ class Circumstance:
 
     def may_handle(self, kind: Trigger) -> bool:
         """Return whether there may be a plan for an event kind (sub-plans are checked when the event is handled)."""
-        return self.features.subplans or self.library.selects[kind] is not None
+        reactions = self.library.reactions
+        return self.library.selects[kind] is not None or bool(reactions.of and reactions[kind])
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
         """Call a function with the agent and the arguments at the beginning of the next cycle."""
@@ -456,26 +464,11 @@ class Circumstance:
             self.budgets["intention_limit"].refuse(len(self.alive))
         return False
 
-    def line_up(self, intention: Intention) -> None:
-        """Put a new intention for a goal that the agent set itself last, as there are `CROWD` others."""
-        (self.crowd if self.selections.may_line_up(intention) else self.intentions).append(intention)
-
-    def is_in_turn(self, intention: Intention) -> bool:
-        """Return whether an intention waits for its turn."""
-        return intention in self.intentions or intention in self.crowd
-
     def take_out(self, intention: Intention) -> None:
         """Take an intention out of those that can run."""
-        for queue in (self.intentions, self.crowd):
-            if intention in queue:
-                queue.remove(intention)
-
-    def let_in(self) -> None:
-        """Let intentions of the crowd take part: as many as there is room for, and at least one."""
-        intentions, crowd = self.intentions, self.crowd
-        for _ in range(min(len(crowd), max(1, CROWD - len(intentions)))):
-            intentions.append(crowd.popleft())
+        if intention in self.intentions:
+            self.intentions.remove(intention)
 
     def is_idle(self) -> bool:
         """Return whether there is nothing to do until input arrives or a timer ends."""
-        return not (self.events or self.intentions or self.crowd or self.incoming)
+        return not (self.events or self.intentions or self.incoming)

@@ -29,12 +29,6 @@ class Engine(Protocol):
     def actions(self) -> Mapping[str, InternalAction]:
         """The internal actions that plans may call."""
 
-    def run(self, agent: Any, fuel: int) -> bool:
-        """Let an agent make at most *fuel* reasoning cycles; True when there is more to do."""
-
-    def belief_base(self, agent: Any, limit: int) -> Any:
-        """An empty belief base for an agent, which refuses more than *limit* beliefs."""
-
     def begin(self, agent: Any) -> None:
         """An agent is about to begin: prepare what cannot wait until it is asked for."""
 

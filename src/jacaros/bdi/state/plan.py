@@ -63,6 +63,9 @@ class Plan:
         steps: what is known of each step, by its name.
         interpreted: its steps as the rules of the language carry them out, once they have been needed.
         scope: the plan that this one is a sub-plan of, or None.
+        special: more is to be done when it begins than to make a frame: it is atomic, needs resources, or has a goal
+            condition or sub-plans.
+        nested: its goals may be for sub-plans: its own, or those around it.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
             sub-plans, and it holds no resources.
         guards: what its label says of the time while it runs: ``while(Condition)``, ``within(Ms)``, ``cleanup(Goal)``.
@@ -83,11 +86,13 @@ class Plan:
         "interpreted",
         "label",
         "needs",
+        "nested",
         "node",
         "of_program",
         "replaceable",
         "scope",
         "size",
+        "special",
         "steps",
         "subplans",
         "subselects",
@@ -106,6 +111,8 @@ class Plan:
         self.of_program = False
         self.body_term: Term = None
         self.replaceable = node.goal_condition is None and not node.subplans and self.needs is None
+        self.special = self.atomic or not self.replaceable
+        self.nested = bool(node.subplans)
         self._slots: dict[str, int] | None = None
         self.interpreted: Any = None
         self.size = 0
@@ -196,7 +203,7 @@ def with_subplans(plan: Plan, number: int) -> Plan:
     """Give a plan its sub-plans, and those theirs."""
     for node in plan.node.subplans:
         inner = Plan(node, label_of(node, number), plan.by_name)
-        inner.scope = plan
+        inner.scope, inner.nested = plan, True
         plan.subplans.append(with_subplans(inner, number))
     return plan
 

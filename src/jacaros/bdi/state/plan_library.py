@@ -1,6 +1,6 @@
 """The plans of a program, made once for all agents that run it, and those of one agent."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from jacaros.asl import nodes
@@ -25,8 +25,7 @@ class ProgramPlans:
 
     Attributes:
         by_name: internal actions that access variables by name.
-        has_subplans: whether any plan has plans of its own.
-        has_goal_conditions: whether any plan, or plan of a plan, has a goal condition.
+        reactions: its plans with sub-plans, by event kind.
         has_meta_plans: whether any plan reacts to changes of goal states (``^!g``).
         selects: the select functions.
     """
@@ -44,8 +43,7 @@ class ProgramPlans:
             plan.of_program = True
             head = plan.node.trigger
             self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
-        self.has_subplans = any(plan.subplans for plan in self.plans)
-        self.has_goal_conditions = any(has_goal_condition(plan) for plan in self.plans)
+        self.reactions = Reactions(self.plans)
         self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
         self.selects = ProgramSelects(self)
 
@@ -60,6 +58,37 @@ class ProgramPlans:
         if (trigger.operator, trigger.kind, None) in self._by_head:
             return relevant(self.plans, trigger)
         return self._by_head.get((trigger.operator, trigger.kind, trigger.functor), ())
+
+
+class Reactions(dict[Trigger, Sequence[Plan]]):
+    """The plans with a sub-plan for each kind of event.
+
+    Args:
+        plans: of which, or of whose sub-plans, these are.
+
+    Attributes:
+        of: all plans with sub-plans.
+    """
+
+    __slots__ = ("of",)
+
+    def __init__(self, plans: Iterable[Plan]) -> None:
+        super().__init__()
+        self.of = list(with_inner(plans))
+
+    def __missing__(self, kind: Trigger) -> Sequence[Plan]:
+        if len(self) >= MANY_NAMES:
+            self.clear()
+        self[kind] = [plan for plan in self.of if any(concerns(inner, kind) for inner in plan.subplans)]
+        return self[kind]
+
+
+def with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
+    """Yield the plans that have sub-plans: among these plans, and inside them."""
+    for plan in plans:
+        if plan.subplans:
+            yield plan
+            yield from with_inner(plan.subplans)
 
 
 class Selects(dict[Trigger, Select | None]):
@@ -115,11 +144,6 @@ def _name(plans: Sequence[Plan], trigger: Trigger) -> bool:
     return trigger.functor in [plan.trigger_functor() for plan in plans]
 
 
-def has_goal_condition(plan: Plan) -> bool:
-    """Whether a plan, or a plan of it, has a goal condition."""
-    return plan.node.goal_condition is not None or any(has_goal_condition(inner) for inner in plan.subplans)
-
-
 def relevant(plans: Sequence[Plan], trigger: Trigger) -> list[Plan]:
     """The candidate plans of an event kind, those with a variable as trigger among them."""
     return [plan for plan in plans if concerns(plan, trigger)]
@@ -144,6 +168,7 @@ class PlanLibrary:
         selects: the select functions; as long as no plan has been added or removed they are those of the program.
         plans_made: number of plans so far, for the labels of plans without one.
         bodies: plan bodies held by variables, as plans.
+        reactions: the plans with sub-plans by event kind, with those that were removed: they may still run.
         blamed: plans whose goal condition could not be evaluated, and has been reported.
     """
 
@@ -156,6 +181,7 @@ class PlanLibrary:
         "plans",
         "plans_made",
         "program",
+        "reactions",
         "removed",
         "selects",
     )
@@ -169,6 +195,7 @@ class PlanLibrary:
         self.own: list[Plan] = []
         self.removed: list[Plan] = []
         self.selects: Selects = program.selects
+        self.reactions = program.reactions
         self._sources: dict[Plan, tuple[Term, ...]] = {}
         self._every: dict[Trigger, Every] = {}
 
@@ -182,6 +209,8 @@ class PlanLibrary:
         self._differ_from_program()
         self.plans.insert(0 if first else len(self.plans), plan)
         self.own.append(plan)
+        if plan.subplans:
+            self.reactions = Reactions((*self.reactions.of, plan))
         self._forget_selects(plan)
 
     def remove(self, plan: Plan) -> None:
@@ -225,6 +254,7 @@ class PlanLibrary:
             list(removed),
             dict(sources),
         )
+        self.reactions = Reactions((*self.program.plans, *own))
 
     def sources(self, plan: Plan) -> tuple[Term, ...]:
         """Return the sources of a plan; it is removed when none is left."""
@@ -262,14 +292,6 @@ class PlanLibrary:
                 self._every.clear()
             every = self._every[trigger] = self.program.engine.every(trigger, plans)
         return every
-
-    def has_subplans(self) -> bool:
-        """Whether any plan has plans of its own."""
-        return self.program.has_subplans or any(plan.subplans for plan in self.own)
-
-    def has_goal_conditions(self) -> bool:
-        """Whether any plan, or plan of a plan, has a goal condition."""
-        return self.program.has_goal_conditions or any(has_goal_condition(plan) for plan in self.own)
 
     def has_meta_plans(self) -> bool:
         """Whether any plan reacts to changes of goal states (``^!g``)."""

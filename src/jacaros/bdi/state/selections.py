@@ -18,15 +18,17 @@ class Selections(Protocol):
     the class of a project what it likes.  Each takes what it chooses out of its queue.
 
     Attributes:
-        plain: at present the first of each queue goes first, and the first applicable plan is selected (apart from the
-            rules in `option_filter`), so fast paths may select themselves. Code that makes it False must set
-            `Incoming.called`.
+        plain: at present the first of each queue goes first, so an intention may stay in its turn while nothing else
+            needs a cycle. Code that makes it False must set `Incoming.called`.
+        chooses: applicable plans are chosen by `select_option`, as with rules in `option_filter`; otherwise the first
+            one is taken.
         option_filter: beliefs and rules of the program that filter applicable plans (``select__option/4``).
         urgencies: how urgent events of each kind are; None when they are all alike.
         refused: there were applicable plans for the last event, and none of them was let pass.
     """
 
     plain: bool
+    chooses: bool
     option_filter: Table
     urgencies: Mapping[Trigger, int] | None
     refused: bool
@@ -56,6 +58,3 @@ class Selections(Protocol):
 
     def note_intention(self, intention: Intention) -> None:
         """An intention that waited, was suspended or is new is about to be queued."""
-
-    def may_line_up(self, intention: Intention) -> bool:
-        """Whether a new intention may have to wait until there are few."""

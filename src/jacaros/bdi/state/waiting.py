@@ -49,7 +49,7 @@ class Waiting:
         reason: a term for ``.intention`` and ``.suspended``.
         frame: of the step, once the step has been suspended.
         next_step: with which the frame continues.
-        ended: the step has succeeded or failed, or its intention is gone. A suspended intention keeps a wait that has ended.
+        ended: the step has succeeded or failed, or its intention is gone. A suspended intention keeps such a wait.
         failure: why the step failed: a message, and annotations that may contain an ``error(..)``; None if it succeeded.
         alarm: what ends the wait at a moment, or None.
     """

@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.goals import is_preempted
 from jacaros.bdi.rules.urgency import Urgent
 from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.waiting import TimedWait, Waiting
@@ -150,11 +149,15 @@ class IntentionRecords:
         record = {
             "agent": self._mind.name,
             "id": intention.id,
-            "state": "suspended" if intention.suspended is not None else "waits" if waiting is not None else "runs",
+            "state": "suspended"
+            if intention.suspended is not None
+            else "waits"
+            if waiting is not None
+            else "runs",
             "stack": self._stacks.of(intention),
             "waits": "" if waiting is None or waiting.ended else waits_for(waiting),
             "since": self._t(waiting.began if isinstance(waiting, TimedWait) else None),
-            "reason": shown(intention.suspended) if is_preempted(intention) else "",
+            "reason": "" if intention.suspended is None else shown(intention.suspended),
             "urgency": self._urgency(intention),
             "cause": 0 if cause is None else cause.id,
         }

@@ -166,7 +166,7 @@ def test_a_removed_breakpoint_stops_nothing_and_costs_nothing() -> None:
         await mas.until_idle()
         mind = mas.agent("bob").mind
         assert mind.observers.step is None
-        assert not mind.features.special
+        assert not mind.observers.hear_beliefs
 
     assert debugged(test)[-1] == "over"
 

@@ -243,7 +243,7 @@ class OtherParameters:
                     raise
 
     def _client(self, name: str, type_name: str) -> Ros2Client:
-        return self._node.keep(Ros2Client(self._node, name, type_name))
+        return self._node.keep(Ros2Client(self._node, name, type_name, repeatable=True))
 
 
 def _descriptor(default: Any, declaration: Declaration) -> Any:

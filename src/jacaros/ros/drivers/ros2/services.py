@@ -1,5 +1,6 @@
 """Services of ROS 2."""
 
+import asyncio
 import time
 from collections.abc import Callable
 from typing import Any
@@ -15,6 +16,9 @@ from jacaros.ros.waiting import within
 
 SETTLING = 0.5
 """Seconds between discovering a server and the first request: answers before it has discovered the client are lost."""
+
+REPEATED = 2.0
+"""Seconds without a response after which a repeatable request is sent again; each further wait is twice as long."""
 
 COMPARING = 1.0
 """Seconds between two checks of who offers a called service."""
@@ -135,13 +139,49 @@ class Ros2Service:
         self._responder.answer(request, done)
 
 
+class _Requests:
+    """The requests of one call: one, or more if it may be repeated.
+
+    A response is lost if the server discovered the client later than `SETTLING`, as on a busy machine, and neither
+    side learns that. A repeated request is the only remedy, and only for a service that may be called twice.
+    """
+
+    def __init__(self, node: Ros2Node, client: Any, message: Any, finished: Callable[[Any], None]) -> None:
+        self._node, self._client, self._message, self._finished = node, client, message, finished
+        self._futures: list[Any] = []
+        self._timer: asyncio.TimerHandle | None = None
+
+    def send(self, again_after: float | None) -> None:
+        """Send the request, and again after so many seconds; None: only once."""
+        future = self._client.call_async(self._message)
+        future.add_done_callback(self._finished)
+        self._futures.append(future)
+        if again_after is not None:
+            self._timer = self._node.loop.call_later(again_after, self.send, 2 * again_after)
+
+    def close(self) -> None:
+        """End the call."""
+        if self._timer is not None:
+            self._timer.cancel()
+        for future in self._futures:
+            self._client.remove_pending_request(future)
+
+
 class Ros2Client(AttemptingClient):
-    """Client of the ``ros2`` backend."""
+    """Client of the ``ros2`` backend.
+
+    Args:
+        node: the backend.
+        name: absolute name of the service.
+        type_name: service type in full form.
+        repeatable: whether the server may receive a request twice.
+    """
 
     _node: Ros2Node  # pyright: ignore[reportIncompatibleVariableOverride]
 
-    def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
+    def __init__(self, node: Ros2Node, name: str, type_name: str, repeatable: bool = False) -> None:
         super().__init__(node, name, type_name)
+        self._again_after = REPEATED if repeatable else None
         self._client: Any = node.rcl.create_client(node.schema.message_class(type_name), name)
         self._servers: frozenset[bytes] = frozenset()
         self._compared = 0.0
@@ -176,8 +216,8 @@ class Ros2Client(AttemptingClient):
             failure = None if problem is None else CallFailed(f"service {self.name}: {problem}")
             post(node.loop, settle, answer, None if problem else future.result(), failure)
 
-        call = self._client.call_async(message)
-        call.add_done_callback(finished)
+        requests = _Requests(node, self._client, message, finished)
+        requests.send(self._again_after)
         asked = _AskedServers(node, self.name)
 
         def is_there() -> bool:
@@ -190,7 +230,7 @@ class Ros2Client(AttemptingClient):
                 return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
             asked.close()
-            self._client.remove_pending_request(call)
+            requests.close()
 
     def _is_new(self) -> bool:
         """Return whether the server is new; after a crash, the next one takes over before the first counts as
