@@ -262,8 +262,8 @@ def resume(ctx: Context, goal: Term) -> None:
 
 @internal_action(".suspended", arity=2, backtracks=True, pure=True)
 def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
-    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason (``act`` for an
-    action).
+    """``.suspended(G, R)``: an intention with the goal is suspended or waiting, and *R* is the reason: ``act`` for an
+    action, ``suspend_ia`` after ``.suspend``.
     """
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
@@ -278,7 +278,7 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     for _ in goals.goal_events(ctx.agent, goal):
         if any(
             goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.waits.suspended_events
-        ) and ctx.unify(reason, atom("suspended")):
+        ) and ctx.unify(reason, BY_SUSPEND):
             yield
             return
 

@@ -28,7 +28,7 @@ from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
 
-_BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
+_BY_RESUME = atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
 """Functor of the reason of intentions that have lost a resource; they are resumed when they regain it."""
 
@@ -219,7 +219,7 @@ def suspend_goal(agent: Circumstance, goal: Term) -> None:
             agent.events.remove(event)
             agent.waits.suspended_events.append(event)
             meta_events.goal_state(
-                agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", _BY_SUSPEND
+                agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", BY_SUSPEND
             )
     for intention in intentions_for(agent, goal):
         suspend_intention(agent, intention)
