@@ -12,7 +12,7 @@ from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.clr_int import achieve, pending_event
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.plan_terms import bindings_of, is_body_frame, variables_of
-from jacaros.bdi.state.event import EVENT_GOAL, Event
+from jacaros.bdi.state.event import EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
@@ -275,18 +275,11 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
         found = goals.goal_of(ctx.agent, candidate, goal)
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
             yield
-    for _ in goals.goal_events(ctx.agent, goal):
-        if any(
-            goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.waits.suspended_events
-        ) and ctx.unify(reason, BY_SUSPEND):
-            yield
-            return
-
-
-def _event(event: Event) -> Term:
-    goal = event[EVENT_GOAL]
-    symbol = goal[0].functor
-    return (symbol, *goal[1:]) if len(goal) > 1 else symbol
+    held = ctx.agent.waits.suspended_events
+    if any(event in held for event in goals.goal_events(ctx.agent, goal)) and ctx.unify(
+        reason, goals.BY_SUSPEND
+    ):
+        yield
 
 
 @internal_action(".succeed_goal", arity=1, suspends=True)

@@ -28,7 +28,7 @@ from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
 
-_BY_RESUME = atom("resume_ia")
+BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
 """Functor of the reason of intentions that have lost a resource; they are resumed when they regain it."""
 
@@ -231,7 +231,7 @@ def is_preempted(intention: Intention) -> bool:
     return reason.__class__ is tuple and reason[0] is PREEMPTED
 
 
-def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = _BY_SUSPEND) -> None:
+def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = BY_SUSPEND) -> None:
     """Suspend one intention: a pausable external action is paused, and resources are given back.
 
     One that has lost a resource is from now on suspended for the program's reason: it waits for ``.resume``.
@@ -243,14 +243,14 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = 
     if agent.features.meta:
         for frame in intention.frames:
             meta_events.frame_state(agent, intention, frame, "suspended", reason)
-    if reason is _BY_SUSPEND:
+    if reason is BY_SUSPEND:
         for need in needs.of(agent, intention):
             agent.architecture.suspend_act(need.number)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.waits.suspended_events.append(event)
-    if intention.waiting is not None and (reason is _BY_SUSPEND or not _lost(agent, intention.waiting)):
+    if intention.waiting is not None and (reason is BY_SUSPEND or not _lost(agent, intention.waiting)):
         waits.suspend(agent, intention.waiting)
 
 
