@@ -3,6 +3,10 @@
 import pytest
 from recording_host import mind, printed
 
+from jacaros.bdi.rules import goals
+from jacaros.bdi.state.triggers import trigger
+from jacaros.terms.values import functor
+
 WAITING = (
     "!begin. +!w(X, Y) <- .wait(1000). -!w(X, Y) <- .print(failed(X)). +!begin <- !!w(1, a); .wait(10); "
 )
@@ -140,7 +144,7 @@ def test_a_goal_that_suspends_itself_continues_with_its_next_step() -> None:
     [
         (
             ".suspend(g(1)); .wait(10); .resume(g(1)); .wait(10)",
-            "pending suspended resumed executing achieved finished",
+            "pending suspended resumed pending executing achieved finished",
         ),
         (".succeed_goal(g(1)); .wait(10)", "pending achieved finished"),
         (".drop_event(g(1)); .wait(10)", "pending dropped finished"),
@@ -176,15 +180,13 @@ def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
     assert printed(program)[:2] == ["at(4,{ ?k(7); .print(7) })", "at(3,{ !h(X,3); .print(end) })"]
 
 
-def test_the_reason_of_a_suspended_goal_is_its_suspension_once_its_wait_has_ended() -> None:
-    host = mind(
-        """
-        !a. !b. !look.
-        +!a <- .wait(20).
-        +!b <- .suspend.
-        +!look <- .wait(1); .suspend(a); .suspended(a, wait(_)[time(20)]); .wait(50); .suspended(a, R); .suspended(b, S);
-           .print(R, " ", S).
-        """
-    )
-    host.run()
-    assert host.printed == ["suspend_ia suspend_ia"]
+@pytest.mark.parametrize("action", ["drop_event(b)", "drop_all_events"])
+def test_dropping_the_event_of_a_suspended_intention_drops_the_intention(action: str) -> None:
+    host = mind(f"!s. +!s <- .{action}; .print(dropped). +!b <- .print(b).")
+    agent = host.agent
+    intention = agent.new_intention()
+    agent.queue(((trigger("+", "!", functor("b", 0)),), intention, (), None))
+    goals.suspend_intention(agent, intention)
+    host.run(seconds=1)
+    assert host.printed == ["dropped"]
+    assert intention.dropped

@@ -12,13 +12,13 @@ from jacaros.bdi.rules import goals
 from jacaros.bdi.rules.clr_int import achieve, pending_event
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.plan_terms import bindings_of, is_body_frame, variables_of
-from jacaros.bdi.state.event import EVENT_GOAL, Event
+from jacaros.bdi.state.event import EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import BY_SUSPEND, HeldEnd, OwnSuspension, is_action
+from jacaros.bdi.state.waiting import is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import resolve
@@ -245,18 +245,13 @@ def drop_all_desires(ctx: Context) -> None:
 
 
 @internal_action(".suspend", arity=(0, 1), suspends=True, body_only=True)
-def suspend(ctx: Context, goal: Term = None) -> object:
+def suspend(ctx: Context, goal: Term = None) -> None:
     """``.suspend [(G)]`` suspends the intentions with the goal (or the calling one) until `.resume`."""
-    current = ctx.intention
     if goal is None:
-        assert current is not None
-        goals.suspend_intention(ctx.agent, current, BY_SUSPEND)
+        assert ctx.intention is not None
+        goals.suspend_intention(ctx.agent, ctx.intention)
     else:
         _on_goal(ctx, goal, lambda wanted: goals.suspend_goal(ctx.agent, wanted))
-    if current is None or current.suspended is None:
-        return None
-    # The step lasts until the intention is resumed, so that a last step does not end its goal before that.
-    return OwnSuspension(current)
 
 
 @internal_action(".resume", arity=1, suspends=True)
@@ -273,25 +268,18 @@ def suspended(ctx: Context, goal: Term, reason: Term) -> Iterator[None]:
     for candidate in goals.intentions_for(ctx.agent, _goal(goal)):
         why = candidate.suspended
         waiting = candidate.waiting
-        lost = goals.is_preempted(candidate)
-        if waiting is not None and not isinstance(waiting, HeldEnd | OwnSuspension) and not lost:
+        held = goals.is_preempted(candidate) or (why is not None and waiting is not None and waiting.ended)
+        if waiting is not None and not held:
             # As in Jason, an intention that is suspended while it waits is reported with what it waits for.
             why = atom("act") if is_action(waiting.reason) else waiting.reason
         found = goals.goal_of(ctx.agent, candidate, goal)
         if why is not None and found is not None and ctx.unify_all((goal, found), (reason, why)):
             yield
-    for _ in goals.goal_events(ctx.agent, goal):
-        if any(
-            goals.matches(ctx.agent, goal, _event(e)) for e in ctx.agent.waits.suspended_events
-        ) and ctx.unify(reason, BY_SUSPEND):
-            yield
-            return
-
-
-def _event(event: Event) -> Term:
-    goal = event[EVENT_GOAL]
-    symbol = goal[0].functor
-    return (symbol, *goal[1:]) if len(goal) > 1 else symbol
+    held = ctx.agent.waits.suspended_events
+    if any(event in held for event in goals.goal_events(ctx.agent, goal)) and ctx.unify(
+        reason, goals.BY_SUSPEND
+    ):
+        yield
 
 
 @internal_action(".succeed_goal", arity=1, suspends=True)

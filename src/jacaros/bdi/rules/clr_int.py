@@ -97,7 +97,6 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
     event = pending_event(agent, intention)
     if event is not None:
         remove_event(agent, event)
-    intention.parked = False
     intention.suspended = None
     leave(agent, intention, index)
     end_above(agent, intention, index)

@@ -15,7 +15,6 @@ from jacaros.bdi.state.intention import Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.bdi.state.triggers import Goal
-from jacaros.bdi.state.waiting import BY_SUSPEND
 from jacaros.errors import InternalError
 from jacaros.terms.unifier import undo
 from jacaros.terms.values import BY_SELF
@@ -31,11 +30,7 @@ def select_intention(agent: Circumstance) -> Intention | None:
     intentions, plain = agent.intentions, agent.selections.plain
     while intentions:
         intention = intentions.popleft() if plain else agent.selections.select_intention()
-        if intention is None:
-            return None
-        if intention.suspended is not None:
-            intention.parked = True
-        elif not intention.dropped:
+        if intention is None or not intention.dropped:
             return intention
         intentions = agent.intentions
     return None
@@ -72,7 +67,8 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
         if agent.stopped or intention.dropped:
             break
         if posted is None:
-            if frame[0] is None and not pop_finished(agent, intention):
+            # If it has suspended itself, its step, which may be the last one, is over once it is resumed.
+            if intention.suspended is not None or (frame[0] is None and not pop_finished(agent, intention)):
                 break
         elif posted is SUSPENDED:
             tell_waiting(agent, intention)
@@ -93,7 +89,7 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
             agent.make_ready(intention)
             break
         if fuel <= last or events or intentions or incoming.called:
-            if intention.suspended is None and agent.selections.urgencies is None:
+            if agent.selections.urgencies is None:
                 intentions.append(intention)
             else:
                 agent.make_ready(intention)
@@ -135,7 +131,9 @@ def _report(agent: Circumstance, fault: Exception) -> None:
         agent.architecture.log("debug", f"{type(fault).__name__}: {fault}")
 
 
-def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> None:
+def announce(
+    agent: Circumstance, intention: Intention | None, goal: Goal, annotations: EventAnnotations
+) -> None:
     """Notify waiting intentions, plans for goal states and queues that a goal or event has been posted."""
     if agent.waits.events:
         agent.notify_event_waits((goal, intention, annotations, None))
@@ -148,5 +146,5 @@ def announce(agent: Circumstance, intention: Intention, goal: Goal, annotations:
 def tell_waiting(agent: Circumstance, intention: Intention) -> None:
     """Notify observers that an intention waits."""
     waiting = intention.waiting if agent.features.meta else None
-    if waiting is not None and waiting.reason is not BY_SUSPEND:
+    if waiting is not None:
         meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)

@@ -6,6 +6,7 @@ from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events, needs, waits
 from jacaros.bdi.rules.alarms import cancel_alarm
 from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
+from jacaros.bdi.rules.exec_int import announce
 from jacaros.bdi.rules.failure import release_bindings
 from jacaros.bdi.rules.supervision import end_periods
 from jacaros.bdi.state.belief_base import parts
@@ -22,12 +23,12 @@ from jacaros.bdi.state.event import (
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import literal_of, own_annotations
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import BY_SUSPEND, ActWait, HeldEnd, Waiting
+from jacaros.bdi.state.waiting import ActWait, Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
 
-_BY_RESUME = atom("resume_ia")
+BY_SUSPEND, _BY_RESUME = atom("suspend_ia"), atom("resume_ia")
 PREEMPTED = functor("preempted", 1)
 """Functor of the reason of intentions that have lost a resource; they are resumed when they regain it."""
 
@@ -150,7 +151,7 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
     for event in goal_events(agent, goal):
         remove_event(agent, event)
         _event_state(agent, event, "dropped", "finished")
-    for event in list(agent.events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if (
             (intention := event[EVENT_INTENTION]) is not None
             and _is_goal(event)
@@ -193,7 +194,7 @@ def drop_all_goal_events(agent: Circumstance) -> None:
 
 def drop_all_events(agent: Circumstance) -> None:
     """Drop all pending events, with the intentions that posted them."""
-    for event in list(agent.events):
+    for event in (*agent.events, *agent.waits.suspended_events):
         if (intention := event[EVENT_INTENTION]) is not None:
             drop_intention(agent, intention)
     agent.events.clear()
@@ -221,7 +222,7 @@ def suspend_goal(agent: Circumstance, goal: Term) -> None:
                 agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "suspended", BY_SUSPEND
             )
     for intention in intentions_for(agent, goal):
-        suspend_intention(agent, intention, BY_SUSPEND)
+        suspend_intention(agent, intention)
 
 
 def is_preempted(intention: Intention) -> bool:
@@ -230,7 +231,7 @@ def is_preempted(intention: Intention) -> bool:
     return reason.__class__ is tuple and reason[0] is PREEMPTED
 
 
-def suspend_intention(agent: Circumstance, intention: Intention, reason: Term, by: Term = BY_SUSPEND) -> None:
+def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = BY_SUSPEND) -> None:
     """Suspend one intention: a pausable external action is paused, and resources are given back.
 
     One that has lost a resource is from now on suspended for the program's reason: it waits for ``.resume``.
@@ -238,18 +239,18 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term, b
     if intention.suspended is not None and not is_preempted(intention):
         return
     intention.suspended = reason
-    agent.incoming.called = True
+    agent.take_out(intention)
     if agent.features.meta:
         for frame in intention.frames:
-            meta_events.frame_state(agent, intention, frame, "suspended", by)
-    if by is BY_SUSPEND:
+            meta_events.frame_state(agent, intention, frame, "suspended", reason)
+    if reason is BY_SUSPEND:
         for need in needs.of(agent, intention):
             agent.architecture.suspend_act(need.number)
     event = pending_event(agent, intention)
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.waits.suspended_events.append(event)
-    if intention.waiting is not None and (by is BY_SUSPEND or not _lost(agent, intention.waiting)):
+    if intention.waiting is not None and (reason is BY_SUSPEND or not _lost(agent, intention.waiting)):
         waits.suspend(agent, intention.waiting)
 
 
@@ -262,10 +263,8 @@ def resume_goal(agent: Circumstance, goal: Term) -> None:
     """Resume all intentions with the goal, the reverse of `suspend_goal`."""
     for event in list(agent.waits.suspended_events):
         if event[EVENT_INTENTION] is None and matches(agent, goal, event_literal(event)):
-            agent.waits.suspended_events.remove(event)
-            agent.queue(event)
             meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], "resumed", _BY_RESUME)
-            agent.architecture.ready()
+            _queue_again(agent, event)
     for intention in intentions_for(agent, goal):
         resume_intention(agent, intention)
 
@@ -281,19 +280,24 @@ def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_R
     if by is _BY_RESUME:
         for need in needs.of(agent, intention):
             agent.architecture.resume_act(need.number)
-    held = next((e for e in agent.waits.suspended_events if e[EVENT_INTENTION] is intention), None)
+    held = pending_event(agent, intention)
     if held is not None:
-        agent.waits.suspended_events.remove(held)
-        agent.queue(held)
-        agent.architecture.ready()
-    elif intention.parked:
-        intention.parked = False
-        agent.make_ready(intention)
+        _queue_again(agent, held)
     elif intention.waiting is not None:
-        waiting = intention.waiting
-        waits.resume(agent, waiting)
-        if agent.features.meta and not waiting.ended and not isinstance(waiting, HeldEnd):
-            meta_events.top_goal_state(agent, intention, "waiting", waiting.reason)
+        waits.resume(agent, intention.waiting)
+    else:
+        agent.make_ready(intention)
+        if agent.features.meta:
+            meta_events.top_goal_state(agent, intention, "executing")
+
+
+def _queue_again(agent: Circumstance, event: Event) -> None:
+    """Queue the event of a resumed goal or intention, as if it were new."""
+    goal, intention, annotations, _ = event
+    remove_event(agent, event)
+    agent.queue(event)
+    announce(agent, intention, goal, annotations)
+    agent.architecture.ready()
 
 
 # --- ending goals from outside -----------------------------------------------------------------------------
@@ -356,8 +360,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         release_bindings(frame[GOAL], frame[SERIAL])
         goal_failure.observe_failed(agent, intention, index + 1, ended)
         cut(agent, intention, index)
-        if intention in agent.intentions:
-            agent.intentions.remove(intention)
+        agent.take_out(intention)
         _post(
             agent,
             intention,

@@ -63,7 +63,7 @@ def take_held_intention(agent: Circumstance) -> Intention | None:
     if not isinstance(intention, Intention):
         return None
     agent.held = None
-    if intention.dropped or intention.suspended is not None or intention not in agent.intentions:
+    if intention.dropped or intention not in agent.intentions:
         return None
     agent.intentions.remove(intention)
     return intention

@@ -54,8 +54,7 @@ def fail_lost(agent: Circumstance, frame: Frame) -> object:
 def cut_in_queue(agent: Circumstance, intention: Intention, index: int) -> None:
     """Cut the stack of an intention that may be queued; it does not run until it is queued again."""
     cut(agent, intention, index)
-    if intention in agent.intentions:
-        agent.intentions.remove(intention)
+    agent.take_out(intention)
 
 
 def post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:

@@ -25,7 +25,7 @@ def _suspend(agent: Circumstance, number: int, reason: Term) -> None:
     agent.waits.preempted[number] = (reason, owners)
     for intention in owners:
         if intention.suspended is None:
-            goals.suspend_intention(agent, intention, reason, by=reason)
+            goals.suspend_intention(agent, intention, reason)
 
 
 def _resume(agent: Circumstance, number: int) -> None:

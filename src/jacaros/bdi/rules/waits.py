@@ -10,13 +10,10 @@ from jacaros.bdi.state.condition_waits import ConditionObserver, ConditionWait, 
 from jacaros.bdi.state.event import EVENT_GOAL, Event, event_literal
 from jacaros.bdi.state.plan import Failure
 from jacaros.bdi.state.waiting import (
-    BY_SUSPEND,
     ActWait,
     AnswerWait,
     CoroutineWait,
     EventWait,
-    HeldEnd,
-    OwnSuspension,
     TimedWait,
     Waiting,
     is_action,
@@ -54,21 +51,10 @@ def announce_end(agent: Circumstance, waiting: Waiting) -> None:
 
 def _take_up_end(agent: Circumstance, waiting: Waiting) -> None:
     intention = waiting.intention
-    if intention.dropped or intention.waiting is not waiting:
-        return
-    if intention.suspended is not None:
-        # Success and failure alike come after ``.resume``.
-        intention.parked = False
-        intention.waiting = HeldEnd(waiting)
-        return
-    intention.waiting = None
-    _continue(agent, waiting)
-
-
-def _release(agent: Circumstance, waiting: HeldEnd) -> None:
-    if waiting.intention.waiting is waiting:
-        waiting.intention.waiting = None
-        _continue(agent, waiting.held)
+    # Success and failure alike come after ``.resume``.
+    if intention.waiting is waiting and intention.suspended is None:
+        intention.waiting = None
+        _continue(agent, waiting)
 
 
 def _continue(agent: Circumstance, waiting: Waiting) -> None:
@@ -77,7 +63,7 @@ def _continue(agent: Circumstance, waiting: Waiting) -> None:
     assert frame is not None
     if waiting.failure is None:
         frame[0] = waiting.next_step
-        if agent.features.meta and waiting.reason is not BY_SUSPEND:
+        if agent.features.meta:
             meta_events.top_goal_state(agent, intention, "executing")
         if pop_finished(agent, intention):
             agent.make_ready(intention)
@@ -129,17 +115,14 @@ def suspend(agent: Circumstance, waiting: Waiting) -> None:
 
 def resume(agent: Circumstance, waiting: Waiting) -> None:
     """Handle the resumption of the intention."""
+    if waiting.ended:
+        # The end of an external action is handled in the next cycle, as usual; that of a wait has been handled.
+        (announce_end if is_action(waiting.reason) else _take_up_end)(agent, waiting)
+        return
     if isinstance(waiting, ActWait):
         agent.architecture.resume_act(waiting.number)
-    elif isinstance(waiting, OwnSuspension):
-        succeed(agent, waiting)
-    elif isinstance(waiting, HeldEnd):
-        # The end of an external action is handled in the next cycle, as usual; that of a wait has been handled.
-        if is_action(waiting.reason):
-            agent.do_soon(_release, waiting)
-            agent.architecture.ready()
-        else:
-            _release(agent, waiting)
+    if agent.features.meta:
+        meta_events.top_goal_state(agent, waiting.intention, "waiting", waiting.reason)
 
 
 # --- times, events and conditions --------------------------------------------------------------------------

@@ -79,8 +79,8 @@ class Incoming:
         percepts: noticed, in groups that belong together.
         tasks: housekeeping for the beginning of the next cycle: functions, and their arguments after the agent.
         called: there may be something to look at besides events and intentions, so no intention stays in its turn: the
-            input here, restless conditions that intentions wait for, a suspension, goal conditions, an observer of
-            steps, or selections that are not plain. Code that adds to one of them sets it.
+            input here, restless conditions that intentions wait for, goal conditions, an observer of steps, or selections
+            that are not plain. Code that adds to one of them sets it.
     """
 
     __slots__ = ("called", "messages", "percepts", "tasks")
@@ -187,7 +187,7 @@ class Waits:
         abandoned: ids of questions that no intention waits for: a late answer is discarded.
         alarms: calls that are due at a moment, by number.
         alarms_made: number of alarms so far.
-        suspended_events: goal events whose goal was suspended before it became an intention.
+        suspended_events: those of suspended intentions, and of goals that were suspended before they began.
         needs: the resources that plans and goals have requested, by the number of the act.
         preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
         requeued: external events without plan that are to be tried again (``events=requeue``).
@@ -388,10 +388,8 @@ class Circumstance:
                 self.note_plan(intention, frame[PLAN])
 
     def make_ready(self, intention: Intention) -> None:
-        """Let an intention take part in the next cycles; a suspended one is parked."""
-        if intention.suspended is not None:
-            intention.parked = True
-        else:
+        """Let an intention take part in the next cycles; a suspended one once it is resumed."""
+        if intention.suspended is None:
             if self.selections.urgencies is not None:
                 self.selections.note_intention(intention)
             self.intentions.append(intention)
@@ -465,6 +463,11 @@ class Circumstance:
         else:
             self.budgets["intention_limit"].refuse(len(self.alive))
         return False
+
+    def take_out(self, intention: Intention) -> None:
+        """Take an intention out of those that can run."""
+        if intention in self.intentions:
+            self.intentions.remove(intention)
 
     def is_idle(self) -> bool:
         """Return whether there is nothing to do until input arrives or a timer ends."""

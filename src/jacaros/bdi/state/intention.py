@@ -28,8 +28,7 @@ class Intention:
         id: number, for programs and logs.
         frames: the stack, bottom first.
         handlers: for each failure handler on the stack, to which height it is cut when the handler ends.
-        suspended: why it is suspended (a term for ``.suspended``), or None.
-        parked: it could run, but is suspended.
+        suspended: why it is suspended (a term for ``.suspended``), or None. It is then in no queue of those that can run.
         waiting: what it waits for (`Waiting`), or None.
         dropped: it is over; code that still holds it must release it.
         cause: why it was adopted.
@@ -49,7 +48,6 @@ class Intention:
         "id",
         "on_failed",
         "outer",
-        "parked",
         "suspended",
         "urgencies",
         "waiting",
@@ -62,7 +60,6 @@ class Intention:
         self.frames: list[Frame] = []
         self.handlers: list[int] = []
         self.suspended: Term = None
-        self.parked = False
         self.waiting: Any = None
         self.dropped = False
         self.cause = cause

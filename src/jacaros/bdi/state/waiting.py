@@ -15,9 +15,6 @@ from jacaros.terms.values import Functor, Term, atom, functor
 ACTION = functor("action", 1)
 """Functor of the reason of a wait for the end of an external action."""
 
-BY_SUSPEND = atom("suspend_ia")
-"""Reason of what ``.suspend`` has suspended, as in Jason."""
-
 
 def is_action(reason: Term) -> bool:
     """Return whether the wait is for an external action."""
@@ -52,7 +49,7 @@ class Waiting:
         reason: a term for ``.intention`` and ``.suspended``.
         frame: of the step, once the step has been suspended.
         next_step: with which the frame continues.
-        ended: the step has succeeded or failed, or its intention is gone.
+        ended: the step has succeeded or failed, or its intention is gone. A suspended intention keeps such a wait.
         failure: why the step failed: a message, and annotations that may contain an ``error(..)``; None if it succeeded.
         alarm: what ends the wait at a moment, or None.
     """
@@ -118,15 +115,6 @@ class AnswerWait(Waiting):
         self.ids: list[str] = []
 
 
-class OwnSuspension(Waiting):
-    """Waits for the ``.resume`` of the intention that suspended itself."""
-
-    __slots__ = ()
-
-    def __init__(self, intention: Intention) -> None:
-        super().__init__(intention, BY_SUSPEND)
-
-
 class GoalConditionWait(Waiting):
     """Waits for the goal condition of a plan whose body has ended."""
 
@@ -134,16 +122,6 @@ class GoalConditionWait(Waiting):
 
     def __init__(self, intention: Intention) -> None:
         super().__init__(intention, _GOAL_CONDITION)
-
-
-class HeldEnd(Waiting):
-    """Waits for ``.resume``: the wait *held* ended while the intention was suspended."""
-
-    __slots__ = ("held",)
-
-    def __init__(self, held: Waiting) -> None:
-        super().__init__(held.intention, held.reason)
-        self.held = held
 
 
 class CoroutineWait(Waiting):
@@ -157,8 +135,8 @@ class CoroutineWait(Waiting):
         super().__init__(intention, atom(name))
 
 
-_ASK: Functor = atom("ask")
-_GOAL_CONDITION: Functor = atom("goal_condition")
+_ASK: Functor = atom("waiting_ask")
+_GOAL_CONDITION: Functor = atom("wait_goal_condition")
 
 
 class EventWait(TimedWait):

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.urgency import Urgent
 from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.waiting import OwnSuspension, TimedWait, Waiting
+from jacaros.bdi.state.waiting import TimedWait, Waiting
 from jacaros.clock import Clock, Timer
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.steps import Stacks
@@ -146,13 +146,16 @@ class IntentionRecords:
 
     def _record(self, intention: Intention) -> None:
         waiting, cause = intention.waiting, self._cause(intention)
-        suspended = intention.suspended is not None or isinstance(waiting, OwnSuspension)
         record = {
             "agent": self._mind.name,
             "id": intention.id,
-            "state": "suspended" if suspended else "waits" if waiting is not None else "runs",
+            "state": "suspended"
+            if intention.suspended is not None
+            else "waits"
+            if waiting is not None
+            else "runs",
             "stack": self._stacks.of(intention),
-            "waits": "" if waiting is None else waits_for(waiting),
+            "waits": "" if waiting is None or waiting.ended else waits_for(waiting),
             "since": self._t(waiting.began if isinstance(waiting, TimedWait) else None),
             "reason": "" if intention.suspended is None else shown(intention.suspended),
             "urgency": self._urgency(intention),

@@ -10,8 +10,6 @@ from jacaros.bdi.state.waiting import (
     CoroutineWait,
     EventWait,
     GoalConditionWait,
-    HeldEnd,
-    OwnSuspension,
     TimedWait,
     Waiting,
     is_action,
@@ -51,8 +49,6 @@ _WORDS: tuple[tuple[type[Waiting], Callable[[Waiting], str]], ...] = (
     (ConditionWait, lambda waiting: f"the condition {shown(_awaited(waiting))}"),
     (TimedWait, _time),
     (AnswerWait, lambda waiting: "an answer"),
-    (OwnSuspension, lambda waiting: "its resumption"),
     (GoalConditionWait, lambda waiting: "the condition of its goal"),
-    (HeldEnd, lambda waiting: "its resumption"),
     (CoroutineWait, lambda waiting: f"the Python coroutine {shown(waiting.reason)}"),
 )

@@ -1,0 +1,5 @@
+// A sub-goal of a suspended intention that ends as achieved lets the intention go on.
+!start.
++!start <- !!a; .print(s0); .print(s1); .print(s2); .suspend(a); .print(susp); .succeed_goal(b); .print(s4); .print(s5); .print(s6); .wait(40); .stopMAS.
++!a <- .print(a1); !b; .print(a2); .print(a3).
++!b <- for (.range(I,1,20)) { .print(b,I) }.
