@@ -183,7 +183,12 @@ class ProjectModules:
         file = getattr(module, "__file__", None)
         if file is None:
             return False
-        return any(Path(file).resolve().is_relative_to(folder) for folder in self.folders)
+        path = Path(file).resolve()
+        # A project's folder often holds its virtual environment, too. Libraries stay: numpy cannot be loaded twice.
+        return any(
+            path.is_relative_to(folder) and "site-packages" not in path.relative_to(folder).parts
+            for folder in self.folders
+        )
 
 
 def _where(error: BaseException, file: Path) -> str:
