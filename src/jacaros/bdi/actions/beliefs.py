@@ -1,21 +1,34 @@
 """Internal actions on beliefs, their namespaces, rules and conditions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.asl.lowering import fresh_names, lower
 from jacaros.bdi.actions.internal_action import WrongArguments, elements, internal_action
 from jacaros.bdi.rules import belief_update
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.state.belief_base import parts, without_sources
+from jacaros.bdi.state.belief_base import Table, parts, without_sources
 from jacaros.bdi.state.literals import own_annotations
-from jacaros.bdi.state.rule import Rule
+from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.terms.order import annotation_set, compare, ordered_by_python
 from jacaros.terms.plans import RULE
 from jacaros.terms.substitution import rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo, unify, unify_annotations
-from jacaros.terms.values import FALSE, TRUE, Functor, Term, Var, atom, bare, functor_of, make_list
+from jacaros.terms.values import (
+    FALSE,
+    TRUE,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    atom,
+    bare,
+    functor_of,
+    is_list,
+    make_list,
+)
 
 
 @internal_action(".abolish", arity=1)
@@ -62,9 +75,17 @@ def belief(ctx: Context, pattern: Term) -> Iterator[None]:
 def list_rules(ctx: Context) -> None:
     """``.list_rules`` prints the rules."""
     for table in ctx.agent.beliefs.values():
-        for entry, _ in table.entries():
-            if isinstance(entry, Rule):
-                ctx.architecture.print(entry.text())
+        for entry, _ in _rules(table):
+            lookup = fresh_names()
+            head = Annotated(bare(lower(entry.node.head, lookup)), entry.head_annotations())
+            ctx.architecture.print(f"{text(head)} :- {text(lower(entry.node.body, lookup))}")
+
+
+def _rules(table: Table) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+    """Yield the rules of a table with their annotations; a fact of the program with variables is one without conditions."""
+    for entry, held in table.entries():
+        if isinstance(entry, Rule | OpenFact) and entry.node is not None:
+            yield entry, held
 
 
 @internal_action(".relevant_rules", arity=2)
@@ -74,14 +95,18 @@ def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
     With *P* unbound, it is the list of all rules.
     """
     symbol, _, annotations = parts(pattern)
-    if symbol is None and bare(pattern).__class__ is not Var:
-        raise WrongArguments(f"expected a literal, found {text(pattern)}")
     beliefs = ctx.agent.beliefs
+    if symbol is not None:
+        tables: Iterable[Table] = (beliefs[symbol],)
+    elif bare(pattern).__class__ is Var:
+        tables = beliefs.values()
+    elif is_list(pattern):
+        tables = ()  # a literal in Jason, but no rule has such a head
+    else:
+        raise WrongArguments(f"expected a literal, found {text(pattern)}")
     found = []
-    for table in beliefs.values() if symbol is None else (beliefs[symbol],):
-        for entry, held in table.entries():
-            if not isinstance(entry, Rule):
-                continue
+    for table in tables:
+        for entry, held in _rules(table):
             rule = lower(nodes.RuleTerm(entry.node), fresh_names())
             mark = len(ctx.trail)
             fits = unify(bare(pattern), bare(rule[1]), ctx.trail) and unify_annotations(
@@ -89,7 +114,8 @@ def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
             )
             undo(ctx.trail, mark)
             if fits:
-                found.append((rule[0], without_sources(rule[1]), rule[2]))
+                head = rule[1] if isinstance(entry, Rule) else Annotated(rule[1], held)
+                found.append((rule[0], without_sources(head), rule[2]))
     return ctx.unify(target, make_list(found))
 
 

@@ -6,9 +6,8 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.asl.lowering import fresh_names, lower, lower_value
 from jacaros.terms.substitution import rename
-from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
-from jacaros.terms.values import BY_SELF, Annotated, Term, annotations_of, arguments_of
+from jacaros.terms.values import BY_SELF, Term, annotations_of, arguments_of
 
 Answers = Generator[Any, Any, None]
 """Yields a tuple for each answer, or a generator that is to be run for it (`jacaros.bdi.rules.searching.run`)."""
@@ -46,14 +45,6 @@ class Rule:
         """The annotations of the head, ``source(self)`` when it names no source."""
         annotations = self.node.head.annotations
         return BY_SELF if annotations is None else annotations_of(lower_value(self.node.head))
-
-    def text(self) -> str:
-        """The rule as Jason prints it."""
-        lookup = fresh_names()
-        head = lower(self.node.head, lookup)
-        if self.node.head.annotations is None:
-            head = Annotated(head, BY_SELF)
-        return f"{text(head)} :- {text(lower(self.node.body, lookup))}"
 
     def head(self) -> Term:
         """The head as a term with fresh variables."""

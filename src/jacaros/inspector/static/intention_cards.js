@@ -31,7 +31,7 @@ export class IntentionCards {
     card.append(element("header", "", element("code", "step", top.step || top.goal || "its end"), element("span", "state", STATES[state] ?? state)));
     card.append(element("p", "where", placeButton(this.context, top, key), element("span", "since", "since ", momentButton(this.context, since ?? 0, key), " · ", age(since ?? 0))));
     if (waits) card.append(element("p", "waits", element("b", "", "waits for "), waits));
-    if (reason) card.append(element("p", "waits", element("b", "", "suspended: "), reason));
+    if (reason && reason !== "suspend_ia") card.append(element("p", "waits", element("b", "", "suspended: "), reason));
     if (top.step || stack.length > 1) card.append(this.stack(stack, key));
     card.append(this.feet({ mind, id, urgency, cause, key, goal: top.goal }));
     return card;
