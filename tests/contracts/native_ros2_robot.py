@@ -109,8 +109,12 @@ def ask(node: Any, other: str) -> None:
     def call(kind: Any, service: str, request: Any) -> Any:
         client = node.create_client(kind, f"{other}/{service}")
         assert client.wait_for_service(20)
-        time.sleep(0.5)
-        return wait(node, client.call_async(request))
+        for _ in range(8):  # a server that discovers us late loses its response
+            future = client.call_async(request)
+            rclpy.spin_until_future_complete(node, future, timeout_sec=3)
+            if future.done():
+                return future.result()
+        raise AssertionError(f"{service} gave no response")
 
     def put(value: int) -> Any:
         told = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
