@@ -394,7 +394,8 @@ class Mind(Circumstance):
         self._acts += 1
         number = self._beginning = self._acts
         act = Act(number, symbol, arguments, annotations, intention.id, intention.cause)
-        needs.claim(self, intention, act)
+        if self.selections.urgencies is not None or self.atomic is not None or self.waits.needs:
+            needs.claim(self, intention, act)
         if self.observers.mind is not None:
             act.cause, act.place = self.cause_now() or act.cause, self.observers.mind.place(intention)
         try:

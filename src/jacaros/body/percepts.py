@@ -10,6 +10,7 @@ from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.terms.order import annotation_set
 from jacaros.terms.values import SOURCE_PERCEPT, String, Term, atom, functor, number
+from jacaros.trace import Cause
 
 ADD, REMOVE, SIGNAL = "add", "remove", "signal"
 
@@ -71,35 +72,38 @@ class PerceptWriter:
             literal = self._literal(signal.name, signal.arguments, namespace)
             found.append(Percept(SIGNAL, literal, about_signal, cause))
         for old, new in changed:
-            # Percepts of a property are stored with it, for its end and for all other observers.
-            written = old.written
-            literal, about = (
-                written if written and not namespace else self._write(old, about_property, namespace)
-            )
-            found.append(Percept(REMOVE, literal, about, cause))
-            found.append(Percept(ADD, *self._write(new, about_property, namespace), cause))
+            found.append(self._percept(REMOVE, old, about_property, namespace, cause))
+            found.append(self._percept(ADD, new, about_property, namespace, cause))
         for each in added:
-            found.append(Percept(ADD, *self._write(each, about_property, namespace), cause))
+            found.append(self._percept(ADD, each, about_property, namespace, cause))
         for each in removed:
-            found.append(Percept(REMOVE, *self._write(each, about_property, namespace), cause))
+            found.append(self._percept(REMOVE, each, about_property, namespace, cause))
         self.newest, self.namespace, self.written = observation, namespace, found
         return found
 
-    def _write(
-        self, each: ObservableProperty, about: Annotations, namespace: str | None
-    ) -> tuple[Term, Annotations]:
-        written: tuple[Term, Annotations] | None = each.written
-        if written is None:
+    def _percept(
+        self,
+        kind: str,
+        each: ObservableProperty,
+        about: Annotations,
+        namespace: str | None,
+        cause: Cause | None,
+    ) -> Percept:
+        """Return a percept of a property. The first one is stored with it, for its end and for all other observers."""
+        first: Percept | None = each.written
+        if first is None:
             if each.annotations:
                 own = tuple(to_term(a, self._references) for a in each.annotations)
                 about = annotation_set((*about, *own))
-            written = each.written = self._literal(each.name, each.values, None), about
+            first = each.written = Percept(kind, self._literal(each.name, each.values, None), about, cause)
+            if not namespace:
+                return first
         if not namespace:
-            return written
+            return Percept(kind, first.literal, first.annotations, cause, first.kept)
         # The identical arguments: the mind uses them to find the belief to remove.
-        literal, about = written  # pyright: ignore[reportGeneralTypeIssues]
         symbol = symbol_of(f"{namespace}::{each.name}", len(each.values))
-        return (symbol, *literal[1:]) if each.values else symbol, about
+        literal = (symbol, *first.literal[1:]) if each.values else symbol
+        return Percept(kind, literal, first.annotations, cause)
 
     def own(self, kind: str, about: ArtifactId, name: str, *arguments: Term) -> Percept:
         """Return a percept about the agent itself, such as ``joinedWsp(Id,lab,"/main/lab")``.

@@ -30,46 +30,56 @@ def take_percepts(agent: Circumstance) -> None:
     """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
     while agent.incoming.percepts:
         percepts = agent.incoming.percepts.popleft()
-        quiet = is_quiet(agent)
         try:
-            for percept in percepts:
-                take(agent, percept, quiet)
+            _take(agent, percepts, is_quiet(agent))
         except InternalError:
             raise
         except Exception as fault:
             failure.report_skipped(agent, "percepts", fault)
 
 
-def take(agent: Circumstance, percept: Percept, quiet: bool) -> None:
-    """Add or remove the belief of one percept, and raise its event; of *quiet* ones only plans want to know.
+def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
+    """Add or remove the beliefs of percepts, and raise their events; of *quiet* ones only plans want to know.
 
     Raises:
-        InternalError: its literal is not a literal.
+        InternalError: a literal of a percept is not a literal.
     """
-    symbol, row, keyed = percept.kept or _keep(percept)
-    kind, shown, annotations = percept.kind, percept.literal, percept.annotations
-    table, holders = agent.beliefs[symbol], agent.beliefs.held_percepts
-    own: Row | None = row
-    if kind == "add":
-        if keyed and shown not in holders and row not in table.rows and not table.late:
-            if table.add(row, annotations) is None:
-                return
-            holders[shown] = annotations
-        else:
-            own = (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
-    elif kind == "remove":
-        if keyed and holders.get(shown) is annotations and table.rows.get(row) is annotations:
+    beliefs, selects = agent.beliefs, agent.library.selects
+    holders = beliefs.held_percepts
+    for percept in percepts:
+        symbol, row, keyed = percept.kept or _keep(percept)
+        kind, shown, annotations = percept.kind, percept.literal, percept.annotations
+        table = beliefs[symbol]
+        own: Row | None = row
+        if kind == "add" and keyed and shown not in holders and row not in table.rows and not table.late:
+            own = None if table.add(row, annotations) is None else row
+            if own is not None:
+                holders[shown] = annotations
+        elif kind == "remove" and keyed and holders.get(shown) is annotations is table.rows.get(row):
             del holders[shown]  # nothing else makes the agent believe it
             table.remove(row)
-        else:
-            own = (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
-    elif not keyed:
-        own = _own_row(row)
-    if quiet and agent.library.selects[table.deleted if kind == "remove" else table.added] is None:
-        return
-    if own is not None:
-        operator = "-" if kind == "remove" else "+"
-        external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
+        elif kind != "signal" or not keyed:
+            own = _take_unusual(agent, symbol, row, percept, keyed)
+        if own is None:
+            continue
+        if not quiet:
+            operator = "-" if kind == "remove" else "+"
+            external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
+            continue
+        trigger = table.deleted if kind == "remove" else table.added
+        if selects[trigger] is not None:
+            agent.post(((trigger, *own), None, annotations, percept.cause))
+
+
+def _take_unusual(
+    agent: Circumstance, symbol: Functor, row: Row, percept: Percept, keyed: bool
+) -> Row | None:
+    """Take a percept that others agree with, or that cannot be looked up; return what is believed or not any more."""
+    if percept.kind == "add":
+        return (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
+    if percept.kind == "remove":
+        return (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
+    return _own_row(row)
 
 
 def _keep(percept: Percept) -> Kept:
@@ -173,8 +183,7 @@ def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
     return (None, symbol, *map(id, row))
 
 
-# --- backpressure: whether an agent has handled its percepts
-# ------------------------------------------------------
+# --- backpressure: whether an agent has handled its percepts ----------------------------------------------------
 
 
 def is_untaken(agent: Circumstance, name: str) -> bool:

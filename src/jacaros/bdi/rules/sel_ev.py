@@ -103,8 +103,9 @@ def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
 def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, _, annotations, cause = event
-    kind, observer, reactions = goal[0], agent.observers.mind, agent.library.reactions
-    reacted = bool(reactions.of) and kind.kind == "" and _react(agent, event, reactions[kind])
+    kind, observer, reactions, reacted = goal[0], agent.observers.mind, agent.library.reactions, False
+    if reactions.of and kind.kind == "":
+        reacted = _react(agent, event, reactions[kind])
     if observer is None:
         frame = select_plan(agent, goal, annotations)
     else:
@@ -116,7 +117,7 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
     if kind.failing:
         intention.handlers.append(0)
     # A goal that needs something has annotations beside its source.
-    plain = not kind.kind or (isinstance(annotations, tuple) and len(annotations) == 1)
+    plain = not kind.kind or (annotations.__class__ is tuple and len(annotations) == 1)
     if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
         if agent.selections.urgencies is None:
             agent.intentions.append(intention)

@@ -74,4 +74,4 @@ class Percept:
     literal: Term
     annotations: tuple[Term, ...]
     cause: Cause | None = None
-    kept: Any = field(default=None, init=False, compare=False, repr=False)
+    kept: Any = field(default=None, compare=False, repr=False)

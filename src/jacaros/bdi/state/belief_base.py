@@ -185,17 +185,23 @@ class Table:
             self._note(row, 1)
             return annotations
         self.rows[row] = annotations
+        if not self.plain or row.__class__ is not tuple:
+            self._add_among_others(row)
+        if self.indexes and row.__class__ is tuple:
+            self._add_to_indexes(row)
+        return annotations
+
+    def _add_among_others(self, row: Any) -> None:
+        """The newest entry is not a fact, or there are entries that are not facts."""
         if self._mixed is not None:
             self._mixed.add(row)
         if row.__class__ is not tuple:
             self.others += 1
             self._note(row, 1)
-            return annotations
-        if self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before):
+        elif (
+            self.searches is not None and self.deep is not None and (self.searches.before or self.deep.before)
+        ):
             self._changed()  # no rule answers before the newest fact
-        if self.indexes:
-            self._add_to_indexes(row)
-        return annotations
 
     def _note(self, entry: Entry, change: int) -> None:
         """A rule, a belief with variables, or an entry of `late` came (*change* is 1) or went (-1)."""
