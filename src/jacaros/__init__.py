@@ -4,8 +4,7 @@ Import the names for your Python code from here: ``from jacaros import internal_
 on first use, so ``import jacaros`` costs nothing.
 """
 
-from importlib import import_module
-
+from jacaros.exports import exported
 from jacaros.version import VERSION
 
 TYPE_CHECKING = False  # True for type checkers; importing the typing module takes longer than all of this
@@ -81,20 +80,8 @@ _MODULES = {
     "jacaros.mas.options": "RunOptions",
 }
 """Where the names are defined; views of the mind's objects have other names there."""
-_PLACES = {
-    name.partition("=")[0]: (module, name.rpartition("=")[2])
-    for module, names in _MODULES.items()
-    for name in names.split()
-}
 
-
-def __getattr__(name: str) -> object:
-    place = _PLACES.get(name)
-    if place is None:
-        raise AttributeError(f"module 'jacaros' has no attribute {name!r}")
-    module, own_name = place
-    value = globals()[name] = getattr(import_module(module), own_name)
-    return value
+__getattr__ = exported(__name__, _MODULES)
 
 
 def __dir__() -> list[str]:

@@ -1,44 +1,44 @@
 """Workspaces and artifacts as in CArtAgO, usable without agents.
 
 To write artifacts, use `Artifact`, the decorators and the plain values. A host uses `Environment`. To use artifacts from
-Python, use a `Session`, which is imported on first use. This package does not depend on agents, ROS or the language.
+Python, use a `Session`. Each name is loaded on first use. This package does not depend on agents, ROS or the language.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
-from jacaros.env.artifact import Artifact
-from jacaros.env.environment import Environment
-from jacaros.env.errors import (
-    InvalidArtifact,
-    OperationFailed,
-    UnknownArtifact,
-    UnknownArtifactType,
-    UnknownProperty,
-    UnknownWorkspace,
-    WorkspaceError,
-)
-from jacaros.env.execution import OperationExecution
-from jacaros.env.ids import ArtifactId, resolve_path
-from jacaros.env.manual import Manual, describe, manual_term
-from jacaros.env.observation import Observation, Observer, Signal
-from jacaros.env.operation import (
-    OperationOutcome,
-    OperationRequest,
-    initializer,
-    internal_operation,
-    link,
-    operation,
-)
-from jacaros.env.property import ObservableProperty
-from jacaros.env.values import UNSET, Atom, Out, Structure, plain, text
-from jacaros.env.workspace import Workspace
+from jacaros.exports import exported
 
 if TYPE_CHECKING:
+    from jacaros.env.artifact import Artifact
+    from jacaros.env.environment import Environment
+    from jacaros.env.errors import (
+        InvalidArtifact,
+        OperationFailed,
+        UnknownArtifact,
+        UnknownArtifactType,
+        UnknownProperty,
+        UnknownWorkspace,
+        WorkspaceError,
+    )
+    from jacaros.env.execution import OperationExecution
+    from jacaros.env.ids import ArtifactId, resolve_path
+    from jacaros.env.manual import Manual, describe, manual_term
+    from jacaros.env.observation import Observation, Observer, Signal
+    from jacaros.env.operation import (
+        OperationOutcome,
+        OperationRequest,
+        initializer,
+        internal_operation,
+        link,
+        operation,
+    )
+    from jacaros.env.property import ObservableProperty
     from jacaros.env.session.observed import ObservedProperty, PropertyChange
     from jacaros.env.session.operation import SessionOperation
     from jacaros.env.session.session import Session
     from jacaros.env.session.signal_stream import ReceivedSignal, SignalStream
+    from jacaros.env.values import UNSET, Atom, Out, Structure, plain, text
+    from jacaros.env.workspace import Workspace
 
 __all__ = [
     "UNSET",
@@ -81,19 +81,23 @@ __all__ = [
     "text",
 ]
 
-_LATER = {
-    "ObservedProperty": "jacaros.env.session.observed",
-    "PropertyChange": "jacaros.env.session.observed",
-    "ReceivedSignal": "jacaros.env.session.signal_stream",
-    "Session": "jacaros.env.session.session",
-    "SessionOperation": "jacaros.env.session.operation",
-    "SignalStream": "jacaros.env.session.signal_stream",
+_MODULES = {
+    "jacaros.env.artifact": "Artifact",
+    "jacaros.env.environment": "Environment",
+    "jacaros.env.errors": "InvalidArtifact OperationFailed UnknownArtifact "
+    "UnknownArtifactType UnknownProperty UnknownWorkspace WorkspaceError",
+    "jacaros.env.execution": "OperationExecution",
+    "jacaros.env.ids": "ArtifactId resolve_path",
+    "jacaros.env.manual": "Manual describe manual_term",
+    "jacaros.env.observation": "Observation Observer Signal",
+    "jacaros.env.operation": "OperationOutcome OperationRequest initializer internal_operation link operation",
+    "jacaros.env.property": "ObservableProperty",
+    "jacaros.env.session.observed": "ObservedProperty PropertyChange",
+    "jacaros.env.session.operation": "SessionOperation",
+    "jacaros.env.session.session": "Session",
+    "jacaros.env.session.signal_stream": "ReceivedSignal SignalStream",
+    "jacaros.env.values": "Atom Out Structure UNSET plain text",
+    "jacaros.env.workspace": "Workspace",
 }
 
-
-def __getattr__(name: str) -> object:
-    place = _LATER.get(name)
-    if place is None:
-        raise AttributeError(f"module 'jacaros.env' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(place), name)
-    return value
+__getattr__ = exported(__name__, _MODULES)
