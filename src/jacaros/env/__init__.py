@@ -6,6 +6,7 @@ Python, use a `Session`. Each name is loaded on first use. This package does not
 
 from typing import TYPE_CHECKING
 
+from jacaros.env.operation import operation  # now: the module of this name would hide it
 from jacaros.exports import exported
 
 if TYPE_CHECKING:

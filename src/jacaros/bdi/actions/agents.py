@@ -26,7 +26,7 @@ from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.waiting import AnswerWait, Waiting
-from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
+from jacaros.terms.substitution import is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     FALSE,
@@ -100,28 +100,14 @@ def _direct(written: Written) -> Function | None:
         return None
     if to is None or to == "self":
         return _sender_to_some(act)
-    return _sender_to_one(act, to, written[2] is not None and is_flat(written[2]))
+    return _sender_to_one(act, to)
 
 
-def _sender_to_one(act: str, to: str, flat: bool) -> Function:
-    """Send to one agent named in the program; *flat* if the content is known to be flat."""
+def _sender_to_one(act: str, to: str) -> Function:
+    """Send to one agent named in the program."""
 
     def send_on(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        # `_say` and `is_flat` inlined for the most frequent messages; the others are left to it.
-        if not flat:
-            if content.__class__ is not tuple or content[0].kind:
-                _say(agent, to, act, content)
-                return
-            for part in content:
-                if part.__class__ not in ATOMIC:
-                    _say(agent, to, act, content)
-                    return
-        if to == agent.name:
-            _say(agent, to, act, content)
-            return
-        agent.messages = number = agent.messages + 1
-        if not agent.architecture.send(SpeechAct(act, agent.name, to, content, number, None, True)):
-            raise _nobody(to)
+        _say(agent, to, act, content)
 
     return send_on
 

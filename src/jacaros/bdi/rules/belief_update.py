@@ -14,7 +14,7 @@ from jacaros.bdi.state.literals import resolve_all
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.terms.order import merge_annotations
-from jacaros.terms.substitution import free_variables, is_key, rename, resolve
+from jacaros.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
 from jacaros.terms.unifier import undo, unify_annotations
 from jacaros.terms.values import (
     BY_SELF,
@@ -36,7 +36,7 @@ _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b``: the event belongs to the intention that made it."""
-    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations))
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations))
 
 
 def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -44,27 +44,34 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
 
     The event of the first half is external.
     """
-    delete_any(agent, symbol, annotations)
+    table = agent.beliefs[symbol]
+    newest = next(reversed(table.rows)) if table.plain and table.rows else None
+    if newest is not None and annotations is BY_SELF is table.rows[newest]:
+        table.remove(newest)
+        external_change(agent, "-", symbol, newest, BY_SELF)
+    else:
+        delete_any(agent, symbol, annotations)
     return add_belief(agent, symbol, row, annotations)
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+>b``: the belief answers last."""
-    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
 
 
 def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``++b``: the event is an external one."""
-    return own_event(agent, symbol, row, insert(agent, symbol, row, annotations), apart=True)
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), apart=True)
 
 
-def own_event(
+def _own_event(
     agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool = False
 ) -> Raised:
     """Raise the event of a belief that a step has added; *new* are the annotations that it did not have before."""
     if new is None:
         return None
-    note_change(agent, symbol, row)
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
     if agent.observers.hear_beliefs:
         _tell_change(agent, "+", symbol, row, new, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
@@ -92,7 +99,12 @@ def _tell_change(
 
 def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
     """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs it."""
-    unplanned = agent.library.selects[goal[0]] is None and not _is_kept(agent, goal[0])
+    kind, library = goal[0], agent.library
+    unplanned = (
+        library.selects[kind] is None
+        and not (library.reactions.of and library.reactions[kind])
+        and agent.options.events == "discard"
+    )
     if apart or agent.options.new_focus:
         if unplanned and not agent.waits.events:
             return None
@@ -135,8 +147,9 @@ def insert(
 ) -> Annotations | None:
     """Add a belief; return its new annotations, or None (then there is no event)."""
     table = agent.beliefs[symbol]
-    if not all(map(is_key, row)):
-        return _insert_aside(table, symbol, row, annotations, last)
+    for argument in row:  # most are numbers, strings and atoms
+        if argument.__class__ not in ATOMIC and not is_key(argument):
+            return _insert_aside(table, symbol, row, annotations, last)
     held = table.get(row)
     return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
 
@@ -168,15 +181,12 @@ def delete_belief(
     if _is_property(agent, symbol, arguments, annotations):
         return None
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
-    return None if removed is None else deleted(agent, symbol, removed, annotations, apart)
-
-
-def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, apart: bool) -> Raised:
-    """Raise the event of a belief that a step has deleted."""
-    note_change(agent, symbol, row)
+    if removed is None:
+        return None
+    note_change(agent, symbol, removed)
     if agent.observers.hear_beliefs:
-        _tell_change(agent, "-", symbol, row, annotations, agent.cause_now())
-    return _raise(agent, (agent.beliefs[symbol].deleted, *row), annotations, apart)
+        _tell_change(agent, "-", symbol, removed, annotations, agent.cause_now())
+    return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
@@ -206,10 +216,13 @@ def _remove_first(
         if (
             row is not None
             and unify_rows(arguments, row, trail)
-            and unify_annotations(annotations, None, held, None, trail)
+            and (held is annotations or unify_annotations(annotations, None, held, None, trail))
         ):
             found = resolve_all(arguments)
-            take_away(table, entry, held, resolve_all(annotations))
+            if held is annotations:
+                table.remove(entry)
+            else:
+                take_away(table, entry, held, resolve_all(annotations))
             if not bind:
                 undo(trail, mark)
             return found

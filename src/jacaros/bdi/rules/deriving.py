@@ -310,8 +310,6 @@ def _begun(agent: Circumstance) -> DerivedBeliefs:
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
         observers.hear_beliefs = True
-        # The fast paths do not notify observers of changes that no plan handles.
-        agent.features.usual_events = observers.usual_events = False
     return _derived(agent)
 
 

@@ -140,7 +140,6 @@ def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
     agent.observers.mind = observer
     observers = agent.observers
     observers.hear_beliefs = any(each is not None for each in (observer, observers.step, observers.derived))
-    agent.features.usual_events = False
 
 
 SLEEPING = trigger("+", "", functor("jag_sleeping", 0))

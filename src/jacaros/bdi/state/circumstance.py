@@ -144,10 +144,9 @@ class Observers:
         mind: observes plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
         derived: derives beliefs from others, or None; see `jacaros.bdi.rules.deriving`.
         hear_beliefs: whether one of the last three is set.
-        usual_events: the feature of this name before `step` was set.
     """
 
-    __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
+    __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step")
 
     def __init__(self) -> None:
         self.goal: Callable[[str, Goal, int, int, str], None] | None = None
@@ -155,7 +154,7 @@ class Observers:
         self.step: StepObserver | None = None
         self.mind: MindObserver | None = None
         self.derived: BeliefObserver | None = None
-        self.hear_beliefs = self.usual_events = False
+        self.hear_beliefs = False
 
 
 class Counts:
@@ -228,15 +227,12 @@ class Features:
         meta: plans or an observer react to changes of goal states.
         meta_plans: plans do.
         edges: there may be plans for falling asleep and awaking.
-        usual_events: external events without a plan are skipped, events of belief changes in plans belong to the
-            intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "meta", "meta_plans", "usual_events")
+    __slots__ = ("edges", "meta", "meta_plans")
 
-    def __init__(self, options: Options) -> None:
+    def __init__(self) -> None:
         self.meta = self.meta_plans = self.edges = False
-        self.usual_events = options.events == "discard" and not options.new_focus
 
 
 class Circumstance:
@@ -347,7 +343,7 @@ class Circumstance:
         self.incoming = Incoming()
         self.observers = Observers()
         self.waits = Waits()
-        self.features = Features(options)
+        self.features = Features()
         self.functions = Functions()
         self.counts = Counts()
         self.sleep: Sleep = "awake"

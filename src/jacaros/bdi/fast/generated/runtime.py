@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from jacaros.bdi.fast.beliefs import add_belief, delete_belief, replace_belief
+from jacaros.bdi.rules.belief_update import add_belief, delete_belief, replace_belief
 from jacaros.bdi.rules.calls import (
     answers_of,
     cannot_wait,
