@@ -66,7 +66,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
     On failure, bindings may remain on the trail: the caller undoes them.
     """
     kind = left.__class__
-    if kind in ATOMIC:  # the most frequent cases, inlined
+    if kind in ATOMIC:  # the most frequent cases first
         if right.__class__ in ATOMIC:
             return kind is right.__class__ and bool(left == right)
         if right.__class__ is Var and right.ref is None:

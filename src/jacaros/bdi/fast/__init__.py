@@ -1,1 +1,1 @@
-"""Faster versions of rules: each file replaces a part of `jacaros.bdi.rules` and may be left out."""
+"""Plans and rules as Python code, generated from their syntax; `jacaros.bdi.rules` does without it."""

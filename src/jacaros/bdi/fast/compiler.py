@@ -1,7 +1,4 @@
-"""Run plans and rules with code generated for them.
-
-Replaces `jacaros.bdi.rules.interpreter`, which runs what is not compiled.
-"""
+"""Run plans and rules with code generated for them. What cannot be compiled is interpreted."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress

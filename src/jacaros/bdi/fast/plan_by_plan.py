@@ -1,6 +1,6 @@
 """Many plans for one kind of event, each compiled separately.
 
-Replaces `jacaros.bdi.rules.applicable_plans.Selection`. Compiling fifty plans takes a tenth of a second, too long while
+Compiling fifty plans takes a tenth of a second, too long while
 a robot waits for the reaction to an event. The host compiles them ahead when it is idle (`compile_next`). A plan that is
 tried before that is interpreted the first few times; it is compiled immediately only if it applies, as its body may have
 much to do.
