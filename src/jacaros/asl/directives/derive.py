@@ -5,7 +5,7 @@ from typing import Any, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.source import Span
-from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
+from jacaros.streams.schema import OPERATORS, Fault, faults, unknown
 
 EXAMPLE: Final = "write `{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }`"
 _TIMES: Final = {"within": "within", "lasting": "for"}
@@ -72,7 +72,7 @@ class _Reader:
             self._report_error(
                 _as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help)
             )
-        if operator in VALUED and streams:
+        if OPERATORS[operator].valued and streams:
             self._check_values(operator, streams[0], options)
         return nodes.Derivation(
             name.functor, namespace, operator, tuple(streams), tuple(options.items()), span=span
