@@ -1,7 +1,7 @@
 """Walk syntax trees: their nodes, variables and shape."""
 
-from collections.abc import Iterator
-from typing import TypeVar
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
 
 from jacaros.asl import nodes
 
@@ -16,6 +16,20 @@ def walk(*roots: object) -> Iterator[nodes.Node]:
         elif isinstance(part, nodes.Node):
             yield part
             stack.extend(reversed(part.parts()))
+
+
+def rebuilt(node: Any, change: Callable[[nodes.Node], Any]) -> Any:
+    """Return a copy of a tree with *change* applied to each node, to the inner ones first."""
+    if isinstance(node, tuple):
+        return tuple([rebuilt(part, change) for part in node])
+    if not isinstance(node, nodes.Node):
+        return node
+    return change(type(node)(*[rebuilt(part, change) for part in node.parts()], span=node.span))
+
+
+def is_ground(node: object) -> bool:
+    """Return whether there is no variable in a piece of syntax."""
+    return next(variables_in(node), None) is None
 
 
 def children(node: nodes.Node) -> Iterator[nodes.Node]:

@@ -8,7 +8,7 @@ from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.checks.formulas import contradiction, is_true
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.slips import is_slip_of
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import is_ground
 from jacaros.suggestions import did_you_mean
 
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
@@ -69,7 +69,7 @@ class _Taken:
     def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
         """Add a plan, unless its trigger matches fewer events than its fixed arguments show."""
         annotations = literal.annotations
-        if annotations is not None and not _is_ground(annotations):
+        if annotations is not None and not is_ground(annotations):
             return
         fixed: list[int] = []
         met: set[str] = set()
@@ -78,7 +78,7 @@ class _Taken:
                 if argument.annotations is not None or argument.negated or argument.name in met:
                     return
                 met.add(argument.name)
-            elif _is_ground(argument):
+            elif is_ground(argument):
                 fixed.append(place)
             else:
                 return
@@ -105,10 +105,6 @@ def _event(trigger: nodes.Trigger, literal: nodes.Literal, annotations: nodes.An
 
 def _values(literal: nodes.Literal, places: Sequence[int]) -> object:
     return tuple([literal.arguments[place] for place in places])
-
-
-def _is_ground(term: nodes.Node) -> bool:
-    return not any(isinstance(node, nodes.Variable) for node in walk(term))
 
 
 def _is_made(plan: nodes.Plan) -> bool:

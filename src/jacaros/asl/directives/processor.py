@@ -2,46 +2,25 @@
 
 from collections.abc import Callable
 from itertools import count
-from typing import Final, TypeVar
+from typing import Any, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.directives.goal_patterns import (
-    backtracking,
-    blind,
-    declarative,
-    exclusive,
-    maintenance,
-    open_minded,
-    relativised,
-    sequenced,
-    single_minded,
-)
+from jacaros.asl.directives.goal_patterns import PATTERNS, apply_pattern
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall, PatternError
 from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.program_parser import ProgramParser
 from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.walk import rebuilt
 from jacaros.suggestions import suggestion
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
 whose text says where it was searched."""
 
-PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]] = {
-    "dg": declarative,
-    "bdg": backtracking,
-    "ebdg": exclusive,
-    "mg": maintenance,
-    "bc": blind,
-    "smc": single_minded,
-    "rc": relativised,
-    "omc": open_minded,
-    "sga": sequenced,
-}
-_Result = TypeVar("_Result")
 _SIMPLE: Final = ("derive", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
@@ -115,7 +94,7 @@ class DirectiveProcessor:
             return
         block = parser.block(directive)
         try:
-            section.extend(PATTERNS[name](self._call(parser, directive), block))
+            section.extend(apply_pattern(self._call(parser, directive), block))
         except PatternError as error:
             parser.report("wrong-directive", str(error), directive.span, error.help)
             section.extend(block)
@@ -297,41 +276,22 @@ class DirectiveProcessor:
     # patterns
 
     def _call(self, parser: ProgramParser, directive: nodes.Literal) -> PatternCall:
-        def reader(text: str) -> PlanParser:
+        def parse(text: str, read: Callable[[PlanParser], Any], what: str) -> Any:
             text_parser = PlanParser(SourceFile(f"`{text}`", text), self._names, [])
             text_parser.namespaces = parser.namespaces
-            return text_parser
-
-        def parse_trigger(text: str) -> nodes.Trigger:
-            text_parser = reader(text)
-            return _parse_text(text_parser, text_parser.trigger, "trigger")
-
-        def parse_formula(text: str) -> nodes.Term:
-            text_parser = reader(text)
-            return _parse_text(text_parser, text_parser.condition, "condition")
+            return _parse_text(text_parser, read, what)
 
         arguments = tuple(
-            self._placed(parser.namespaces, _with_named_variables(argument))
-            for argument in directive.arguments
+            self._placed(parser.namespaces, rebuilt(argument, _named)) for argument in directive.arguments
         )
         number = next(self._pattern_numbers)
-        return PatternCall(
-            directive.functor, arguments, directive.span, number, _apply_pattern, parse_trigger, parse_formula
-        )
+        return PatternCall(directive.functor, arguments, directive.span, number, parse)
 
     def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
         """Put a goal or belief given to a pattern into the namespace of the block."""
         if isinstance(argument, nodes.Literal) and argument.namespace is None:
             return nodes.replace(argument, namespace=namespaces.of_literal(argument.functor))
         return argument
-
-
-def _apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """Apply the named pattern to *section*."""
-    pattern = PATTERNS.get(call.name)
-    if pattern is None:
-        raise PatternError(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
-    return pattern(call, section)
 
 
 def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name: str) -> None:
@@ -345,10 +305,10 @@ def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name
     )
 
 
-def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
+def _parse_text(parser: PlanParser, read: Callable[[PlanParser], Any], what: str) -> Any:
     """Parse the whole text of *parser* with *read*; an invalid text is an invalid argument of the directive."""
     try:
-        result = read()
+        result = read(parser)
     except SyntaxPanic:
         result = None
     if result is None or parser.token.kind != "end" or parser.diagnostics:
@@ -357,16 +317,10 @@ def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _
     return result
 
 
-def _with_named_variables(term: nodes.Term) -> nodes.Term:
-    """Return *term* with its unnamed variables named, so that it means the same in several places of a plan."""
-    if isinstance(term, nodes.Variable) and term.unnamed:
-        return nodes.replace(term, unnamed=False)
-    if isinstance(term, nodes.Literal):
-        return nodes.replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
-    if isinstance(term, nodes.ListTerm):
-        tail = None if term.tail is None else _with_named_variables(term.tail)
-        return nodes.replace(term, items=tuple(map(_with_named_variables, term.items)), tail=tail)
-    return term
+def _named(node: nodes.Node) -> nodes.Node:
+    """Give an unnamed variable a name, so that it means the same in several places of a plan."""
+    unnamed = isinstance(node, nodes.Variable) and node.unnamed
+    return nodes.replace(node, unnamed=False) if unnamed else node
 
 
 def _meant(name: str) -> str | None:
