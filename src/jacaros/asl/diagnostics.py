@@ -212,3 +212,8 @@ KINDS: Final[dict[str, Kind]] = {
 
 The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the thesis.
 """
+
+
+def problem(code: str, message: str, span: Span | None, help: str | None = None) -> Diagnostic:
+    """Return a diagnostic of a kind, at its usual level."""
+    return Diagnostic(KINDS[code].level, message, span, help, code)

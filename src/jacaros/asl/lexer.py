@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.source import SourceFile, Span
 from jacaros.terms.operators import BINARY, WORDS
 
@@ -155,21 +155,19 @@ def _unusual(
 
 def _wrong_escape(file: SourceFile, escape: re.Match[str], line: int, column: int) -> Diagnostic:
     begin, end = column + escape.start(), column + escape.end()
-    return Diagnostic(
-        "error",
+    return problem(
+        "wrong-escape",
         f"invalid escape `{escape.group()}` in a string",
         Span(file, line, begin, line, end),
         r"only `\n` and `\"` are converted; write a backslash as `\\`",
-        "wrong-escape",
     )
 
 
 def _not_ascii(file: SourceFile, lexeme: str, line: int, column: int) -> Diagnostic:
     letter = next(char for char in lexeme if not char.isascii())
-    return Diagnostic(
-        "error",
+    return problem(
+        "non-ascii-name",
         f"name `{lexeme}` contains the letter `{letter}`; names consist of the letters a to z, digits and `_`",
         Span(file, line, column, line, column + len(lexeme)),
         f"rename it, or quote it as an atom: '{lexeme}'",
-        "non-ascii-name",
     )

@@ -8,7 +8,7 @@ from typing import TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.diagnostics import AslError, Diagnostic
+from jacaros.asl.diagnostics import AslError, Diagnostic, problem
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
 from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
@@ -160,7 +160,7 @@ def parse_plans(
     processor = DirectiveProcessor(None, _names_with(functions, actions), diagnostics)
     section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
     for clause in (*section.beliefs, *section.goals):
-        diagnostics.append(Diagnostic("error", "expected only plans", clause.span, None, "unexpected-token"))
+        diagnostics.append(problem("unexpected-token", "expected only plans", clause.span))
     _settled(diagnostics)
     return tuple(section.plans)
 
@@ -270,10 +270,9 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
         file = first.span.file.name
         elsewhere = second.span is None or second.span.file.name != file
         where = f"; the first one is at {f'{file}, ' if elsewhere else ''}line {first.span.line}"
-    return Diagnostic(
-        "error",
+    return problem(
+        "duplicate-label",
         f"two different plans have the label `@{second.label.functor}`{where}",
         second.label.span or second.span,
         "rename one of the labels",
-        "duplicate-label",
     )

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from jacaros.asl.diagnostics import KINDS, Diagnostic
+from jacaros.asl.diagnostics import KINDS, Diagnostic, problem
 from jacaros.asl.lexer import Comment, Token, tokenize
 from jacaros.asl.source import SourceFile, Span
 
@@ -39,7 +39,7 @@ class Suppressions:
         codes = frozenset(_CODE.findall(order["codes"]))
         for code in sorted(codes - KINDS.keys()):
             span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
-            self.unknown.append(Diagnostic("warning", f"unknown code `{code}`", span, None, "unknown-code"))
+            self.unknown.append(problem("unknown-code", f"unknown code `{code}`", span))
         if order["file"]:
             self._everywhere |= codes
         else:

@@ -1,5 +1,6 @@
 """Walk syntax trees: their nodes, variables and shape."""
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
@@ -102,3 +103,16 @@ def shape(node: object, names: dict[str, int] | None = None) -> object:
     if isinstance(node, nodes.Node):
         return (type(node).__name__, *[shape(part, names) for part in node.parts()])
     return node
+
+
+class ByKind:
+    """All nodes of pieces of syntax by their kind, collected in one walk."""
+
+    def __init__(self, *roots: object) -> None:
+        self._nodes: defaultdict[type, list[Any]] = defaultdict(list)
+        for node in walk(*roots):
+            self._nodes[type(node)].append(node)
+
+    def of(self, *kinds: type[Kind]) -> list[Kind]:
+        """Return the nodes of these kinds, in order for each kind."""
+        return [node for kind in kinds for node in self._nodes[kind]]

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from math import inf
+from typing import Any, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
-from jacaros.asl.walk import children, walk
+from jacaros.asl.walk import children, variables_in
 from jacaros.terms.operators import BINARY
 
 Clause = nodes.Plan | nodes.Rule
@@ -17,6 +18,17 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
     for belief in program.beliefs:
         if isinstance(belief, nodes.Rule):
             yield belief
+
+
+CONDITIONED: Final[tuple[type[Any], ...]] = (
+    nodes.Plan,
+    nodes.Rule,
+    nodes.If,
+    nodes.While,
+    nodes.For,
+    nodes.Test,
+)
+"""The kinds of nodes that have conditions, besides labels with ``while``."""
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
@@ -36,12 +48,17 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
         yield node.arguments[0]
 
 
-def labelled(plan: nodes.Plan) -> Iterator[nodes.Literal]:
-    """Yield the annotations of a plan's label that are literals."""
-    annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
-    for item in () if annotations is None else annotations.items:
-        if isinstance(item, nodes.Literal):
-            yield item
+def labelled(plan: nodes.Plan) -> list[nodes.Literal]:
+    """Return the annotations of a plan's label that are literals."""
+    return annotations_of(plan.label) if isinstance(plan.label, nodes.Literal) else []
+
+
+def annotations_of(term: nodes.Node) -> list[nodes.Literal]:
+    """Return the annotations of a literal or variable that are literals."""
+    annotations = term.annotations if isinstance(term, nodes.Literal | nodes.Variable) else None
+    return (
+        [] if annotations is None else [item for item in annotations.items if isinstance(item, nodes.Literal)]
+    )
 
 
 def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
@@ -122,7 +139,7 @@ def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
 
 def _is_fixed(term: nodes.Term) -> bool:
     """Return whether two occurrences of *term* mean the same."""
-    return not any(isinstance(node, nodes.Variable) and node.unnamed for node in walk(term))
+    return not any(variable.unnamed for variable in variables_in(term))
 
 
 def _two_values(parts: Sequence[nodes.Term]) -> str | None:

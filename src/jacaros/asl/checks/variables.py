@@ -7,7 +7,7 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED
 from jacaros.asl.walk import walk
 from jacaros.suggestions import did_you_mean, suggestion
@@ -48,20 +48,18 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
     once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
     for number, name in enumerate(once):
         if name in _CONSTANTS:
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "capital-constant",
                 f"`{name}` is a variable here, not a value",
                 first[name].span,
                 _CONSTANTS[name],
-                "capital-constant",
             )
         elif name not in in_head:
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "singleton-variable",
                 f"variable `{name}` occurs only once in this {what}",
                 first[name].span,
                 _meant_variable(name, occurrences) if number < MOST_ASKED else None,
-                "singleton-variable",
             )
 
 
@@ -81,12 +79,11 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
             if counted[node.name] == 1 and not node.unnamed:
                 name = node.name
                 lower = name[0].lower() + name[1:]
-                yield Diagnostic(
-                    "warning",
+                yield problem(
+                    "singleton-variable",
                     f"`{name}` is a variable (capital {name[0]}), so this {what} matches any value",
                     node.span,
                     f"{did_you_mean([lower])} If any value is meant, write `_{name}`",
-                    "singleton-variable",
                 )
 
 
@@ -120,12 +117,11 @@ def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
             and not atom.arguments
             and isinstance(other, nodes.Number | nodes.Arithmetic)
         ):
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "ordered-atom",
                 f"`{atom.functor}` is an atom, and an atom is greater than any number",
                 atom.span,
                 f"begin a variable with a capital letter: `{atom.functor[:1].upper()}{atom.functor[1:]}`",
-                "ordered-atom",
             )
 
 
@@ -134,22 +130,20 @@ def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> 
     if variable.unnamed:
         return
     if relation.operator == "==" and name not in met:
-        yield Diagnostic(
-            "warning",
+        yield problem(
+            "comparison-without-value",
             f"`{name}` has no value here, so this comparison never holds",
             relation.span,
             f"to give {name} a value, write `{name} = ...`",
-            "comparison-without-value",
         )
     elif (
         relation.operator == "="
         and isinstance(right, nodes.Arithmetic)
         and any(isinstance(node, nodes.Variable) and node.name == name for node in walk(right))
     ):
-        yield Diagnostic(
-            "warning",
+        yield problem(
+            "changed-variable",
             f"`{name}` cannot be equal to a sum that contains it: variables keep their value",
             relation.span,
             f"use another variable, as in `New{name} = {name} + 1`",
-            "changed-variable",
         )
