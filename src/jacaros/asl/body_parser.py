@@ -3,7 +3,7 @@
 Control statements can also be written as Jason's internal actions: ``.foreach(F, { steps })``.
 """
 
-from typing import Final, NoReturn
+from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.cursor import CLOSERS, SyntaxPanic
@@ -36,7 +36,7 @@ class BodyParser(TermParser):
         steps: list[nodes.Step] = []
         while self.token.kind in _STEP_STARTS and not self.at_plan():
             try:
-                steps.extend(self._or_fork())
+                steps.extend(self._fork())
                 if not self._separator():
                     self._require_end()
                     break
@@ -59,13 +59,11 @@ class BodyParser(TermParser):
             self.report("wrong-separator", "expected `;` between steps, found `,`")
             self.advance()
             return True
-        if self._after_statement():
-            return True
+        if self._statement_end == self.index:
+            return True  # the ``;`` after a control statement is optional
         if token.kind == "error" or token.kind not in _STEP_STARTS or self.at_plan() or self._at_subplans():
             return False
-        slip = self.slip()
-        if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
+        self.fail_on_slip()
         self.report(
             "missing-semicolon",
             "missing `;` before this step",
@@ -112,37 +110,28 @@ class BodyParser(TermParser):
         self.torn = True
         return self.token.first and self.token.kind in _STEP_STARTS and not self.at_plan()
 
-    def _after_statement(self) -> bool:
-        """Return whether a control statement has just ended: the ``;`` after it is optional."""
-        return self._statement_end == self.index
-
     _statement_end = -1
+    """Index of the token after the last control statement."""
 
     def _at_subplans(self) -> bool:
         return self.token.kind == "{" and self.peek().kind in ("+", "-", "^", "@")
 
     # forks and groups
 
-    def _or_fork(self) -> list[nodes.Step]:
-        return self._fork("|||", "or")
-
-    def _fork(self, symbol: str, operator: str) -> list[nodes.Step]:
+    def _fork(self, symbol: str = "|||", operator: str = "or") -> list[nodes.Step]:
         """Parse branches joined by *symbol*; ``|&|`` binds tighter than ``|||``."""
         start = self.token
         steps = self._branch(symbol)
         if self.token.kind != symbol:
             return steps
-        branches = [self._as_body(start, steps)]
+        branches = [nodes.Body(tuple(steps), span=self.span_from(start))]
         while self.accept(symbol):
-            start_of_branch = self.token
-            branches.append(self._as_body(start_of_branch, self._branch(symbol)))
+            first = self.token
+            branches.append(nodes.Body(tuple(self._branch(symbol)), span=self.span_from(first)))
         return [nodes.Fork(operator, tuple(branches), span=self.span_from(start))]
 
     def _branch(self, symbol: str) -> list[nodes.Step]:
         return self._fork("|&|", "and") if symbol == "|||" else self._factor()
-
-    def _as_body(self, start: Token, steps: list[nodes.Step]) -> nodes.Body:
-        return nodes.Body(tuple(steps), span=self.span_from(start))
 
     def _factor(self) -> list[nodes.Step]:
         kind = self.token.kind
@@ -183,12 +172,11 @@ class BodyParser(TermParser):
         condition = self._condition_of(start)
         body = self._block(start)
         step: nodes.Step
-        if start.kind == "while":
-            step = nodes.While(condition, body, span=self.span_from(start))
-        elif start.kind == "for":
-            step = nodes.For(condition, body, span=self.span_from(start))
-        else:
+        if start.kind == "if":
             step = self._if(start, condition, body)
+        else:
+            loop = nodes.While if start.kind == "while" else nodes.For
+            step = loop(condition, body, span=self.span_from(start))
         self.leave()
         return step
 
@@ -311,42 +299,30 @@ class BodyParser(TermParser):
 
     def _formula_step(self, term: nodes.Term) -> nodes.Step | None:
         """Convert an expression to a step: an action, an internal action, a relation or a variable."""
-        if isinstance(term, nodes.Literal):
-            if term.functor == "true" and term.span is not None and not term.arguments:
+        span = term.span
+        match term:
+            case nodes.Literal("true", ()) if span is not None:
                 return None
-            return nodes.ExternalAction(term, span=term.span)
-        if isinstance(term, nodes.InternalAction) and (statement := control_statement(term)) is not None:
-            return statement
-        if isinstance(term, nodes.Relation | nodes.InternalAction):
-            return nodes.Constraint(term, span=term.span)
-        if isinstance(term, nodes.Variable):
-            return nodes.ExternalAction(term, span=term.span)
-        if isinstance(term, nodes.FunctionCall):
-            action = nodes.InternalAction(term.name, term.arguments, span=term.span)
-            return nodes.Constraint(action, span=term.span)
-        if isinstance(term, nodes.Connective):
-            return self._condition_as_action(term)
-        return self._no_step(term)
-
-    def _no_step(self, term: nodes.Term) -> NoReturn:
-        self.fail("not-a-step", "expected a step, found a term", term.span)
+            case nodes.Literal() | nodes.Variable():
+                return nodes.ExternalAction(term, span=span)
+            case nodes.InternalAction():
+                return control_statement(term) or nodes.Constraint(term, span=span)
+            case nodes.Relation():
+                return nodes.Constraint(term, span=span)
+            case nodes.FunctionCall(name, arguments):
+                return nodes.Constraint(nodes.InternalAction(name, arguments, span=span), span=span)
+            case nodes.And() | nodes.Or() | nodes.Not():
+                return self._condition_as_action(term)
+        return self.fail("not-a-step", "expected a step, found a term", span)
 
     def _condition_as_action(self, term: nodes.Connective) -> nodes.ExternalAction:
         """Warn about a bare condition: the language reads it as an action, but a test is usually meant."""
-        word = term.operator
-        if term.span is not None:
-            help = (
-                "to test the condition, write `?(not f)`"
-                if word == "not"
-                else f"to test the condition, write `?(a {word} b)`"
-            )
-            self.warn(
-                "condition-as-step",
-                f"`{word}` is an action of the environment here, not a test",
-                term.span,
-                help,
-            )
-        return nodes.ExternalAction(nodes.Literal(word, term.operands, span=term.span), span=term.span)
+        word, span = term.operator, term.span
+        if span is not None:
+            test = "not f" if word == "not" else f"a {word} b"
+            message = f"`{word}` is an action of the environment here, not a test"
+            self.warn("condition-as-step", message, span, f"to test the condition, write `?({test})`")
+        return nodes.ExternalAction(nodes.Literal(word, term.operands, span=span), span=span)
 
 
 CONTROL: Final = frozenset({".if_then_else", ".foreach", ".loop", ".fork", ".join"})

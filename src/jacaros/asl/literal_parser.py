@@ -251,33 +251,19 @@ class LiteralParser(Cursor, ABC):
     def list_term(self) -> nodes.ListTerm:
         """Parse ``[a, b | T]``."""
         start = self.token
-        items, tail = self._elements()
-        if tail is not None and not isinstance(tail, nodes.Variable):
-            self.report(
-                "wrong-tail",
-                "expected a variable or a list as the tail of a list",
-                tail.span,
-                "write `[H|T]` or `[a|[b,c]]`",
-            )
-            tail = None
-        return nodes.ListTerm(tuple(items), tail, span=self.span_from(start))
+        wanted = "expected a variable or a list as the tail of a list", "write `[H|T]` or `[a|[b,c]]`"
+        items, tail = self._elements(self.element, *wanted)
+        return nodes.ListTerm(items, tail, span=self.span_from(start))
 
     def _annotations(self) -> nodes.Annotations | None:
         if self.token.kind != "[":
             return None
         start = self.token
-        items, tail = self._elements(self._annotation)
+        wanted = "expected a variable as the tail of annotations", "write `p(X)[source(S)|R]`"
+        items, tail = self._elements(self._annotation, *wanted)
         if not items and tail is None:
             return None
-        if tail is not None and not isinstance(tail, nodes.Variable):
-            self.report(
-                "wrong-tail",
-                "expected a variable as the tail of annotations",
-                tail.span,
-                "write `p(X)[source(S)|R]`",
-            )
-            tail = None
-        return nodes.Annotations(tuple(items), tail, span=self.span_from(start))
+        return nodes.Annotations(items, tail, span=self.span_from(start))
 
     def _annotation(self) -> nodes.Term:
         """Parse an annotation: an element, or ``while(Condition)`` of a label."""
@@ -288,10 +274,9 @@ class LiteralParser(Cursor, ABC):
         return nodes.Literal("while", self._arguments(), span=self.span_from(start))
 
     def _elements(
-        self, element: Callable[[], nodes.Term] | None = None
-    ) -> tuple[list[nodes.Term], nodes.Term | None]:
+        self, element: Callable[[], nodes.Term], wanted: str, help: str
+    ) -> tuple[tuple[nodes.Term, ...], nodes.Variable | None]:
         """Parse the elements and the tail of bracketed contents; a tail that is a list is spliced in."""
-        element = element or self.element
         opener = self.advance()
         items: list[nodes.Term] = []
         tail: nodes.Term | None = None
@@ -307,4 +292,7 @@ class LiteralParser(Cursor, ABC):
                 tail = tail.tail
         self._leave_term(outside)
         self.close(opener)
-        return items, tail
+        if tail is None or isinstance(tail, nodes.Variable):
+            return tuple(items), tail
+        self.report("wrong-tail", wanted, tail.span, help)
+        return tuple(items), None

@@ -130,7 +130,7 @@ class PlanParser(BodyParser):
     def _plan_body(self) -> nodes.Body:
         arrow = self.token
         if not self.accept("<-"):
-            if self.token.kind in ("atom", "!", "!!", "?", "if", "for", "while") and self.slip() is None:
+            if self.token.kind in ("atom", "!", "!!", "?", "if", "for", "while") and not self.is_slip():
                 self.fail(
                     "unexpected-token",
                     f"expected `<-`, found `{arrow.text}`",

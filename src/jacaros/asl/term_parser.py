@@ -63,20 +63,11 @@ class TermParser(LiteralParser):
         """Parse an element of a list or an annotation: formulae need brackets, as ``|`` begins the tail."""
         start = self.token
         element = self.expression(SUM)
+        wrong = "formula-in-list", "expected brackets around a formula in a list"
         if isinstance(element, nodes.Not) and start.kind == "not":
-            self.report(
-                "formula-in-list",
-                "expected brackets around a formula in a list",
-                element.span,
-                "write `[(not a)]`",
-            )
+            self.report(*wrong, element.span, "write `[(not a)]`")
         elif self.token.kind in BINARY and self.token.kind != "|":
-            self.report(
-                "formula-in-list",
-                "expected brackets around a formula in a list",
-                self.span_of(self.token),
-                "write `[(X < 2)]`",
-            )
+            self.report(*wrong, self.span_of(self.token), "write `[(X < 2)]`")
             self.advance()
             self.expression(AND)
         return element

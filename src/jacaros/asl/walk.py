@@ -67,6 +67,17 @@ def occurrences(*parts: object) -> dict[str, int]:
     return counts
 
 
+def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
+    """Yield the conditions that *formula* joins by ``&``, ``|`` and ``not``, in source order."""
+    stack = [formula]
+    while stack:
+        term = stack.pop()
+        if isinstance(term, nodes.Connective):
+            stack += reversed(term.operands)
+        else:
+            yield term
+
+
 Kind = TypeVar("Kind", bound=nodes.Node)
 
 

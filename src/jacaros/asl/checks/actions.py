@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import CONDITIONED, conditions, parts_of
+from jacaros.asl.checks.formulas import CONDITIONED, conditions
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED, is_slip_of
-from jacaros.asl.walk import ByKind
+from jacaros.asl.walk import ByKind, parts_of
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import clauses, in_order, parts_of
+from jacaros.asl.checks.formulas import clauses, in_order
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import is_slip_of
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import parts_of, walk
 
 _WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5

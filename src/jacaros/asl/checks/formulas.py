@@ -61,17 +61,6 @@ def annotations_of(term: nodes.Node) -> list[nodes.Literal]:
     )
 
 
-def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """Yield the conditions that *formula* joins by ``&``, ``|`` and ``not``, in source order."""
-    stack = [formula]
-    while stack:
-        term = stack.pop()
-        if isinstance(term, nodes.Connective):
-            stack += reversed(term.operands)
-        else:
-            yield term
-
-
 def conjuncts(formula: nodes.Term) -> Iterator[nodes.Term]:
     """Yield the conditions that must all hold for *formula* to hold, in source order."""
     stack = [formula]
