@@ -122,8 +122,9 @@ class Trial:
         self._timers: list[Any] = []
         self._probes: dict[str, Probe] = {}
         self._actions = actions(self._probes)
-        clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
-        self._clock: Clock = clock_class(self._busy)
+        clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
+        clock.on_busy = self._busy
+        self._clock: Clock = clock
         self._others: FakeGraph | None = None
         self._mappings = tuple(
             dict.fromkeys((*options.mappings, *(name for test in tests for name in test.mappings)))
@@ -384,27 +385,22 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
 
 
-class _MeteredVirtualClock(VirtualClock):
-    """A virtual clock that reports reasoning cycles."""
+class _Metered:
+    """A clock that reports reasoning cycles."""
 
-    def __init__(self, on_busy: Callable[[int], None]) -> None:
-        super().__init__()
-        self._on_busy = on_busy
+    on_busy: Callable[[int], None]
 
     def busy(self, cycles: int) -> None:
-        super().busy(cycles)
-        self._on_busy(cycles)
+        super().busy(cycles)  # type: ignore[misc]
+        self.on_busy(cycles)
 
 
-class _MeteredWallClock(WallClock):
-    """A wall clock that reports reasoning cycles."""
+class _MeteredVirtualClock(_Metered, VirtualClock):
+    pass
 
-    def __init__(self, on_busy: Callable[[int], None]) -> None:
-        super().__init__()
-        self._on_busy = on_busy
 
-    def busy(self, cycles: int) -> None:
-        self._on_busy(cycles)
+class _MeteredWallClock(_Metered, WallClock):
+    pass
 
 
 @contextmanager
