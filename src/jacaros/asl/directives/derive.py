@@ -4,8 +4,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
 from jacaros.asl import nodes
+from jacaros.asl.cursor import WrongDirective
+from jacaros.asl.formatter import format_term
 from jacaros.asl.source import Span
+from jacaros.asl.walk import is_ground
 from jacaros.streams.schema import OPERATORS, Fault, faults, unknown
+from jacaros.terms.text import number_text
 
 EXAMPLE: Final = "write `{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }`"
 _TIMES: Final = {"within": "within", "lasting": "for"}
@@ -17,9 +21,8 @@ _OF_MAPPINGS: Final = {
 }
 """Options that only mapping files have, and the alternative here."""
 
-Report = Callable[[str, Span | None, str], None]
-"""Reports a message with its place and help."""
-
+Report = Callable[[WrongDirective], None]
+"""Reports a mistake."""
 
 Placed = Callable[[nodes.Term], nodes.Term]
 """Puts a literal without a namespace into that of its block."""
@@ -37,8 +40,7 @@ def read_derivation(
             reader = _Reader(report, placed)
             made = reader.read(name, pattern, namespace, directive.span)
             return None if reader.wrong else made
-    report("`derive` expects a name and a pattern", directive.span, EXAMPLE)
-    return None
+    raise WrongDirective("`derive` expects a name and a pattern", EXAMPLE)
 
 
 class _Reader:
@@ -51,7 +53,7 @@ class _Reader:
 
     def _report_error(self, message: str, place: nodes.Node, help_: str) -> None:
         self.wrong = True
-        self._report(message, place.span, help_)
+        self._report(WrongDirective(message, help_, place.span))
 
     def read(
         self, name: nodes.Literal, pattern: nodes.Literal, namespace: str | None, span: Span | None
@@ -89,9 +91,7 @@ class _Reader:
             if each.annotations is not None:
                 self._report_error("annotations have no effect here", each, "remove them")
             for argument in each.arguments:
-                if isinstance(argument, nodes.Variable):
-                    continue
-                if any(isinstance(part, nodes.Variable) for part in _inside(argument)):
+                if not isinstance(argument, nodes.Variable) and not is_ground(argument):
                     self._report_error("variable within a term", argument, "write `_` for the whole argument")
             found = self._placed(each)
             assert isinstance(found, nodes.Literal)
@@ -143,12 +143,6 @@ def values_of(stream: nodes.Literal) -> list[int]:
     ]
 
 
-def _inside(term: nodes.Node) -> Iterator[nodes.Node]:
-    from jacaros.asl.walk import walk
-
-    return walk(term)
-
-
 def _constant(term: nodes.Term) -> object:
     """Return the number that a term is; another term is returned as it is, and is wrong."""
     if isinstance(term, nodes.Number):
@@ -161,8 +155,6 @@ def _constant(term: nodes.Term) -> object:
 
 def written(stream: nodes.Literal) -> str:
     """Return a name for a stream, equal for equal ones."""
-    from jacaros.asl.formatter import format_term
-
     return format_term(nodes.replace(stream, arguments=tuple(map(_named_alike, stream.arguments))))
 
 
@@ -195,8 +187,6 @@ def format_derivation(derived: nodes.Derivation) -> str:
 
 def _option(name: str, value: float) -> str:
     """Return an option as programs write it."""
-    from jacaros.terms.text import number_text
-
     for here, known in _TIMES.items():
         if name == known:
             return f"{here}({number_text(milliseconds(value))})"
@@ -210,20 +200,17 @@ def milliseconds(seconds: float) -> float:
     return rounded if rounded / 1000.0 == seconds else exact
 
 
-def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:
-    """Return the last declaration of a cycle, if a belief is derived from itself."""
+def circle(derived: list[nodes.Derivation]) -> bool:
+    """Return whether the belief of the last declaration is derived from itself."""
     made_of: dict[tuple[object, str], list[tuple[object, str]]] = {
         (each.namespace, each.name): [(stream.namespace, stream.functor) for stream in each.streams]
         for each in derived
     }
-    last = derived[-1]
-    begin: tuple[object, str] = (last.namespace, last.name)
+    begin = (derived[-1].namespace, derived[-1].name)
     todo, seen = list(made_of[begin]), set[object]()
     while todo:
         name = todo.pop()
-        if name == begin:
-            return last
         if name not in seen:
             seen.add(name)
             todo += made_of.get(name, ())
-    return None
+    return begin in seen

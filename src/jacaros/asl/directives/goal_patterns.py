@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from jacaros.asl import nodes
-from jacaros.asl.directives.pattern import TRUE, PatternCall, PatternError, achieves, is_about
+from jacaros.asl.cursor import WrongDirective
+from jacaros.asl.directives.pattern import TRUE, PatternCall, achieves, is_about
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.walk import is_ground
 
@@ -118,13 +119,13 @@ def _trigger(call: PatternCall) -> nodes.Trigger:
         step = argument.body.steps[0]
         if isinstance(step, nodes.BeliefChange) and isinstance(step.operand, nodes.Literal | nodes.Variable):
             return nodes.Trigger(step.operator, "", step.operand, span=step.span)
-    raise PatternError("argument 1 of `sga` is not a trigger", 'write sga("+order(X)", "true", serve(X))')
+    raise WrongDirective("argument 1 of `sga` is not a trigger", 'write sga("+order(X)", "true", serve(X))')
 
 
 def _context(call: PatternCall) -> nodes.Term:
     """Return the second argument: a condition, as text or as a term."""
     if len(call.arguments) < 2:
-        raise PatternError("`sga` expects a context as argument 2", 'write "true" for no context')
+        raise WrongDirective("`sga` expects a context as argument 2", 'write "true" for no context')
     argument = call.arguments[1]
     if isinstance(argument, nodes.String):
         argument = call.parse(argument.value, PlanParser.condition, "condition")
@@ -179,12 +180,12 @@ def apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
     """Return the clauses that replace *section*, those of the block of a pattern.
 
     Raises:
-        PatternError: the pattern is used wrongly.
+        WrongDirective: the pattern is used wrongly.
     """
     recipe = _RECIPES.get(call.name)
     if recipe is None:
         if call.name not in _WRITTEN:
-            raise PatternError(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
+            raise WrongDirective(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
         return _WRITTEN[call.name](call, section)
     call.at_most(1 + len(recipe.wants) + recipe.nests)
     wanted = {name: call.literal(place, _WANTED[name]) for place, name in enumerate(recipe.wants, 1)}

@@ -17,20 +17,12 @@ from itertools import count
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import Names
+from jacaros.asl.cursor import Names, WrongDirective
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import SourceFile, Span
 from jacaros.asl.walk import rebuilt
 
 TRUE = nodes.Literal("true")
-
-
-class PatternError(Exception):
-    """Raised when a pattern is used wrongly; with a message and help for the user."""
-
-    def __init__(self, message: str, help: str | None = None) -> None:
-        super().__init__(message)
-        self.help = help
 
 
 @dataclass(frozen=True)
@@ -51,16 +43,16 @@ class PatternCall:
     def literal(self, index: int, what: str) -> nodes.Literal:
         """Return the argument *index*, which has to be a literal."""
         if index >= len(self.arguments):
-            raise PatternError(f"`{self.name}` expects {what} as argument {index + 1}")
+            raise WrongDirective(f"`{self.name}` expects {what} as argument {index + 1}")
         argument = self.arguments[index]
         if not isinstance(argument, nodes.Literal):
-            raise PatternError(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
+            raise WrongDirective(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
         return argument
 
     def at_most(self, count: int) -> None:
         """Reject more than *count* arguments."""
         if len(self.arguments) > count:
-            raise PatternError(
+            raise WrongDirective(
                 f"`{self.name}` expects at most {count} argument{'s' if count > 1 else ''}, found {len(self.arguments)}"
             )
 
