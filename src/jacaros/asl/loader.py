@@ -100,54 +100,34 @@ def parse_term(text: str, name: str = TEXT, functions: Mapping[str, int] | None 
     Raises:
         AslError: the text is not a term.
     """
-    return _parse(text, name, functions, PlanParser.expression)
+    return _parse(text, PlanParser.expression, name, functions)
 
 
-def parse_formula(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
+def parse_formula(text: str) -> nodes.Term:
     """Parse the condition in *text*; see `parse_term`."""
-    return _parse(text, name, functions, PlanParser.condition)
+    return _parse(text, PlanParser.condition)
 
 
-def parse_literal(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Literal:
+def parse_literal(text: str) -> nodes.Literal:
     """Parse the literal in *text*; see `parse_term`."""
-
-    def literal(parser: PlanParser) -> nodes.Literal:
-        start = parser.token
-        term = parser.operand(formula=True)
-        if not isinstance(term, nodes.Literal):
-            parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
-        return term
-
-    return _parse(text, name, functions, literal)
+    return _parse(text, _literal)
 
 
-def parse_trigger(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Trigger:
+def _literal(parser: PlanParser) -> nodes.Literal:
+    start = parser.token
+    term = parser.operand(formula=True)
+    if not isinstance(term, nodes.Literal):
+        parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
+    return term
+
+
+def parse_trigger(text: str) -> nodes.Trigger:
     """Parse the trigger in *text* (``+!g(X)``); see `parse_term`."""
-    return _parse(text, name, functions, PlanParser.trigger)
-
-
-def parse_plan(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Plan:
-    """Parse the one plan in *text*, with or without its final '.' and with or without braces around it.
-
-    Raises:
-        AslError: the text is not a plan.
-    """
-
-    def plan(parser: PlanParser) -> nodes.Plan:
-        if parser.token.kind != "{":
-            return parser.plan()
-        start = parser.token
-        term = parser.braces()
-        if not isinstance(term, nodes.PlanTerm):
-            parser.fail("unexpected-token", "expected a plan", parser.span_from(start))
-        return term.plan
-
-    return _parse(text, name, functions, plan)
+    return _parse(text, PlanParser.trigger)
 
 
 def parse_plans(
     text: str,
-    name: str = TEXT,
     functions: Mapping[str, int] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Plan, ...]:
@@ -158,9 +138,9 @@ def parse_plans(
     """
     diagnostics: list[Diagnostic] = []
     processor = DirectiveProcessor(None, _names_with(functions, actions), diagnostics)
-    section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
-    for clause in (*section.beliefs, *section.goals):
-        diagnostics.append(problem("unexpected-token", "expected only plans", clause.span))
+    section = processor.read_file(SourceFile(TEXT, text), last_dot_optional=True)
+    clauses = (*section.beliefs, *section.goals)
+    diagnostics += [problem("unexpected-token", "expected only plans", each.span) for each in clauses]
     _settled(diagnostics)
     return tuple(section.plans)
 
@@ -175,21 +155,20 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
     def literals(parser: PlanParser) -> tuple[nodes.Literal, ...]:
         found = []
         while parser.token.kind != "end":
-            start = parser.token
             parser.accept("!")
-            term = parser.operand(formula=True)
-            if not isinstance(term, nodes.Literal):
-                parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
-            found.append(term)
-            if not (parser.accept(",") or parser.accept(".") or parser.accept(";")):
+            found.append(_literal(parser))
+            if not any(map(parser.accept, (",", ".", ";"))):
                 break
         return tuple(found)
 
-    return _parse(text, name, None, literals)
+    return _parse(text, literals, name)
 
 
 def _parse(
-    text: str, name: str, functions: Mapping[str, int] | None, read: Callable[[PlanParser], Result]
+    text: str,
+    read: Callable[[PlanParser], Result],
+    name: str = TEXT,
+    functions: Mapping[str, int] | None = None,
 ) -> Result:
     """Parse the whole of *text* with *read*."""
     diagnostics: list[Diagnostic] = []
