@@ -48,6 +48,19 @@ _ESCAPES: Final = re.compile(r"""\\[ntbrf\\'"0-7]|\\(?P<wrong>.)""")
 _UNUSUAL: Final = frozenset({"quoted", "word", "open_string", "open_quoted", "open_comment", "wrong"})
 
 
+_WRONG: Final = {
+    "open_string": (
+        "unclosed-string",
+        "unterminated string",
+        r'close it on the same line: "text"; write a line break as `\n`',
+    ),
+    "open_quoted": ("unclosed-string", "unterminated quoted atom", "close it on the same line: 'an atom'"),
+    "open_comment": ("unclosed-comment", "unterminated comment", "end it with `*/`"),
+    "\\": ("wrong-operator", r"unexpected `\`", r"write `\==` for 'not equal' and `not` for 'not'"),
+}
+"""Unusable tokens by their group or text: code, message and help."""
+
+
 class Token:
     """One token.
 
@@ -129,27 +142,13 @@ def _unusual(
     """Return the kind of a token of one of the rarer groups, and report what is wrong with it."""
     if group in ("quoted", "word"):
         return "atom"
-    end = column + len(text.rstrip())
-    help: str | None = None
-    code = "unclosed-string"
-    if group == "open_string":
-        message, help = (
-            "unterminated string",
-            r'close it on the same line: "text"; write a line break as `\n`',
-        )
-    elif group == "open_quoted":
-        message, help = "unterminated quoted atom", "close it on the same line: 'an atom'"
-    elif group == "open_comment":
-        message, help, end = "unterminated comment", "end it with `*/`", column + 2
-        code = "unclosed-comment"
-    elif text == "\\":
-        code = "wrong-operator"
-        message, help = r"unexpected `\`", r"write `\==` for 'not equal' and `not` for 'not'"
-    else:
-        code = "unknown-character"
-        message = f"unexpected character {text!r}"
-        help = "begin comments with `//`" if text in "#%" else None
-    report(Diagnostic("error", message, Span(file, line, column, line, end), help, code))
+    code, message, help = _WRONG.get("\\" if text == "\\" else group) or (
+        "unknown-character",
+        f"unexpected character {text!r}",
+        "begin comments with `//`" if text in "#%" else None,
+    )
+    end = column + (2 if group == "open_comment" else len(text.rstrip()))
+    report(problem(code, message, Span(file, line, column, line, end), help))
     return "error"
 
 

@@ -15,32 +15,14 @@ DEFAULT_NAMESPACE: Final = "default"
 THIS_NAMESPACE: Final = "this_ns"
 """The namespace of the module: that of the block, or the one that the module is included into."""
 
-KEYWORDS: Final = frozenset(
-    {
-        "true",
-        "false",
-        DEFAULT_NAMESPACE,
-        THIS_NAMESPACE,
-        "source",
-        "self",
-        "percept",
-        "atomic",
-        "breakpoint",
-        "all_unifs",
-    }
-    | {
-        "tell",
-        "untell",
-        "achieve",
-        "unachieve",
-        "askOne",
-        "askAll",
-        "askHow",
-        "tellHow",
-        "untellHow",
-        "signal",
-    }
+PERFORMATIVES: Final = (
+    *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
+    *("tellHow", "untellHow", "signal"),
 )
+KEYWORDS: Final = {
+    *("true", "false", DEFAULT_NAMESPACE, THIS_NAMESPACE, "source", "self", "percept"),
+    *("atomic", "breakpoint", "all_unifs", *PERFORMATIVES),
+}
 """Names that stay in the default namespace wherever they are written."""
 
 

@@ -1,7 +1,6 @@
 """Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 from jacaros.asl.lexer import RESERVED, Token
@@ -89,8 +88,11 @@ def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
 def _prefixed_string(tokens: Sequence[Token], index: int) -> Slip | None:
     """``f"at {X}"``."""
     token, before = tokens[index], tokens[max(index - 1, 0)]
-    joined = before.line == token.line and before.end == token.column
-    if token.kind != "string" or not joined or before.text.lower() not in ("f", "r", "b", "u"):
+    if (
+        token.kind != "string"
+        or not _joined(before, token)
+        or before.text.lower() not in ("f", "r", "b", "u")
+    ):
         return None
     help = (
         'write values between strings, as in `.print("at ", X)`, or join them with `.concat("at ", X, Text)`'
@@ -110,19 +112,18 @@ def _reserved(token: Token) -> Slip | None:
 
 def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
     """Find the longest run of adjacent signs around *index* that is an operator of another language."""
-    for length in (3, 2):
-        for start in range(index - length + 1, index + 1):
-            if start < 0 or start + length > len(tokens):
-                continue
+    for length in (3, 2, 1):
+        for start in range(max(index - length + 1, 0), index + 1):
             run = tokens[start : start + length]
             text = "".join(token.text for token in run)
-            joined = all(one.end == two.column and one.line == two.line for one, two in pairwise(run))
-            if joined and text in _FUSED:
+            if text in _FUSED and len(run) == length and all(map(_joined, run, run[1:])):
                 return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
-    if tokens[index].text in _FUSED:
-        text = tokens[index].text
-        return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
     return None
+
+
+def _joined(one: Token, other: Token) -> bool:
+    """Return whether nothing is between two tokens."""
+    return one.line == other.line and one.end == other.column
 
 
 def _cut(tokens: Sequence[Token], index: int) -> Slip | None:
@@ -151,8 +152,12 @@ def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
 def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:
     """``p.q``: the final dot of a clause and the next word, read as one."""
     token, before = tokens[index], tokens[max(index - 1, 0)]
-    joined = before.line == token.line and before.end == token.column
-    if joined and token.kind == "atom" and token.text.startswith(".") and before.kind in (")", "]", "atom"):
+    if (
+        _joined(before, token)
+        and token.kind == "atom"
+        and token.text.startswith(".")
+        and before.kind in (")", "]", "atom")
+    ):
         return Slip(
             "missing-blank",
             f"`{token.text}` is read as one word",

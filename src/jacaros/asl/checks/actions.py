@@ -8,15 +8,11 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import CONDITIONED, conditions
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic, problem
+from jacaros.asl.literal_parser import PERFORMATIVES
 from jacaros.asl.slips import MOST_ASKED, is_slip_of
 from jacaros.asl.walk import ByKind, parts_of
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
-
-_PERFORMATIVES: Final = (
-    *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
-    *("tellHow", "untellHow", "signal"),
-)
 
 
 def _no_hint(_: str) -> str | None:
@@ -130,10 +126,10 @@ def unknown_performatives(found: ByKind, known: KnownActions) -> Iterator[Diagno
         if place is None or len(node.arguments) <= place:
             continue
         word = node.arguments[place]
-        if not isinstance(word, nodes.Literal) or word.arguments or word.functor in _PERFORMATIVES:
+        if not isinstance(word, nodes.Literal) or word.arguments or word.functor in PERFORMATIVES:
             continue
-        meant = [each for each in _PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
-        meant += [each for each in _PERFORMATIVES if word.functor.lower() == each.lower()]
+        meant = [each for each in PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
+        meant += [each for each in PERFORMATIVES if word.functor.lower() == each.lower()]
         if meant:
             yield problem(
                 "unknown-performative",
