@@ -211,15 +211,15 @@ class DirectiveProcessor:
     def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         from jacaros.asl.directives.derive import circle, read_derivation  # here: few programs use `derive`
 
-        made = read_derivation(
-            directive,
-            parser.namespaces.current,
-            lambda term: self._placed(parser.namespaces, term),
-            lambda wrong: _report(parser, directive, wrong),
+        made, mistakes = read_derivation(
+            directive, parser.namespaces.current, lambda term: self._placed(parser.namespaces, term)
         )
-        if made is not None and circle([*self._derived, made]):
-            raise WrongDirective(f"`{made.name}` is derived from itself", "derive it from other beliefs")
-        if made is not None:
+        if made is not None and not mistakes and circle([*self._derived, made]):
+            message = f"`{made.name}` is derived from itself"
+            mistakes.append(WrongDirective(message, "derive it from other beliefs"))
+        for mistake in mistakes:
+            _report(parser, directive, mistake)
+        if made is not None and not mistakes:
             self._derived.append(made)
             section.derived.append(made)
 
