@@ -10,9 +10,9 @@ from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import AslError, Diagnostic, problem
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
-from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import TEXT, SourceFile
+from jacaros.asl.term_parser import Namespaces
 from jacaros.asl.walk import shape
 from jacaros.terms.functions import FunctionNames
 

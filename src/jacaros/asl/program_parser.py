@@ -4,14 +4,13 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
-from jacaros.asl.body_parser import CONTROL
 from jacaros.asl.cursor import CLOSERS, Names, SyntaxPanic
 from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
-from jacaros.asl.literal_parser import Namespaces
-from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.plan_parser import CONTROL, PlanParser
 from jacaros.asl.source import SourceFile
+from jacaros.asl.term_parser import Namespaces
 from jacaros.asl.walk import parts_of
 
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "derive", "end", "include", "namespace", "register_function"})

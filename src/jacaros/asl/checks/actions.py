@@ -8,8 +8,8 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import CONDITIONED, conditions
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.diagnostics import Diagnostic, problem
-from jacaros.asl.literal_parser import PERFORMATIVES
 from jacaros.asl.slips import MOST_ASKED, is_slip_of
+from jacaros.asl.term_parser import PERFORMATIVES
 from jacaros.asl.walk import ByKind, parts_of
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
