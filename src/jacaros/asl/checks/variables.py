@@ -9,7 +9,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
 from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import names_in, nodes_in, variables_in, walk
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.operators import BINARY
 
@@ -71,9 +71,7 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
         what: the kind, for the message.
     """
     for fact in facts:
-        named = [
-            node for node in walk(fact) if isinstance(node, nodes.Variable) and not node.name.startswith("_")
-        ]
+        named = [node for node in variables_in(fact) if not node.name.startswith("_")]
         counted = Counter(node.name for node in named)
         for node in named:
             if counted[node.name] == 1 and not node.unnamed:
@@ -87,10 +85,12 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
                 )
 
 
-def _in_head(clause: Clause) -> set[str]:
-    triggers = [node for node in walk(clause) if isinstance(node, nodes.Trigger)]
-    heads = triggers if isinstance(clause, nodes.Plan) else [clause.head]
-    return {node.name for node in walk(*heads) if isinstance(node, nodes.Variable)}
+def _in_head(clause: Clause) -> list[str]:
+    return (
+        names_in(*nodes_in(nodes.Trigger, clause))
+        if isinstance(clause, nodes.Plan)
+        else names_in(clause.head)
+    )
 
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
@@ -136,11 +136,7 @@ def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> 
             relation.span,
             f"to give {name} a value, write `{name} = ...`",
         )
-    elif (
-        relation.operator == "="
-        and isinstance(right, nodes.Arithmetic)
-        and any(isinstance(node, nodes.Variable) and node.name == name for node in walk(right))
-    ):
+    elif relation.operator == "=" and isinstance(right, nodes.Arithmetic) and name in names_in(right):
         yield problem(
             "changed-variable",
             f"`{name}` cannot be equal to a sum that contains it: variables keep their value",
