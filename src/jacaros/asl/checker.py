@@ -1,4 +1,10 @@
-"""Warnings about programs that run but probably do not do what you mean."""
+"""Warnings about programs that run but probably do not do what you mean.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "!start. +!start <- !leave.")
+>>> [each.message for each in check(program, KnownActions({}))]
+['no plan for `!leave/0`']
+"""
 
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence

@@ -3,6 +3,10 @@
 Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text parses to the same tree. It differs from
 the text of the tree's term (`jacaros.terms.text`), which `.print` shows: strings are escaped, control statements have
 their own syntax, annotations keep their order and nothing is evaluated.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> format_plan(parse_plans("+!go(X) : X > 3 <- move(X)")[0])
+'+!go(X) : X > 3 <- move(X).'
 """
 
 from collections.abc import Callable, Iterable

@@ -1,4 +1,8 @@
-"""Format programs in the project's one style (`jacaros format`)."""
+"""Format programs in the project's one style (`jacaros format`).
+
+>>> print(format_program("robot.asl", "+!go:near<-move;!stop."), end="")
++!go : near <- move; !stop.
+"""
 
 from collections.abc import Mapping
 from typing import Final

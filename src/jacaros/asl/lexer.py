@@ -3,6 +3,9 @@
 One compiled expression finds all tokens. Wrong characters are reported here and never stop the lexer. An identifier with
 letters outside ASCII is passed on as if it were valid. What is unusable (such as an unterminated string) becomes a token
 of kind ``error``: there the parser abandons the clause without a further report.
+
+>>> [token.kind for token in tokenize(SourceFile("robot.asl", "at(X) :- near(X)."), print)]
+['atom', '(', 'variable', ')', ':-', 'atom', '(', 'variable', ')', '.', 'end', 'end']
 """
 
 import re

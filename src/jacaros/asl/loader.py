@@ -1,4 +1,11 @@
-"""The entry points of the front end: from program texts to programs."""
+"""The entry points of the front end: from program texts to programs.
+
+>>> program, warnings = load_program("robot.asl", "at(home). +!go(X) <- move(X).")
+>>> len(program.beliefs), len(program.plans), warnings
+(1, 1, [])
+>>> parse_term("f(X)").arguments[0].name
+'X'
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

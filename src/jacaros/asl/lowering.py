@@ -1,4 +1,9 @@
-"""Syntax trees to terms: for beliefs, messages, and formulae shown to users."""
+"""Syntax trees to terms: for beliefs, messages, and formulae shown to users.
+
+>>> from jacaros.asl.loader import parse_term
+>>> lower_value(parse_term("1 + 2"))
+3.0
+"""
 
 from collections.abc import Callable
 

@@ -1,6 +1,9 @@
 """The syntax tree of AgentSpeak: plain frozen data, each node with its place in the source.
 
 Terms, logical formulae and body formulae share `Term`, as plans and conditions may be arguments.
+
+>>> replace(Literal("at", (Number(1.0),)), functor="near").functor
+'near'
 """
 
 from __future__ import annotations

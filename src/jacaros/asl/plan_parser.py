@@ -1,6 +1,11 @@
 """Parse plans, triggers, rules and bodies, and the terms in braces that hold them.
 
 Control statements can also be written as Jason's internal actions: ``.foreach(F, { steps })``.
+
+>>> from jacaros.asl.formatter import format_term
+>>> from jacaros.asl.loader import parse_term
+>>> format_term(control_statement(parse_term(".foreach(p(X), { a(X) })")))
+'for (p(X)) { a(X) }'
 """
 
 from typing import Final

@@ -2,6 +2,13 @@
 
 An unbound variable either stands for itself (a body that shares variables with the plan that created it: `Shared`), or
 becomes a variable of the new plan (`Closing`), for plans added to the library.
+
+>>> from jacaros.asl.formatter import format_plan
+>>> from jacaros.asl.loader import parse_plans
+>>> from jacaros.asl.lowering import fresh_names, lower_plan
+>>> term = lower_plan(parse_plans("+!go(X) <- move(X)")[0], fresh_names())
+>>> format_plan(Reflection(shared=False).plan(term))
+'+!go(X) <- move(X).'
 """
 
 from typing import cast

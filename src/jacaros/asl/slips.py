@@ -1,4 +1,10 @@
-"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
+"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y".
+
+>>> is_slip_of("improt", "import"), is_slip_of("export", "import")
+(True, False)
+>>> Slips(["battery", "bumper"]).of("batery")
+['battery']
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple

@@ -5,6 +5,11 @@
     // jacaros: ignore-file singleton-variable, missing-context   for the file
 
 Errors cannot be switched off. Text after ``(`` is a comment for the reader.
+
+>>> text = "p(X) :- q.   // jacaros: ignore singleton-variable"
+>>> file = SourceFile("robot.asl", text)
+>>> list(wanted([problem("singleton-variable", "variable `X`", Span(file, 1, 3, 1, 4))]))
+[]
 """
 
 import re

@@ -1,4 +1,11 @@
-"""Walk syntax trees: their nodes, variables and shape."""
+"""Walk syntax trees: their nodes, variables and shape.
+
+>>> from jacaros.asl.loader import parse_term
+>>> names_in(parse_term("f(X, g(Y), X)"))
+['X', 'Y']
+>>> is_ground(parse_term("f(a)"))
+True
+"""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator

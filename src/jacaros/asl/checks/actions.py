@@ -1,4 +1,11 @@
-"""Check internal actions: names, numbers of arguments, and where they are used."""
+"""Check internal actions: names, numbers of arguments, and where they are used.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "+!go <- .prnt(hi).")
+>>> known = KnownActions({".print": Declaration()})
+>>> [(each.message, each.help) for each in unknown_actions(program, ByKind(program.plans), known)]
+[('unknown internal action `.prnt`', 'did you mean `.print`?')]
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace

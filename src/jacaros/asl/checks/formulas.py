@@ -1,4 +1,9 @@
-"""Find the conditions in a program, and those that never hold."""
+"""Find the conditions in a program, and those that never hold.
+
+>>> from jacaros.asl.loader import parse_formula
+>>> contradiction(parse_formula("X < 3 & X > 5"))
+'X cannot be both above 5 and below 3'
+"""
 
 from collections.abc import Iterator, Sequence
 from math import inf

@@ -1,4 +1,10 @@
-"""Check for goals without a plan."""
+"""Check for goals without a plan.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "!strat. +!start.")
+>>> [each.help for each in goals_without_plan(program, ByKind(program.plans), KnownActions({}))]
+['did you mean `!start`?']
+"""
 
 import re
 from collections.abc import Iterable, Iterator

@@ -1,4 +1,10 @@
-"""Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies."""
+"""Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> plans = parse_plans("@go[needs(arm, arm)] +!go")
+>>> [each.help for each in wrong_needs(ByKind(plans))]
+['name `arm` once, or give its capacity: `arm(2)`']
+"""
 
 import re
 from collections import Counter

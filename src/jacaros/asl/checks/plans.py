@@ -1,4 +1,10 @@
-"""Check for plans that can never be selected, and for handlers that drop more than you may expect."""
+"""Check for plans that can never be selected, and for handlers that drop more than you may expect.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "+!go. +!go : near.")
+>>> [each.message for each in never_selected(program, ByKind(program.plans), KnownActions({}))]
+['unreachable plan: the plan at line 1 already handles all of these events']
+"""
 
 from collections.abc import Iterator, Sequence
 from itertools import chain

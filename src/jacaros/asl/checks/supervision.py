@@ -1,4 +1,9 @@
-"""Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions."""
+"""Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> [each.message for each in wrong_supervision((), ByKind(parse_plans("+!go <- !move[within(0)]")))]
+['invalid `within`']
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final

@@ -1,4 +1,9 @@
-"""Check for variables that occur once, and comparisons with variables that have no value."""
+"""Check for variables that occur once, and comparisons with variables that have no value.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> [each.message for each in singletons(parse_plans("+!go <- move(X)")[0])]
+['variable `X` occurs only once in this plan']
+"""
 
 import re
 from collections import Counter

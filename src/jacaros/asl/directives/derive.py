@@ -1,4 +1,12 @@
-"""``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs."""
+"""``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "{ derive(often, count(bump(_), within(5000), at_least(3))) }")
+>>> program.derived[0].options
+(('within', 5.0), ('at_least', 3.0))
+>>> format_derivation(program.derived[0])
+'{ derive(often, count(bump(_), within(5000), at_least(3))) }'
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, cast

@@ -1,6 +1,15 @@
-"""Goal patterns: declarative goals, commitment strategies, and goals pursued in sequence.
+r"""Goal patterns: declarative goals, commitment strategies, and goals pursued in sequence.
 
 A declarative goal is achieved when its belief holds.
+
+>>> from jacaros.asl.formatter import format_plan
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "{ begin bdg(at_home) } +!at_home <- drive. { end }")
+>>> print(*map(format_plan, program.plans), sep="\n")
++!at_home : at_home.
++!at_home <- drive; ?at_home.
++at_home <- .succeed_goal(at_home).
+-!at_home <- !at_home.
 """
 
 from dataclasses import replace

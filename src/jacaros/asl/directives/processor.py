@@ -1,4 +1,11 @@
-"""Run the directives of a program: includes, namespaces, functions and goal patterns."""
+"""Run the directives of a program: includes, namespaces, functions and goal patterns.
+
+>>> from jacaros.asl.loader import load_program
+>>> files = {"doors.asl": "door(kitchen)."}
+>>> program, _ = load_program("robot.asl", '{ include("doors.asl") }', lambda path, _: (path, files[path]))
+>>> len(program.beliefs)
+1
+"""
 
 from collections.abc import Callable
 from itertools import count

@@ -3,6 +3,9 @@
 After Wadler's "prettier printer": a group is put on one line if it fits, and otherwise broken at its own breaks.
 Comments do not count for the width. A comment at the end of a line is held back until the line ends, and ends it at the
 next possible break, so that it can never swallow code.
+
+>>> print(render(Group(row("if (near)", Break(), "{ stop }"))), end="")
+if (near) { stop }
 """
 
 from typing import Final, NamedTuple
