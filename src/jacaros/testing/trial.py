@@ -32,7 +32,7 @@ from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.testing.assertions import actions
-from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+from jacaros.testing.outcomes import Outcome, Problem
 from jacaros.testing.probe import Assertion, Probe
 from jacaros.testing.recorded import Fakes
 from jacaros.testing.suites import AgentTest, Suite, with_assertions
@@ -55,7 +55,6 @@ class TrialOptions(RunOptions):
         cycles: reasoning cycles of all agents together after which a test fails.
         patience: seconds of real time after which a test fails; 0 for no limit. Works only in the main thread, on POSIX
             systems.
-        shared: run all tests of a file in one system, in turn, as Jason does.
     """
 
     fast: bool = True
@@ -63,7 +62,6 @@ class TrialOptions(RunOptions):
     timeout: float = 60.0
     cycles: int = 1_000_000
     patience: float = 300.0
-    shared: bool = False
 
 
 def run_suite(
@@ -79,26 +77,17 @@ def run_suite(
     """
     options = options or TrialOptions()
     options.check()
-    tests = [test for test in suite.tests if chosen(test)]
-    if suite.error is not None or not tests:
-        return
-    for together in [tests] if options.shared else [[test] for test in tests]:
-        yield from _outcomes(suite, together, options)
+    if suite.error is None:
+        for test in suite.tests:
+            if chosen(test):
+                yield _outcome(suite, test, options)
 
 
-def _outcomes(suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> list[Outcome]:
-    """Run tests in one system."""
+def _outcome(suite: Suite, test: AgentTest, options: TrialOptions) -> Outcome:
     try:
-        trial = Trial(suite, tests, options)
+        return Trial(suite, test, options).run()
     except ProjectError as wrong:
-        problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), tests[0].span)
-        return [Outcome(test, problems=[problem]) for test in tests]
-    return trial.run()
-
-
-def run_suites(suites: Sequence[Suite], options: TrialOptions | None = None) -> list[SuiteOutcome]:
-    """Run the tests of several files."""
-    return [SuiteOutcome(suite, list(run_suite(suite, options))) for suite in suites]
+        return Outcome(test, [Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)])
 
 
 class TookTooLong(BaseException):
@@ -106,14 +95,13 @@ class TookTooLong(BaseException):
 
 
 class Trial:
-    """A run of one system for one test or, in turn, for several."""
+    """A run of one system for one test."""
 
-    def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
+    def __init__(self, suite: Suite, test: AgentTest, options: TrialOptions) -> None:
         assert suite.deployment is not None
         self._warnings = frozenset(suite.warnings)
         self._options = options
-        self._outcomes = [Outcome(test) for test in tests]
-        self._number = -1
+        self._outcome = Outcome(test)
         self._goal: WatchedGoal | None = None
         self._done = False
         self._lingers = False
@@ -126,9 +114,7 @@ class Trial:
         clock.on_busy = self._busy
         self._clock: Clock = clock
         self._others: FakeGraph | None = None
-        self._mappings = tuple(
-            dict.fromkeys((*options.mappings, *(name for test in tests for name in test.mappings)))
-        )
+        self._mappings = tuple(dict.fromkeys((*options.mappings, *test.mappings)))
         self._mas = self._system(suite.deployment)
 
     def _system(self, deployment: Deployment) -> System:
@@ -151,14 +137,14 @@ class Trial:
         code.actions.update(self._actions)
         return with_assertions(program)
 
-    def run(self) -> list[Outcome]:
-        """Run the tests; return their outcomes in order.
+    def run(self) -> Outcome:
+        """Run the test.
 
         Raises:
             InternalError: JaCaROS has a defect.
         """
         try:
-            with _patience(self._options.patience * len(self._outcomes)):
+            with _patience(self._options.patience):
                 run(self._main, self._clock)
         except TookTooLong:
             self._hangs()
@@ -167,31 +153,17 @@ class Trial:
         except JacarosError as wrong:
             self._end_run(Problem("cannot start the system", tuple(str(wrong).splitlines())))
         self._end_run(Problem("the program ended the run (.stopMAS) before the test ended"))
-        return self._outcomes
+        return self._outcome
 
     async def _main(self) -> None:
         asyncio.get_running_loop().set_exception_handler(self._escaped)
-        await self._mas.run(self._next)
+        await self._mas.run(self._start)
 
-    # ---- tests in turn
-
-    @property
-    def _outcome(self) -> Outcome:
-        return self._outcomes[max(self._number, 0)]
-
-    def _next(self) -> None:
-        """Start the next test, or end the run."""
-        for timer in self._timers:
-            timer.cancel()
-        if self._number + 1 == len(self._outcomes):
-            self._done = True
-            self._mas.end(0)
-            return
-        self._number += 1
+    def _start(self) -> None:
+        """Post the goal of the test."""
         test = self._outcome.test
-        self._forget_messages()
-        self._lingers = False
-        self._cycles = 0
+        if self._mappings:
+            self._others_in_graph()
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
         self._timers = [self._clock.call_later(limit, lambda: self._timed_out(limit))]
@@ -202,13 +174,6 @@ class Trial:
             )
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
-
-    def _forget_messages(self) -> None:
-        """Discard messages published before this test."""
-        if self._others is not None:
-            self._others.forget()
-        elif self._mappings:
-            self._others_in_graph()
 
     def _others_in_graph(self) -> "FakeGraph":
         """Return the rest of the ROS graph, created on first use."""
@@ -236,7 +201,10 @@ class Trial:
                 Problem(each, (), span) for each in self._others.services_without_clients()
             ]
         self._note_times()
-        self._next()
+        for timer in self._timers:
+            timer.cancel()
+        self._done = True
+        self._mas.end(0)
 
     def _note_times(self) -> None:
         self._outcome.seconds = time.perf_counter() - self._began
@@ -247,7 +215,7 @@ class Trial:
         self._finish()
 
     def _end_run(self, problem: Problem) -> None:
-        """Handle an early end of the run: a problem of the current test and of those not yet started."""
+        """Handle an early end of the run."""
         if self._done:
             return
         self._done = True
@@ -255,8 +223,6 @@ class Trial:
             self._outcome.problems.append(problem)
         if self._began:
             self._note_times()
-        for outcome in self._outcomes[max(self._number, 0) + 1 :]:
-            outcome.problems.append(Problem("the test was not started: the run had ended"))
 
     # ---- limits
 
@@ -270,7 +236,7 @@ class Trial:
     def _busy(self, cycles: int) -> None:
         """Count reasoning cycles."""
         self._cycles += cycles
-        if self._done or self._number < 0:
+        if self._done or not self._began:
             return
         if self._lingers:
             if self._cycles > LINGER_CYCLES:
