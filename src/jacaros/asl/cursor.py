@@ -27,22 +27,6 @@ _THESIS = "jason.architecture."
 """Package of the artifact classes in the programs of the JaCaROS thesis."""
 
 
-class WrongDirective(Exception):
-    """Raised when a directive is used wrongly.
-
-    Attributes:
-        help: how to use it.
-        span: the place, if it is not that of the whole directive.
-        code: the kind of the diagnostic.
-    """
-
-    def __init__(
-        self, message: str, help: str | None = None, span: Span | None = None, code: str = "wrong-directive"
-    ) -> None:
-        super().__init__(message)
-        self.help, self.span, self.code = help, span, code
-
-
 class SyntaxPanic(Exception):
     """Raised when the rest of a clause cannot be parsed; the error has been reported."""
 

@@ -9,13 +9,29 @@ from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
 from jacaros.asl.plan_parser import CONTROL, PlanParser
-from jacaros.asl.source import SourceFile
+from jacaros.asl.source import SourceFile, Span
 from jacaros.asl.term_parser import Namespaces
 from jacaros.asl.walk import parts_of
 
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "derive", "end", "include", "namespace", "register_function"})
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
 """Tokens that may begin a clause."""
+
+
+class WrongDirective(Exception):
+    """Raised when a directive is used wrongly.
+
+    Attributes:
+        help: how to use it.
+        span: the place, if it is not that of the whole directive.
+        code: the kind of the diagnostic.
+    """
+
+    def __init__(
+        self, message: str, help: str | None = None, span: Span | None = None, code: str = "wrong-directive"
+    ) -> None:
+        super().__init__(message)
+        self.help, self.span, self.code = help, span, code
 
 
 class Directives(Protocol):

@@ -7,11 +7,11 @@
 
 from collections.abc import Iterator, Sequence
 from math import inf
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
-from jacaros.asl.walk import children, variables_in
+from jacaros.asl.walk import children, operands, variables_in
 from jacaros.terms.operators import BINARY
 
 Clause = nodes.Plan | nodes.Rule
@@ -66,17 +66,6 @@ def annotations_of(term: nodes.Node) -> list[nodes.Literal]:
     )
 
 
-def conjuncts(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """Yield the conditions that must all hold for *formula* to hold, in source order."""
-    stack = [formula]
-    while stack:
-        term = stack.pop()
-        if isinstance(term, nodes.And):
-            stack += [term.right, term.left]
-        else:
-            yield term
-
-
 def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
     """Yield all nodes below *root* in source order, each with whether it is used as a condition."""
     stack: list[tuple[nodes.Node, bool]] = [(root, False)]
@@ -99,7 +88,7 @@ def is_true(formula: nodes.Term | None) -> bool:
 
 def contradiction(formula: nodes.Term) -> str | None:
     """Explain why *formula* never holds, or return None if that is not evident."""
-    parts = list(conjuncts(formula))
+    parts = cast("list[nodes.Term]", operands(formula)) if isinstance(formula, nodes.And) else [formula]
     return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
 
 

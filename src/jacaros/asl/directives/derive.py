@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, cast
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import WrongDirective
 from jacaros.asl.formatter import format_term
+from jacaros.asl.program_parser import WrongDirective
 from jacaros.asl.walk import is_ground
 from jacaros.streams.schema import OPERATORS, faults, unknown
 from jacaros.terms.text import number_text

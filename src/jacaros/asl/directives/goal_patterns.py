@@ -16,9 +16,9 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import WrongDirective
 from jacaros.asl.directives.pattern import TRUE, PatternCall, achieves, is_about
 from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.program_parser import WrongDirective
 from jacaros.asl.walk import is_ground
 
 

@@ -17,8 +17,9 @@ from itertools import count
 from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import Names, WrongDirective
+from jacaros.asl.cursor import Names
 from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.program_parser import WrongDirective
 from jacaros.asl.source import SourceFile, Span
 from jacaros.asl.walk import rebuilt
 

@@ -12,13 +12,13 @@ from itertools import count
 from typing import Any, Final
 
 from jacaros.asl import nodes
-from jacaros.asl.cursor import Names, SyntaxPanic, WrongDirective
+from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.directives.goal_patterns import PATTERNS, apply_pattern
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
 from jacaros.asl.directives.pattern import PatternCall
 from jacaros.asl.plan_parser import PlanParser
-from jacaros.asl.program_parser import ProgramParser
+from jacaros.asl.program_parser import ProgramParser, WrongDirective
 from jacaros.asl.source import SourceFile, Span
 from jacaros.asl.term_parser import Namespaces
 from jacaros.asl.walk import rebuilt
