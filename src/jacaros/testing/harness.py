@@ -32,11 +32,8 @@ from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
-from jacaros.terms.substitution import rename
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
-from jacaros.testing.recorded import Action, RecordedAct
+from jacaros.testing.recorded import Action, RecordedAct, matches
 from jacaros.text_files import file_text
 
 __tracebackhide__ = methodcaller("errisinstance", AssertionError)
@@ -196,7 +193,7 @@ class AgentHarness(OpenMind):
         """
         wanted = literal(pattern)
         pending = [act for act in self.acts if act.pending]
-        found = next((act for act in pending if act.name == pattern or _matches(wanted, act.term)), None)
+        found = next((act for act in pending if act.name == pattern or matches(wanted, act.term)), None)
         if found is None:
             self._fail(f"no pending action {pattern}")
         return found
@@ -223,7 +220,7 @@ class AgentHarness(OpenMind):
 
     def _pursues(self, goal: str) -> bool:
         pattern = literal(goal)
-        return any(_matches(pattern, each) for each, _ in goals.desires(self.mind))
+        return any(matches(pattern, each) for each, _ in goals.desires(self.mind))
 
     def assert_idle(self) -> None:
         """Assert that the agent has no goal and nothing to do."""
@@ -242,7 +239,7 @@ class AgentHarness(OpenMind):
                 None for any.
         """
         self._require(goal.failed, f"it did not fail: {goal}")
-        if reason is not None and not any(_matches(literal(reason), each) for each in goal.reasons):
+        if reason is not None and not any(matches(literal(reason), each) for each in goal.reasons):
             self._fail(f"it failed for another reason than {reason}: {goal}")
 
     def assert_printed(self, part: str) -> None:
@@ -258,7 +255,7 @@ class AgentHarness(OpenMind):
         begun = iter(self.acts)
         for action in actions:
             pattern = literal(action)
-            if not any(_matches(pattern, act.term) for act in begun):
+            if not any(matches(pattern, act.term) for act in begun):
                 order = " in this order" if len(actions) > 1 else ""
                 self._fail(f"it did not do {', '.join(actions)}{order}")
 
@@ -266,7 +263,7 @@ class AgentHarness(OpenMind):
         """Assert that no matching action was started."""
         for action in actions:
             pattern = literal(action)
-            self._require(not any(_matches(pattern, act.term) for act in self.acts), f"it did {action}")
+            self._require(not any(matches(pattern, act.term) for act in self.acts), f"it did {action}")
 
     def assert_sent(self, receiver: str, performative: str, content: str) -> None:
         """Assert that a message was sent whose content matches."""
@@ -282,7 +279,7 @@ class AgentHarness(OpenMind):
         pattern = lower_value(parse_term(content))
         return any(
             (message.receiver, message.performative) == (receiver, performative)
-            and _matches(pattern, message.term)
+            and matches(pattern, message.term)
             for message in self.sent
         )
 
@@ -309,11 +306,3 @@ class AgentHarness(OpenMind):
 
     def _fail(self, message: str) -> NoReturn:
         raise AssertionError(f"{message}\n{self}")
-
-
-def _matches(pattern: Term, term: Term) -> bool:
-    """Return whether a pattern unifies with a term; annotations count only if the pattern has some."""
-    trail = Trail()
-    found = unify(pattern, rename(term), trail)
-    undo(trail, 0)
-    return found

@@ -233,11 +233,8 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
     """
     code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
     code.actions.update(UNTESTED)
-
-    def prepare(program: nodes.Program, code: PythonCode) -> nodes.Program:
-        return with_assertions(program)
-
-    return Programs(deployment.source_paths, warn, code, prepare).load_all(deployment.agents)
+    programs = Programs(deployment.source_paths, warn, code, lambda program, _: with_assertions(program))
+    return programs.load_all(deployment.agents)
 
 
 def _lone(path: Path) -> Deployment:

@@ -107,7 +107,6 @@ class Trial:
         self._lingers = False
         self._cycles = 0
         self._began = self._began_run = 0.0
-        self._timers: list[Any] = []
         self._probes: dict[str, Probe] = {}
         self._actions = actions(self._probes)
         clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
@@ -166,7 +165,7 @@ class Trial:
             self._others_in_graph()
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
-        self._timers = [self._clock.call_later(limit, lambda: self._timed_out(limit))]
+        self._clock.call_later(limit, lambda: self._timed_out(limit))
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
             self._fail(
@@ -191,18 +190,18 @@ class Trial:
             return
         self._lingers = True
         self._cycles = 0
-        self._timers.append(self._clock.call_later(LINGER_SECONDS, self._finish))
+        self._clock.call_later(LINGER_SECONDS, self._finish)
 
     def _finish(self) -> None:
-        """End the test."""
+        """End the test, unless it has ended."""
+        if self._done:
+            return
         if self._others is not None and not self._outcome.problems:
             span = self._outcome.test.span
             self._outcome.problems += [
                 Problem(each, (), span) for each in self._others.services_without_clients()
             ]
         self._note_times()
-        for timer in self._timers:
-            timer.cancel()
         self._done = True
         self._mas.end(0)
 
@@ -229,9 +228,8 @@ class Trial:
     def _timed_out(self, limit: float) -> None:
         if self._lingers:
             self._finish()
-            return
-        problem = f"the test did not end within {limit:g} s of the run's clock"
-        self._give_up(problem)
+        elif not self._done:
+            self._give_up(f"the test did not end within {limit:g} s of the run's clock")
 
     def _busy(self, cycles: int) -> None:
         """Count reasoning cycles."""
