@@ -16,9 +16,7 @@ def failed(suites: list[Suite]) -> set[str]:
     """Names of the tests that failed; the suites must be there and can be run."""
     assert suites
     assert [suite.error for suite in suites if suite.error is not None] == []
-    return {
-        outcome.test.name for suite in suites for outcome in run_suite(suite) if not outcome.passed
-    }
+    return {outcome.test.name for suite in suites for outcome in run_suite(suite) if not outcome.passed}
 
 
 def test_every_example_has_tests() -> None:

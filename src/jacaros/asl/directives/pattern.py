@@ -12,7 +12,6 @@ misbehave in Jason, ours follow the intent of the pattern; each such function sa
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from itertools import count
 from typing import Any
 
@@ -87,7 +86,6 @@ class PatternCall:
         return nodes.replace(node, span=self.span)
 
 
-@cache
 def _template(text: str) -> tuple[nodes.Plan, ...]:
     parser = PlanParser(SourceFile("a goal pattern", text), Names(count(1), count(1), count(1)), [])
     plans = []
