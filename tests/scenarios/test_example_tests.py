@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.testing import collect, run_suites
+from jacaros.testing import collect, run_suite
 from jacaros.testing.suites import Suite
 
 FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "tests").is_dir())
@@ -16,9 +16,7 @@ def failed(suites: list[Suite]) -> set[str]:
     """Names of the tests that failed; the suites must be there and can be run."""
     assert suites
     assert [suite.error for suite in suites if suite.error is not None] == []
-    return {
-        outcome.test.name for suite in run_suites(suites) for outcome in suite.outcomes if not outcome.passed
-    }
+    return {outcome.test.name for suite in suites for outcome in run_suite(suite) if not outcome.passed}
 
 
 def test_every_example_has_tests() -> None:

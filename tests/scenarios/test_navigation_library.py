@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.testing import RunResult, collect, run_project, run_suites
+from jacaros.testing import RunResult, collect, run_project, run_suite
 
 TESTS = Path(__file__).parent / "navigation_library"
 TINY = """
@@ -46,7 +46,7 @@ def patrol(folder: Path, program: str, *mappings: str) -> RunResult:
 def test_the_plans_with_faked_robots() -> None:
     suites = collect([TESTS])
     assert [suite.error for suite in suites if suite.error is not None] == []
-    outcomes = [outcome for suite in run_suites(suites) for outcome in suite.outcomes]
+    outcomes = [outcome for suite in suites for outcome in run_suite(suite)]
     assert len(outcomes) == 38
     assert [outcome.test.name for outcome in outcomes if not outcome.passed] == []
 

@@ -1,8 +1,13 @@
-"""Warnings about programs that run but probably do not do what you mean."""
+"""Warnings about programs that run but probably do not do what you mean.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "!start. +!start <- !leave.")
+>>> [each.message for each in check(program, KnownActions({}))]
+['no plan for `!leave/0`']
+"""
 
 from bisect import bisect_left
 from collections.abc import Mapping, Sequence
-from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import (
@@ -18,21 +23,15 @@ from jacaros.asl.checks.goals import goals_without_plan
 from jacaros.asl.checks.needs import wrong_needs
 from jacaros.asl.checks.plans import (
     contexts_never_true,
-    misspelt_label_words,
     narrow_handlers,
     never_selected,
-    wrong_urgencies,
+    wrong_labels,
 )
 from jacaros.asl.checks.supervision import wrong_supervision
 from jacaros.asl.checks.variables import singletons, singletons_of_facts, vain_comparisons
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.source import Span
-from jacaros.asl.walk import walk
-
-_LOOKED_AT: Final = (
-    *(nodes.Plan, nodes.Rule, nodes.Trigger, nodes.InternalAction, nodes.Achieve, nodes.BeliefChange),
-    *(nodes.If, nodes.While, nodes.For, nodes.Test),
-)
+from jacaros.asl.walk import ByKind
 
 
 def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic] = ()) -> list[Diagnostic]:
@@ -45,7 +44,7 @@ def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnost
             because a definition that seems to be missing may be in a clause with errors.
     """
     warnings = _mistakes(program, known, errors)
-    warnings += doubtful_values([*walk(*_sound(program, errors))])
+    warnings += doubtful_values(ByKind(*_sound(program, errors)))
     for clause in _sound(program, errors):
         warnings += singletons(clause)
     facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
@@ -64,15 +63,14 @@ def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diag
     clauses = _sound(program, errors)
     facts = [belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)]
     # One walk for all checks: a program may have many thousands of beliefs.
-    found = [node for node in walk(*facts, *clauses) if isinstance(node, _LOOKED_AT)]
+    found = ByKind(*facts, *clauses)
     warnings = [
         *unknown_actions(program, found, known),
         *wrong_arguments(found, known),
         *acting_conditions(found, known),
         *unknown_performatives(found, known),
         *contexts_never_true(found),
-        *misspelt_label_words(found),
-        *wrong_urgencies(found),
+        *wrong_labels(found),
         *wrong_supervision(program.goals, found),
         *wrong_needs(found),
     ]

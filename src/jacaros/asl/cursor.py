@@ -7,7 +7,7 @@ from typing import Final, NoReturn
 from jacaros.asl.declaration import Declaration
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
-from jacaros.asl.slips import Slip, known_slip
+from jacaros.asl.slips import known_slip
 from jacaros.asl.source import SourceFile, Span
 from jacaros.terms.functions import is_function
 
@@ -177,21 +177,22 @@ class Cursor:
         token = self.token
         if token.kind == "end":
             self.fail("unexpected-end", f"expected {wanted}, found {self.found()}")
-        slip = self.slip()
-        if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
+        self.fail_on_slip()
         self.fail(code, f"expected {wanted}, found {self.found()}")
 
     def found(self) -> str:
         """Describe the current token in a message."""
         return "the end of the file" if self.token.kind == "end" else f"`{self.token.text}`"
 
-    def slip(self) -> Slip | None:
-        """Return the likely mistake if the current token is a known one."""
-        return known_slip(self.tokens, self.index)
+    def is_slip(self) -> bool:
+        """Return whether the current token is a likely mistake that is known."""
+        return known_slip(self.tokens, self.index) is not None
 
-    def _blame(self, slip: Slip) -> Span:
-        return self.span_of(slip.token or self.token)
+    def fail_on_slip(self) -> None:
+        """Fail if the current token is a likely mistake that is known."""
+        slip = known_slip(self.tokens, self.index)
+        if slip is not None:
+            self.fail(slip.code, slip.message, self.span_of(slip.token or self.token), slip.help)
 
     def close(self, opener: Token) -> None:
         """Consume the bracket that closes *opener*. A bracket of another kind is reported and accepted."""
@@ -211,9 +212,7 @@ class Cursor:
             if not self._closes_outer(opener) or self.peek().kind == token.kind:
                 self.advance()
             return
-        slip = self.slip()
-        if slip is not None:
-            self.fail(slip.code, slip.message, self._blame(slip), slip.help)
+        self.fail_on_slip()
         if token.kind != "error":
             self.report(
                 "unclosed-bracket",

@@ -1,4 +1,13 @@
-"""Diagnostics: what is wrong in a program, where, and how to fix it; and the list of their codes."""
+"""Diagnostics: what is wrong in a program, where, and how to fix it; and the list of their codes.
+
+>>> from jacaros.asl.source import SourceFile
+>>> span = Span(SourceFile("robot.asl", "at(home"), 1, 3, 1, 4)
+>>> print(problem("unclosed-bracket", "unclosed `(`", span, "close it with `)`").render(with_code=True))
+robot.asl:1:3: error: unclosed `(` [unclosed-bracket]
+  1 | at(home
+    |   ^
+  = help: close it with `)`
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -212,3 +221,8 @@ KINDS: Final[dict[str, Kind]] = {
 
 The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the thesis.
 """
+
+
+def problem(code: str, message: str, span: Span | None, help: str | None = None) -> Diagnostic:
+    """Return a diagnostic of a kind, at its usual level."""
+    return Diagnostic(KINDS[code].level, message, span, help, code)

@@ -3,13 +3,17 @@
 Expressions are fully bracketed (``(X > 3)``, ``(A & (B | C))``), so the text parses to the same tree. It differs from
 the text of the tree's term (`jacaros.terms.text`), which `.print` shows: strings are escaped, control statements have
 their own syntax, annotations keep their order and nothing is evaluated.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> format_plan(parse_plans("+!go(X) : X > 3 <- move(X)")[0])
+'+!go(X) : X > 3 <- move(X).'
 """
 
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 from jacaros.asl import nodes
-from jacaros.asl.lowering import FORKS
+from jacaros.asl.lowering import step_parts
 from jacaros.terms.operators import BINARY
 from jacaros.terms.text import number_text, quoted, text
 
@@ -51,7 +55,7 @@ def _joined(parts: Iterable[nodes.Node], separator: str = ",") -> str:
     return separator.join(map(format_term, parts))
 
 
-def _bare(formula: nodes.Term) -> str:
+def _bare(formula: Any) -> str:
     """Format a formula without its outermost brackets."""
     written = format_term(formula)
     return written[1:-1] if isinstance(formula, nodes.Relation | nodes.And | nodes.Or) else written
@@ -64,7 +68,7 @@ def _operation(node: nodes.Arithmetic | nodes.Relation | nodes.And | nodes.Or) -
     return f"({format_term(left)}{BINARY[node.operator].between}{format_term(right)})"
 
 
-def _block(body: nodes.Body) -> str:
+def _block(body: Any) -> str:
     return f"{{ {format_body(body)} }}" if body.steps else "{ }"
 
 
@@ -84,14 +88,19 @@ def _elements(node: nodes.ListTerm | nodes.Annotations | None) -> str:
     return f"[{_joined(node.items)}{'' if node.tail is None else f'|{format_term(node.tail)}'}]"
 
 
-def _if(node: nodes.If) -> str:
-    written = f"if ({_bare(node.condition)}) {_block(node.then)}"
-    return written if node.otherwise is None else f"{written} else {_block(node.otherwise)}"
+def _step(node: nodes.Step) -> str:
+    operator, (operand,) = step_parts(node)
+    return operator + format_term(operand)
+
+
+def _statement(node: nodes.If | nodes.While | nodes.For) -> str:
+    word, (condition, *blocks) = step_parts(node)
+    return f"{word} ({_bare(condition)}) {' else '.join(map(_block, blocks))}"
 
 
 def _fork(node: nodes.Fork) -> str:
-    branches = [f"({format_body(branch)})" for branch in node.branches]
-    return f"({f' {FORKS[node.operator]} '.join(branches)})"
+    symbol, branches = step_parts(node)
+    return f"({f' {symbol} '.join(f'({format_term(branch)})' for branch in branches)})"
 
 
 _WRITERS: Final[dict[type, Callable[[Any], str]]] = {
@@ -114,14 +123,10 @@ _WRITERS: Final[dict[type, Callable[[Any], str]]] = {
     nodes.BodyTerm: lambda node: _block(node.body),
     nodes.Rule: lambda node: f"{format_term(node.head)} :- {format_term(node.body)}",
     nodes.Trigger: lambda node: f"{node.operator}{node.kind}{format_term(node.literal)}",
-    nodes.Achieve: lambda node: f"{'!!' if node.separate else '!'}{format_term(node.goal)}",
-    nodes.Test: lambda node: f"?{format_term(node.formula)}",
-    nodes.BeliefChange: lambda node: node.operator + format_term(node.operand),
-    nodes.ExternalAction: lambda node: format_term(node.action),
-    nodes.Constraint: lambda node: format_term(node.formula),
-    nodes.If: _if,
-    nodes.While: lambda node: f"while ({_bare(node.condition)}) {_block(node.body)}",
-    nodes.For: lambda node: f"for ({_bare(node.condition)}) {_block(node.body)}",
+    **dict.fromkeys(
+        (nodes.Achieve, nodes.Test, nodes.BeliefChange, nodes.ExternalAction, nodes.Constraint), _step
+    ),
+    **dict.fromkeys((nodes.If, nodes.While, nodes.For), _statement),
     nodes.Fork: _fork,
     nodes.Body: format_body,
     nodes.Plan: format_plan,

@@ -1,11 +1,15 @@
-"""Format programs in the project's one style (`jacaros format`)."""
+"""Format programs in the project's one style (`jacaros format`).
+
+>>> print(format_program("robot.asl", "+!go:near<-move;!stop."), end="")
++!go : near <- move; !stop.
+"""
 
 from collections.abc import Mapping
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.diagnostics import AslError, Diagnostic
+from jacaros.asl.diagnostics import AslError, problem
 from jacaros.asl.layout.clauses import ProgramLayout
 from jacaros.asl.layout.document import render
 from jacaros.asl.layout.expressions import pieces_of
@@ -41,7 +45,7 @@ def format_program(name: str, text: str, actions: Mapping[str, Declaration] | No
                 break
             result = again
     except RecursionError:
-        wrong = Diagnostic("error", f"{name} is nested too deeply to be formatted", code="nested-too-deeply")
+        wrong = problem("nested-too-deeply", f"{name} is nested too deeply to be formatted", None)
         raise AslError([wrong]) from None
     if _substance(result) != _substance(text) or _meaning(name, result, actions) != meaning:
         raise InternalError(f"formatting would change the meaning of {name}")

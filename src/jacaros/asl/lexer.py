@@ -3,13 +3,16 @@
 One compiled expression finds all tokens. Wrong characters are reported here and never stop the lexer. An identifier with
 letters outside ASCII is passed on as if it were valid. What is unusable (such as an unterminated string) becomes a token
 of kind ``error``: there the parser abandons the clause without a further report.
+
+>>> [token.kind for token in tokenize(SourceFile("robot.asl", "at(X) :- near(X)."), print)]
+['atom', '(', 'variable', ')', ':-', 'atom', '(', 'variable', ')', '.', 'end', 'end']
 """
 
 import re
 from collections.abc import Callable
 from typing import Final, NamedTuple
 
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.source import SourceFile, Span
 from jacaros.terms.operators import BINARY, WORDS
 
@@ -46,6 +49,19 @@ _TOKEN: Final = re.compile(
 _ESCAPES: Final = re.compile(r"""\\[ntbrf\\'"0-7]|\\(?P<wrong>.)""")
 """The escapes that a string may contain; they are converted elsewhere."""
 _UNUSUAL: Final = frozenset({"quoted", "word", "open_string", "open_quoted", "open_comment", "wrong"})
+
+
+_WRONG: Final = {
+    "open_string": (
+        "unclosed-string",
+        "unterminated string",
+        r'close it on the same line: "text"; write a line break as `\n`',
+    ),
+    "open_quoted": ("unclosed-string", "unterminated quoted atom", "close it on the same line: 'an atom'"),
+    "open_comment": ("unclosed-comment", "unterminated comment", "end it with `*/`"),
+    "\\": ("wrong-operator", r"unexpected `\`", r"write `\==` for 'not equal' and `not` for 'not'"),
+}
+"""Unusable tokens by their group or text: code, message and help."""
 
 
 class Token:
@@ -129,47 +145,31 @@ def _unusual(
     """Return the kind of a token of one of the rarer groups, and report what is wrong with it."""
     if group in ("quoted", "word"):
         return "atom"
-    end = column + len(text.rstrip())
-    help: str | None = None
-    code = "unclosed-string"
-    if group == "open_string":
-        message, help = (
-            "unterminated string",
-            r'close it on the same line: "text"; write a line break as `\n`',
-        )
-    elif group == "open_quoted":
-        message, help = "unterminated quoted atom", "close it on the same line: 'an atom'"
-    elif group == "open_comment":
-        message, help, end = "unterminated comment", "end it with `*/`", column + 2
-        code = "unclosed-comment"
-    elif text == "\\":
-        code = "wrong-operator"
-        message, help = r"unexpected `\`", r"write `\==` for 'not equal' and `not` for 'not'"
-    else:
-        code = "unknown-character"
-        message = f"unexpected character {text!r}"
-        help = "begin comments with `//`" if text in "#%" else None
-    report(Diagnostic("error", message, Span(file, line, column, line, end), help, code))
+    code, message, help = _WRONG.get("\\" if text == "\\" else group) or (
+        "unknown-character",
+        f"unexpected character {text!r}",
+        "begin comments with `//`" if text in "#%" else None,
+    )
+    end = column + (2 if group == "open_comment" else len(text.rstrip()))
+    report(problem(code, message, Span(file, line, column, line, end), help))
     return "error"
 
 
 def _wrong_escape(file: SourceFile, escape: re.Match[str], line: int, column: int) -> Diagnostic:
     begin, end = column + escape.start(), column + escape.end()
-    return Diagnostic(
-        "error",
+    return problem(
+        "wrong-escape",
         f"invalid escape `{escape.group()}` in a string",
         Span(file, line, begin, line, end),
         r"only `\n` and `\"` are converted; write a backslash as `\\`",
-        "wrong-escape",
     )
 
 
 def _not_ascii(file: SourceFile, lexeme: str, line: int, column: int) -> Diagnostic:
     letter = next(char for char in lexeme if not char.isascii())
-    return Diagnostic(
-        "error",
+    return problem(
+        "non-ascii-name",
         f"name `{lexeme}` contains the letter `{letter}`; names consist of the letters a to z, digits and `_`",
         Span(file, line, column, line, column + len(lexeme)),
         f"rename it, or quote it as an atom: '{lexeme}'",
-        "non-ascii-name",
     )

@@ -1,4 +1,11 @@
-"""The entry points of the front end: from program texts to programs."""
+"""The entry points of the front end: from program texts to programs.
+
+>>> program, warnings = load_program("robot.asl", "at(home). +!go(X) <- move(X).")
+>>> len(program.beliefs), len(program.plans), warnings
+(1, 1, [])
+>>> parse_term("f(X)").arguments[0].name
+'X'
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -8,11 +15,11 @@ from typing import TypeVar
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.declaration import Declaration
-from jacaros.asl.diagnostics import AslError, Diagnostic
+from jacaros.asl.diagnostics import AslError, Diagnostic, problem
 from jacaros.asl.directives.processor import DirectiveProcessor, Read
-from jacaros.asl.literal_parser import Namespaces
 from jacaros.asl.plan_parser import PlanParser
 from jacaros.asl.source import TEXT, SourceFile
+from jacaros.asl.term_parser import Namespaces
 from jacaros.asl.walk import shape
 from jacaros.terms.functions import FunctionNames
 
@@ -100,54 +107,34 @@ def parse_term(text: str, name: str = TEXT, functions: Mapping[str, int] | None 
     Raises:
         AslError: the text is not a term.
     """
-    return _parse(text, name, functions, PlanParser.expression)
+    return _parse(text, PlanParser.expression, name, functions)
 
 
-def parse_formula(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Term:
+def parse_formula(text: str) -> nodes.Term:
     """Parse the condition in *text*; see `parse_term`."""
-    return _parse(text, name, functions, PlanParser.condition)
+    return _parse(text, PlanParser.condition)
 
 
-def parse_literal(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Literal:
+def parse_literal(text: str) -> nodes.Literal:
     """Parse the literal in *text*; see `parse_term`."""
-
-    def literal(parser: PlanParser) -> nodes.Literal:
-        start = parser.token
-        term = parser.operand(formula=True)
-        if not isinstance(term, nodes.Literal):
-            parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
-        return term
-
-    return _parse(text, name, functions, literal)
+    return _parse(text, _literal)
 
 
-def parse_trigger(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Trigger:
+def _literal(parser: PlanParser) -> nodes.Literal:
+    start = parser.token
+    term = parser.operand(formula=True)
+    if not isinstance(term, nodes.Literal):
+        parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
+    return term
+
+
+def parse_trigger(text: str) -> nodes.Trigger:
     """Parse the trigger in *text* (``+!g(X)``); see `parse_term`."""
-    return _parse(text, name, functions, PlanParser.trigger)
-
-
-def parse_plan(text: str, name: str = TEXT, functions: Mapping[str, int] | None = None) -> nodes.Plan:
-    """Parse the one plan in *text*, with or without its final '.' and with or without braces around it.
-
-    Raises:
-        AslError: the text is not a plan.
-    """
-
-    def plan(parser: PlanParser) -> nodes.Plan:
-        if parser.token.kind != "{":
-            return parser.plan()
-        start = parser.token
-        term = parser.braces()
-        if not isinstance(term, nodes.PlanTerm):
-            parser.fail("unexpected-token", "expected a plan", parser.span_from(start))
-        return term.plan
-
-    return _parse(text, name, functions, plan)
+    return _parse(text, PlanParser.trigger)
 
 
 def parse_plans(
     text: str,
-    name: str = TEXT,
     functions: Mapping[str, int] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Plan, ...]:
@@ -158,9 +145,9 @@ def parse_plans(
     """
     diagnostics: list[Diagnostic] = []
     processor = DirectiveProcessor(None, _names_with(functions, actions), diagnostics)
-    section = processor.read_file(SourceFile(name, text), last_dot_optional=True)
-    for clause in (*section.beliefs, *section.goals):
-        diagnostics.append(Diagnostic("error", "expected only plans", clause.span, None, "unexpected-token"))
+    section = processor.read_file(SourceFile(TEXT, text), last_dot_optional=True)
+    clauses = (*section.beliefs, *section.goals)
+    diagnostics += [problem("unexpected-token", "expected only plans", each.span) for each in clauses]
     _settled(diagnostics)
     return tuple(section.plans)
 
@@ -175,21 +162,20 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
     def literals(parser: PlanParser) -> tuple[nodes.Literal, ...]:
         found = []
         while parser.token.kind != "end":
-            start = parser.token
             parser.accept("!")
-            term = parser.operand(formula=True)
-            if not isinstance(term, nodes.Literal):
-                parser.fail("unexpected-token", "expected a literal", parser.span_from(start))
-            found.append(term)
-            if not (parser.accept(",") or parser.accept(".") or parser.accept(";")):
+            found.append(_literal(parser))
+            if not any(map(parser.accept, (",", ".", ";"))):
                 break
         return tuple(found)
 
-    return _parse(text, name, None, literals)
+    return _parse(text, literals, name)
 
 
 def _parse(
-    text: str, name: str, functions: Mapping[str, int] | None, read: Callable[[PlanParser], Result]
+    text: str,
+    read: Callable[[PlanParser], Result],
+    name: str = TEXT,
+    functions: Mapping[str, int] | None = None,
 ) -> Result:
     """Parse the whole of *text* with *read*."""
     diagnostics: list[Diagnostic] = []
@@ -270,10 +256,9 @@ def _two_plans(first: nodes.Plan, second: nodes.Plan) -> Diagnostic:
         file = first.span.file.name
         elsewhere = second.span is None or second.span.file.name != file
         where = f"; the first one is at {f'{file}, ' if elsewhere else ''}line {first.span.line}"
-    return Diagnostic(
-        "error",
+    return problem(
+        "duplicate-label",
         f"two different plans have the label `@{second.label.functor}`{where}",
         second.label.span or second.span,
         "rename one of the labels",
-        "duplicate-label",
     )

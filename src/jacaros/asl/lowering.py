@@ -1,7 +1,11 @@
-"""Syntax trees to terms: for beliefs, messages, and formulae shown to users."""
+"""Syntax trees to terms: for beliefs, messages, and formulae shown to users.
+
+>>> from jacaros.asl.loader import parse_term
+>>> lower_value(parse_term("1 + 2"))
+3.0
+"""
 
 from collections.abc import Callable
-from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.terms import plans
@@ -145,15 +149,11 @@ def step_parts(node: nodes.Step) -> tuple[str, tuple[nodes.Node, ...]]:
         case nodes.For(condition, body):
             return "for", (condition, body)
         case nodes.Fork(operator, branches):
-            return FORKS[operator], branches
+            return ("|&|" if operator == "and" else "|||"), branches
         case nodes.ExternalAction(action):
             return "", (action,)
         case nodes.Constraint(formula):
             return "", (formula,)
-
-
-FORKS: Final = {"and": "|&|", "or": "|||"}
-"""The operators of forks."""
 
 
 def _external(node: nodes.ExternalAction, lookup: Lookup) -> Term:

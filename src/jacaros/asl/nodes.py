@@ -1,11 +1,14 @@
 """The syntax tree of AgentSpeak: plain frozen data, each node with its place in the source.
 
 Terms, logical formulae and body formulae share `Term`, as plans and conditions may be arguments.
+
+>>> replace(Literal("at", (Number(1.0),)), functor="near").functor
+'near'
 """
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, fields
 from typing import Any, ClassVar, Final, TypeVar, dataclass_transform
 
 from jacaros.asl.source import Span
@@ -400,18 +403,9 @@ class Section:
 
     def extend(self, other: Section) -> None:
         """Append the clauses of *other*."""
-        self.beliefs.extend(other.beliefs)
-        self.goals.extend(other.goals)
-        self.plans.extend(other.plans)
-        self.functions.extend(other.functions)
-        self.derived.extend(other.derived)
+        for kind in fields(self):
+            getattr(self, kind.name).extend(getattr(other, kind.name))
 
     def program(self) -> Program:
         """Return the finished program."""
-        return Program(
-            tuple(self.beliefs),
-            tuple(self.goals),
-            tuple(self.plans),
-            tuple(self.functions),
-            tuple(self.derived),
-        )
+        return Program(*[tuple(getattr(self, kind.name)) for kind in fields(self)])

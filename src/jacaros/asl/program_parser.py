@@ -4,18 +4,34 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from jacaros.asl import nodes
-from jacaros.asl.body_parser import CONTROL
 from jacaros.asl.cursor import CLOSERS, Names, SyntaxPanic
 from jacaros.asl.declaration import UNDECLARED
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.lexer import Token
-from jacaros.asl.literal_parser import Namespaces
-from jacaros.asl.plan_parser import PlanParser
-from jacaros.asl.source import SourceFile
+from jacaros.asl.plan_parser import CONTROL, PlanParser
+from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.term_parser import Namespaces
+from jacaros.asl.walk import parts_of
 
 _DIRECTIVE_WORDS: Final = frozenset({"begin", "derive", "end", "include", "namespace", "register_function"})
 _STARTS: Final = frozenset({"atom", "variable", "~", "!", "{", "@", "+", "-", "^"})
 """Tokens that may begin a clause."""
+
+
+class WrongDirective(Exception):
+    """Raised when a directive is used wrongly.
+
+    Attributes:
+        help: how to use it.
+        span: the place, if it is not that of the whole directive.
+        code: the kind of the diagnostic.
+    """
+
+    def __init__(
+        self, message: str, help: str | None = None, span: Span | None = None, code: str = "wrong-directive"
+    ) -> None:
+        super().__init__(message)
+        self.help, self.span, self.code = help, span, code
 
 
 class Directives(Protocol):
@@ -282,18 +298,10 @@ def _naming(token: Token) -> str:
 
 def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
     """Report internal actions in a context that act or wait: they cannot be asked whether they hold."""
-    stack = [formula]
-    while stack:
-        term = stack.pop()
-        if isinstance(term, nodes.Connective):
-            stack += term.operands
-        elif isinstance(term, nodes.InternalAction) and _acts(term.name, parser.names):
-            parser.report(
-                "action-in-context",
-                f"internal action `{term.name}` acts and cannot be in a context",
-                term.span,
-                "move it into the body",
-            )
+    for part in () if formula is None else parts_of(formula):
+        if isinstance(part, nodes.InternalAction) and _acts(part.name, parser.names):
+            message = f"internal action `{part.name}` acts and cannot be in a context"
+            parser.report("action-in-context", message, part.span, "move it into the body")
 
 
 def _acts(name: str, names: Names) -> bool:

@@ -2,6 +2,13 @@
 
 An unbound variable either stands for itself (a body that shares variables with the plan that created it: `Shared`), or
 becomes a variable of the new plan (`Closing`), for plans added to the library.
+
+>>> from jacaros.asl.formatter import format_plan
+>>> from jacaros.asl.loader import parse_plans
+>>> from jacaros.asl.lowering import fresh_names, lower_plan
+>>> term = lower_plan(parse_plans("+!go(X) <- move(X)")[0], fresh_names())
+>>> format_plan(Reflection(shared=False).plan(term))
+'+!go(X) <- move(X).'
 """
 
 from typing import cast
@@ -52,16 +59,16 @@ class Reflection:
             return nodes.String(str(term))
         if kind is Var:
             return self._variable(term)
+        if term is plans.BODY_END:
+            return nodes.BodyTerm(nodes.Body())
+        if kind is List or term is NIL:
+            return self._list(term)
         if kind is Functor:
-            if term is plans.BODY_END:
-                return nodes.BodyTerm(nodes.Body())
-            return nodes.ListTerm(()) if term is NIL else self._literal(term, ())
+            return self._structure(term, ())
         if kind is Annotated:
             return self._annotated(term)
-        if kind is List:
-            return self._list(term)
         if kind is tuple:
-            return self._structure(term)
+            return self._list(term) if term[0] is CONS else self._structure(term[0], term[1:])
         return cast("nodes.Term", nodes.Constant(term))
 
     def _variable(self, variable: Var) -> nodes.Term:
@@ -79,12 +86,6 @@ class Reflection:
             return written
         return f"{written.lstrip('_') or 'V'}_{len(self._names) + 1}".title()
 
-    def _literal(self, symbol: Functor, arguments: tuple[Term, ...]) -> nodes.Literal | nodes.InternalAction:
-        built = tuple(self.term(a) for a in arguments)
-        if symbol.kind == ACTION:
-            return nodes.InternalAction(symbol.name, built)
-        return nodes.Literal(symbol.name, built, symbol.negated, None, symbol.namespace)
-
     def _annotated(self, term: Annotated) -> nodes.Term:
         tail = None if term.tail is None else self.term(term.tail)
         annotations = nodes.Annotations(
@@ -97,14 +98,8 @@ class Reflection:
             return nodes.Variable(inner.name, annotations)
         return inner
 
-    def _structure(self, term: tuple[Term, ...]) -> nodes.Term:
-        symbol = term[0]
-        if symbol is CONS:
-            return self._list(term)
-        if symbol.kind == FUNCTION:
-            return nodes.FunctionCall(symbol.name, tuple(self.term(a) for a in term[1:]))
-        if symbol.kind in (ARITHMETIC, RELATION, LOGIC):
-            return self._operation(symbol, term)
+    def _structure(self, symbol: Functor, arguments: tuple[Term, ...]) -> nodes.Term:
+        term = (symbol, *arguments)
         if symbol is plans.PLAN:
             return nodes.PlanTerm(self.plan(term))
         if symbol in plans.TRIGGERS:
@@ -113,15 +108,17 @@ class Reflection:
             return nodes.RuleTerm(self.rule(term))
         if symbol in plans.BODIES:
             return nodes.BodyTerm(self.body(term))
-        return self._literal(symbol, term[1:])
-
-    def _operation(self, symbol: Functor, term: tuple[Term, ...]) -> nodes.Term:
-        operands = tuple(self.term(a) for a in term[1:])
-        if symbol.kind == ARITHMETIC:
-            return nodes.Arithmetic(symbol.name, operands)
+        name, built = symbol.name, tuple(map(self.term, arguments))
+        if symbol.kind == LOGIC:
+            return cast("nodes.Term", nodes.CONNECTIVES[name](*built))
         if symbol.kind == RELATION:
-            return nodes.Relation(symbol.name, *operands)
-        return cast("nodes.Term", nodes.CONNECTIVES[symbol.name](*operands))
+            return nodes.Relation(name, *built)
+        kind = {FUNCTION: nodes.FunctionCall, ACTION: nodes.InternalAction, ARITHMETIC: nodes.Arithmetic}.get(
+            symbol.kind
+        )
+        return (
+            kind(name, built) if kind else nodes.Literal(name, built, symbol.negated, None, symbol.namespace)
+        )
 
     def _list(self, term: Term) -> nodes.ListTerm:
         items, end = parted(term)
@@ -165,22 +162,23 @@ class Reflection:
     def _step(self, step: Term) -> nodes.Step:
         if is_body(step):
             return nodes.If(nodes.Literal("true"), self.body(step))
-        operator, operands = step_parts(step)
-        if operator in ("!", "!!"):
-            return nodes.Achieve(self._goal(operands[0]), operator == "!!")
-        if operator == "?":
-            return nodes.Test(self.term(operands[0]))
-        if operator == "if":
-            otherwise = self.body(operands[2]) if operands[2:] else None
-            return nodes.If(self.term(operands[0]), self.body(operands[1]), otherwise)
-        if operator in ("while", "for"):
-            loop = nodes.While if operator == "while" else nodes.For
-            return loop(self.term(operands[0]), self.body(operands[1]))
-        if operator in ("|&|", "|||"):
-            return nodes.Fork("and" if operator == "|&|" else "or", tuple(self.body(b) for b in operands))
-        if operator:
-            return nodes.BeliefChange(operator, self.term(operands[0]))
-        formula = self.term(operands[0])
-        if isinstance(formula, (nodes.Relation, nodes.InternalAction)):
-            return nodes.Constraint(formula)
-        return nodes.ExternalAction(cast("nodes.Literal | nodes.Variable", formula))
+        match step_parts(step):
+            case ("!" | "!!") as operator, (goal,):
+                return nodes.Achieve(self._goal(goal), operator == "!!")
+            case "?", (formula,):
+                return nodes.Test(self.term(formula))
+            case "if", (condition, *blocks):
+                return nodes.If(self.term(condition), *map(self.body, blocks))
+            case "while", (condition, body):
+                return nodes.While(self.term(condition), self.body(body))
+            case "for", (condition, body):
+                return nodes.For(self.term(condition), self.body(body))
+            case ("|&|" | "|||") as operator, branches:
+                return nodes.Fork("and" if operator == "|&|" else "or", tuple(map(self.body, branches)))
+            case "", (action,):
+                made = self.term(action)
+                if isinstance(made, nodes.Relation | nodes.InternalAction):
+                    return nodes.Constraint(made)
+                return nodes.ExternalAction(cast("nodes.Literal | nodes.Variable", made))
+            case operator, operands:
+                return nodes.BeliefChange(operator, self.term(operands[0]))

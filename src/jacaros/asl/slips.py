@@ -1,7 +1,12 @@
-"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y"."""
+"""Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y".
+
+>>> is_slip_of("improt", "import"), is_slip_of("export", "import")
+(True, False)
+>>> Slips(["battery", "bumper"]).of("batery")
+['battery']
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 from jacaros.asl.lexer import RESERVED, Token
@@ -56,20 +61,20 @@ class Slip(NamedTuple):
     token: Token | None = None
 
 
+_START: Final = Token("end", "", 0, 0, False)
+"""Stands before the first token."""
+
+
 def known_slip(tokens: Sequence[Token], index: int) -> Slip | None:
     """Return the likely mistake where the token at *index* does not fit, if it is a known one."""
+    before = tokens[index - 1] if index else _START
     return (
-        _misspelt(tokens, index)
+        _misspelt(tokens, index, before)
         or _bare_goal(tokens, index)
-        or _prefixed_string(tokens, index)
-        or _foreign_word(tokens, index)
-        or _python(tokens, index)
-        or _open_block(tokens, index)
-        or _reserved(tokens[index])
-        or _cut(tokens, index)
+        or _by_kind(tokens, index, before)
         or _counting(tokens, index)
         or _fused(tokens, index)
-        or _missing_blank(tokens, index)
+        or _missing_blank(tokens[index], before)
     )
 
 
@@ -86,54 +91,60 @@ def _bare_goal(tokens: Sequence[Token], index: int) -> Slip | None:
     )
 
 
-def _prefixed_string(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``f"at {X}"``."""
-    token, before = tokens[index], tokens[max(index - 1, 0)]
-    joined = before.line == token.line and before.end == token.column
-    if token.kind != "string" or not joined or before.text.lower() not in ("f", "r", "b", "u"):
-        return None
-    help = (
-        'write values between strings, as in `.print("at ", X)`, or join them with `.concat("at ", X, Text)`'
-    )
-    return Slip("foreign-word", f"strings have no prefix such as `{before.text}` in Python", help, before)
+def _by_kind(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
+    """``f"at {X}"``, ``a and b``, ``def go(): pass``, ``if (c) { a else { b }``, ``p :- q & !``, and reserved words."""
+    token = tokens[index]
+    text = token.text
+    match token.kind:
+        case "string" if _joined(before, token) and before.text.lower() in ("f", "r", "b", "u"):
+            help = 'write values between strings, as in `.print("at ", X)`, or join them with `.concat("at ", X, Text)`'
+            return Slip(
+                "foreign-word", f"strings have no prefix such as `{before.text}` in Python", help, before
+            )
+        case "atom" if text in _WORDS and before.kind in _ENDS_OPERAND:
+            return Slip("foreign-word", f"unknown keyword `{text}`", _WORDS[text])
+        case "atom" | "variable" if before.text in _PYTHON and (
+            index < 2 or tokens[index - 2].kind in (".", "}")
+        ):
+            help = "this is an agent program; put Python code into a .py file, such as artifacts.py"
+            return Slip("foreign-word", f"Python keyword `{before.text}` in an agent program", help, before)
+        case "else" | "elif" if (opener := _open_block(tokens[:index])) is not None:
+            help = f"close the block that was opened at line {opener.line}, column {opener.column}"
+            return Slip("unclosed-bracket", f"missing `}}` before `{text}`", help)
+        case kind if kind in RESERVED:
+            return Slip(
+                "reserved-word", f"reserved word `{text}` used as a name", f"quote it as an atom: '{text}'"
+            )
+        case "!" if before.kind in ("&", ":-"):
+            help = "a plan takes the first solution of its context; give rules conditions that exclude each other"
+            return Slip("wrong-operator", "unknown operator `!` (cut)", help)
+    return None
 
 
-def _reserved(token: Token) -> Slip | None:
-    if token.kind not in RESERVED:
-        return None
-    return Slip(
-        "reserved-word",
-        f"reserved word `{token.text}` used as a name",
-        f"quote it as an atom: '{token.text}'",
-    )
+def _open_block(tokens: Sequence[Token]) -> Token | None:
+    """Return the ``{`` of this clause that is still open."""
+    depth = 0
+    for token in reversed(tokens):
+        depth += (token.kind == "}") - (token.kind == "{")
+        if depth < 0 or token.kind == ".":
+            return token if depth < 0 else None
+    return None
 
 
 def _fused(tokens: Sequence[Token], index: int) -> Slip | None:
     """Find the longest run of adjacent signs around *index* that is an operator of another language."""
-    for length in (3, 2):
-        for start in range(index - length + 1, index + 1):
-            if start < 0 or start + length > len(tokens):
-                continue
+    for length in (3, 2, 1):
+        for start in range(max(index - length + 1, 0), index + 1):
             run = tokens[start : start + length]
             text = "".join(token.text for token in run)
-            joined = all(one.end == two.column and one.line == two.line for one, two in pairwise(run))
-            if joined and text in _FUSED:
+            if text in _FUSED and len(run) == length and all(map(_joined, run, run[1:])):
                 return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
-    if tokens[index].text in _FUSED:
-        text = tokens[index].text
-        return Slip("wrong-operator", f"unknown operator `{text}`", _FUSED[text])
     return None
 
 
-def _cut(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``p :- q & !``."""
-    if tokens[index].kind != "!" or index == 0 or tokens[index - 1].kind not in ("&", ":-"):
-        return None
-    return Slip(
-        "wrong-operator",
-        "unknown operator `!` (cut)",
-        "a plan takes the first solution of its context; give rules conditions that exclude each other",
-    )
+def _joined(one: Token, other: Token) -> bool:
+    """Return whether nothing is between two tokens."""
+    return one.line == other.line and one.end == other.column
 
 
 def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
@@ -148,78 +159,28 @@ def _counting(tokens: Sequence[Token], index: int) -> Slip | None:
     return Slip("wrong-operator", f"unknown operator `{sign}{sign}`", help, run[1])
 
 
-def _missing_blank(tokens: Sequence[Token], index: int) -> Slip | None:
+def _missing_blank(token: Token, before: Token) -> Slip | None:
     """``p.q``: the final dot of a clause and the next word, read as one."""
-    token, before = tokens[index], tokens[max(index - 1, 0)]
-    joined = before.line == token.line and before.end == token.column
-    if joined and token.kind == "atom" and token.text.startswith(".") and before.kind in (")", "]", "atom"):
-        return Slip(
-            "missing-blank",
-            f"`{token.text}` is read as one word",
-            "put a blank or a line end after the final `.`",
-        )
-    return None
-
-
-def _foreign_word(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``a and b``, ``X is 1``, ``if (c) then``."""
-    token = tokens[index]
-    if index == 0 or token.kind != "atom" or token.text not in _WORDS:
+    is_word = token.kind == "atom" and token.text.startswith(".")
+    if not is_word or not _joined(before, token) or before.kind not in (")", "]", "atom"):
         return None
-    if tokens[index - 1].kind not in _ENDS_OPERAND:
-        return None
-    return Slip("foreign-word", f"unknown keyword `{token.text}`", _WORDS[token.text])
+    help = "put a blank or a line end after the final `.`"
+    return Slip("missing-blank", f"`{token.text}` is read as one word", help)
 
 
-def _python(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``def go(): pass`` in place of a clause."""
-    before = tokens[index - 1] if index else None
-    if before is None or before.text not in _PYTHON or tokens[index].kind not in ("atom", "variable"):
-        return None
-    if index > 1 and tokens[index - 2].kind not in (".", "}"):
-        return None
-    help = "this is an agent program; put Python code into a .py file, such as artifacts.py"
-    return Slip("foreign-word", f"Python keyword `{before.text}` in an agent program", help, before)
-
-
-def _open_block(tokens: Sequence[Token], index: int) -> Slip | None:
-    """``if (c) { a else { b }``."""
-    if tokens[index].kind not in ("else", "elif"):
-        return None
-    depth = 0
-    for token in reversed(tokens[:index]):
-        depth += (token.kind == "}") - (token.kind == "{")
-        if depth < 0:
-            word = tokens[index].text
-            help = f"close the block that was opened at line {token.line}, column {token.column}"
-            return Slip("unclosed-bracket", f"missing `}}` before `{word}`", help)
-        if token.kind == ".":
-            break
-    return None
-
-
-def _misspelt(tokens: Sequence[Token], index: int) -> Slip | None:
-    token = tokens[index]
-    if index == 0:
-        return None
-    before = tokens[index - 1]
+def _misspelt(tokens: Sequence[Token], index: int, before: Token) -> Slip | None:
+    token, behind = tokens[index], tokens[min(index + 1, len(tokens) - 1)]
     if token.kind == "{":
-        if before.kind == ")":
-            return _meant(tokens[max(_opening(tokens, index - 1) - 1, 0)], _CONTROL)
-        return _meant(before, ("else",))
+        word = tokens[max(_opening(tokens, index - 1) - 1, 0)] if before.kind == ")" else before
+        return _meant(word, _CONTROL if before.kind == ")" else ("else",))
     if before.kind == "atom" and token.kind in ("atom", "variable", "~") and before.line == token.line:
         slip = _meant(before, ("not",))
         if slip is not None:
             return slip
-    if (
-        token.kind == "atom"
-        and before.kind in _ENDS_OPERAND
-        and tokens[index + 1 : index + 2]
-        and tokens[index + 1].kind in _BEGINS_OPERAND
-        and tokens[index + 1].line == token.line
-    ):
-        return _meant(token, [word for word in symbols_of(ARITHMETIC) if word in WORDS])
-    return None
+    between = before.kind in _ENDS_OPERAND and behind.kind in _BEGINS_OPERAND and behind.line == token.line
+    if token.kind != "atom" or not between:
+        return None
+    return _meant(token, [word for word in symbols_of(ARITHMETIC) if word in WORDS])
 
 
 def _meant(word: Token, wanted: Sequence[str]) -> Slip | None:

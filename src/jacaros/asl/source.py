@@ -1,4 +1,9 @@
-"""Source files and positions in them."""
+r"""Source files and positions in them.
+
+>>> file = SourceFile("robot.asl", "at(home).\nat(dock).")
+>>> file.lines[1]
+'at(dock).'
+"""
 
 from dataclasses import dataclass, field
 from functools import cached_property

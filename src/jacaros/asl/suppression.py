@@ -5,13 +5,18 @@
     // jacaros: ignore-file singleton-variable, missing-context   for the file
 
 Errors cannot be switched off. Text after ``(`` is a comment for the reader.
+
+>>> text = "p(X) :- q.   // jacaros: ignore singleton-variable"
+>>> file = SourceFile("robot.asl", text)
+>>> list(wanted([problem("singleton-variable", "variable `X`", Span(file, 1, 3, 1, 4))]))
+[]
 """
 
 import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from jacaros.asl.diagnostics import KINDS, Diagnostic
+from jacaros.asl.diagnostics import KINDS, Diagnostic, problem
 from jacaros.asl.lexer import Comment, Token, tokenize
 from jacaros.asl.source import SourceFile, Span
 
@@ -39,7 +44,7 @@ class Suppressions:
         codes = frozenset(_CODE.findall(order["codes"]))
         for code in sorted(codes - KINDS.keys()):
             span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
-            self.unknown.append(Diagnostic("warning", f"unknown code `{code}`", span, None, "unknown-code"))
+            self.unknown.append(problem("unknown-code", f"unknown code `{code}`", span))
         if order["file"]:
             self._everywhere |= codes
         else:

@@ -1,17 +1,68 @@
-"""Parse terms and conditions: expressions with their operators."""
+"""Parse terms and conditions: expressions with their operators, literals, variables, lists and annotations.
 
-from abc import abstractmethod
+Literals get their namespaces here.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.lexer import Token
-from jacaros.asl.literal_parser import LiteralParser
-from jacaros.asl.source import Span
+from jacaros.asl.cursor import Cursor, Names
+from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.lexer import Token, tokenize
+from jacaros.asl.source import SourceFile, Span
 from jacaros.suggestions import close_matches, did_you_mean
 from jacaros.terms.functions import ARITIES
 from jacaros.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
 from jacaros.terms.text import unquoted
 from jacaros.terms.values import ARITHMETIC, RELATION, number
+
+DEFAULT_NAMESPACE: Final = "default"
+THIS_NAMESPACE: Final = "this_ns"
+"""The namespace of the module: that of the block, or the one that the module is included into."""
+
+PERFORMATIVES: Final = (
+    *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
+    *("tellHow", "untellHow", "signal"),
+)
+KEYWORDS: Final = {
+    *("true", "false", DEFAULT_NAMESPACE, THIS_NAMESPACE, "source", "self", "percept"),
+    *("atomic", "breakpoint", "all_unifs", *PERFORMATIVES),
+}
+"""Names that stay in the default namespace wherever they are written."""
+
+
+@dataclass
+class Namespaces:
+    """The current namespace (None: the default one) and the unique names of local namespaces.
+
+    Attributes:
+        in_term: the parser is inside an argument. Literals there, also those of plans in braces, stay in the
+            default namespace.
+    """
+
+    current: str | None = None
+    local: dict[str, str] = field(default_factory=dict)
+    in_term: bool = False
+
+    def resolve(self, written: str) -> str | None:
+        """Return the namespace that *written* names here, resolving ``default`` and ``this_ns``."""
+        if written == DEFAULT_NAMESPACE:
+            return None
+        if written == THIS_NAMESPACE:
+            return self.current
+        return self.local.get(written, written)
+
+    def of_literal(self, functor: str) -> str | None:
+        """Return the namespace of a belief, goal or condition that is written without one."""
+        return None if self.in_term or functor in KEYWORDS else self.current
+
+
+_UNSET: Final = "(unset)"
+"""Marks that no namespace is written; compared by identity."""
+
 
 MAX_CHAIN: Final = 250
 """Maximum number of operators in a row: each adds a level of recursion for code that walks the term."""
@@ -21,8 +72,19 @@ _MOST_DIGITS: Final = 400
 _NUMERIC: Final = (nodes.Number, nodes.Variable, nodes.Arithmetic, nodes.FunctionCall)
 
 
-class TermParser(LiteralParser):
-    """Parse terms; the plan parser reads what is in braces (plans, bodies, rules)."""
+class TermParser(Cursor, ABC):
+    """Parse terms and conditions; the plan parser reads what is in braces (plans, bodies, rules).
+
+    *formula* marks a literal as a condition, which belongs to the namespace of the block. Literals that are
+    arguments or operands of relations stay in the default namespace.
+    """
+
+    def __init__(self, file: SourceFile, names: Names, diagnostics: list[Diagnostic]) -> None:
+        super().__init__(file, tokenize(file, diagnostics.append), diagnostics)
+        self.names = names
+        self.namespaces = Namespaces()
+        # The last condition that got a namespace: undone if it turns out to be an operand of a relation.
+        self._placed: nodes.Term | None = None
 
     @abstractmethod
     def braces(self) -> nodes.Term:
@@ -63,20 +125,11 @@ class TermParser(LiteralParser):
         """Parse an element of a list or an annotation: formulae need brackets, as ``|`` begins the tail."""
         start = self.token
         element = self.expression(SUM)
+        wrong = "formula-in-list", "expected brackets around a formula in a list"
         if isinstance(element, nodes.Not) and start.kind == "not":
-            self.report(
-                "formula-in-list",
-                "expected brackets around a formula in a list",
-                element.span,
-                "write `[(not a)]`",
-            )
+            self.report(*wrong, element.span, "write `[(not a)]`")
         elif self.token.kind in BINARY and self.token.kind != "|":
-            self.report(
-                "formula-in-list",
-                "expected brackets around a formula in a list",
-                self.span_of(self.token),
-                "write `[(X < 2)]`",
-            )
+            self.report(*wrong, self.span_of(self.token), "write `[(X < 2)]`")
             self.advance()
             self.expression(AND)
         return element
@@ -198,6 +251,203 @@ class TermParser(LiteralParser):
             first = parts.pop()
             result = nodes.CONNECTIVES[found.symbol](first, result, span=_across(first, result))
         return result
+
+    # literals and variables
+
+    def literal(self, formula: bool = False) -> nodes.Term:
+        """Parse a literal, or the internal action or arithmetic function that a name with a dot denotes."""
+        start = self.token
+        namespace = self._namespace()
+        negated = self.accept("~")
+        if negated and namespace is _UNSET:
+            namespace = self._namespace()
+        token = self.token
+        if token.kind == "variable":
+            return self._variable(start, namespace, negated, formula)
+        if token.kind != "atom":
+            self.unexpected("a name")
+        self.advance()
+        functor = token.text
+        arguments = self._arguments()
+        if "." in functor and functor[0] != "'":
+            return self._dotted(start, functor, arguments, negated or namespace is not _UNSET)
+        annotations = self._annotations()
+        placed = formula and namespace is _UNSET
+        if namespace is _UNSET:
+            namespace = self.namespaces.of_literal(functor) if formula else None
+        span = self.span_from(start)
+        literal = nodes.Literal(functor, arguments, negated, annotations, namespace, span=span)
+        self._placed = literal if placed else None
+        return literal
+
+    def _dotted(
+        self, start: Token, name: str, arguments: tuple[nodes.Term, ...], prefixed: bool
+    ) -> nodes.InternalAction | nodes.FunctionCall:
+        if prefixed:
+            self.report(
+                "prefixed-action",
+                f"internal action `{name}` cannot be negated with `~` or put into a namespace",
+                self.span_from(start),
+                "to ask whether it does not hold, write `not`",
+            )
+        if self.token.kind == "[":
+            self.report(
+                "annotated-action",
+                f"internal action `{name}` cannot have annotations",
+                help="if the `.` ends a plan, put a blank after it"
+                if name[0] == "." and start.first
+                else None,
+            )
+            self._annotations()
+        span = self.span_from(start)
+        if self.names.is_function(name, len(arguments)):
+            return nodes.FunctionCall(name, arguments, span=span)
+        return nodes.InternalAction(name, arguments, span=span)
+
+    def variable(self, formula: bool = False) -> nodes.Term:
+        """Parse a variable, or a literal whose namespace is a variable (``N::p``)."""
+        if self.peek().kind == "::":
+            return self.literal(formula)
+        return self._variable(self.token, _UNSET, False, formula)
+
+    def _variable(
+        self, start: Token, namespace: "str | nodes.Variable | None", negated: bool, formula: bool
+    ) -> nodes.Variable:
+        token = self.advance()
+        if self.token.kind == "(" and self.token.line == token.line and self.token.column == token.end:
+            name = token.text.lstrip("_")
+            self.report(
+                "upper-case-functor",
+                f"variable `{token.text}` cannot have arguments",
+                self.span_of(token),
+                f"begin names of beliefs, goals and actions with a lower-case letter: `{name[:1].lower()}{name[1:]}(...)`",
+            )
+            self._arguments()
+        name, unnamed = self._variable_name(token.text)
+        annotations = self._annotations()
+        if namespace is _UNSET:
+            namespace = None
+        return nodes.Variable(name, annotations, namespace, negated, unnamed, span=self.span_from(start))
+
+    def _variable_name(self, text: str) -> tuple[str, bool]:
+        """Return the name, and whether the variable is unnamed; ``_12Any`` is the variable named ``_12``."""
+        if text[0] != "_":
+            return text, False
+        digits = len(text) - 1 - len(text[1:].lstrip("0123456789"))
+        if digits:
+            return text[: digits + 1], False
+        return f"_{next(self.names.unnamed)}", True
+
+    def _namespace(self) -> "str | nodes.Variable | None":
+        """Parse a namespace prefix; return `_UNSET` without one."""
+        token = self.token
+        if token.kind == "::":
+            self.advance()
+            return self.namespaces.current
+        if self.peek().kind != "::" or token.kind not in ("atom", "variable"):
+            return _UNSET
+        self.advance()
+        self.advance()
+        if token.kind == "atom":
+            return self.namespaces.resolve(token.text)
+        name, unnamed = self._variable_name(token.text)
+        return nodes.Variable(name, unnamed=unnamed, span=self.span_of(token))
+
+    def _arguments(self) -> tuple[nodes.Term, ...]:
+        if self.token.kind != "(":
+            return ()
+        opener = self.advance()
+        if self.token.kind == ")":
+            self.forgive(
+                "empty-brackets",
+                "empty brackets",
+                self.span_of(opener),
+                "write `p`, not `p()`",
+            )
+            self.advance()
+            return ()
+        outside = self._enter_term()
+        arguments = [self._named(self.expression())]
+        while self.accept(","):
+            arguments.append(self._named(self.expression()))
+        self._leave_term(outside)
+        self.close(opener)
+        return tuple(arguments)
+
+    def _named(self, term: nodes.Term) -> nodes.Term:
+        """Replace the atom ``this_ns`` by the name of the namespace of the module.
+
+        As in Jason, only where it is an argument or an element, not in ``X = this_ns``.
+        """
+        if isinstance(term, nodes.Literal) and term.functor == THIS_NAMESPACE and not term.arguments:
+            return nodes.replace(term, functor=self.namespaces.current or DEFAULT_NAMESPACE)
+        return term
+
+    def _enter_term(self) -> bool:
+        """Mark the following tokens as part of a term; return whether they already were."""
+        self.enter()
+        outside, self.namespaces.in_term = self.namespaces.in_term, True
+        return outside
+
+    def _leave_term(self, outside: bool) -> None:
+        self.leave()
+        self.namespaces.in_term = outside
+
+    def begin_clause(self) -> None:
+        """Start a clause at the outermost level."""
+        super().begin_clause()
+        self.namespaces.in_term = False
+
+    # lists and annotations
+
+    def list_term(self) -> nodes.ListTerm:
+        """Parse ``[a, b | T]``."""
+        start = self.token
+        wanted = "expected a variable or a list as the tail of a list", "write `[H|T]` or `[a|[b,c]]`"
+        items, tail = self._elements(self.element, *wanted)
+        return nodes.ListTerm(items, tail, span=self.span_from(start))
+
+    def _annotations(self) -> nodes.Annotations | None:
+        if self.token.kind != "[":
+            return None
+        start = self.token
+        wanted = "expected a variable as the tail of annotations", "write `p(X)[source(S)|R]`"
+        items, tail = self._elements(self._annotation, *wanted)
+        if not items and tail is None:
+            return None
+        return nodes.Annotations(items, tail, span=self.span_from(start))
+
+    def _annotation(self) -> nodes.Term:
+        """Parse an annotation: an element, or ``while(Condition)`` of a label."""
+        start = self.token
+        if start.kind != "while" or self.peek().kind != "(":
+            return self.element()
+        self.advance()
+        return nodes.Literal("while", self._arguments(), span=self.span_from(start))
+
+    def _elements(
+        self, element: Callable[[], nodes.Term], wanted: str, help: str
+    ) -> tuple[tuple[nodes.Term, ...], nodes.Variable | None]:
+        """Parse the elements and the tail of bracketed contents; a tail that is a list is spliced in."""
+        opener = self.advance()
+        items: list[nodes.Term] = []
+        tail: nodes.Term | None = None
+        outside = self._enter_term()
+        if self.token.kind not in ("]", "|"):
+            items.append(self._named(element()))
+            while self.accept(","):
+                items.append(self._named(element()))
+        if self.accept("|"):
+            tail = self.operand()
+            if isinstance(tail, nodes.ListTerm):
+                items.extend(tail.items)
+                tail = tail.tail
+        self._leave_term(outside)
+        self.close(opener)
+        if tail is None or isinstance(tail, nodes.Variable):
+            return tuple(items), tail
+        self.report("wrong-tail", wanted, tail.span, help)
+        return tuple(items), None
 
 
 def _across(left: nodes.Term, right: nodes.Term) -> Span | None:

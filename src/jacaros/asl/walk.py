@@ -1,7 +1,15 @@
-"""Walk syntax trees: their nodes, variables and shape."""
+"""Walk syntax trees: their nodes, variables and shape.
 
-from collections.abc import Iterator
-from typing import TypeVar
+>>> from jacaros.asl.loader import parse_term
+>>> names_in(parse_term("f(X, g(Y), X)"))
+['X', 'Y']
+>>> is_ground(parse_term("f(a)"))
+True
+"""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
 
 from jacaros.asl import nodes
 
@@ -16,6 +24,20 @@ def walk(*roots: object) -> Iterator[nodes.Node]:
         elif isinstance(part, nodes.Node):
             yield part
             stack.extend(reversed(part.parts()))
+
+
+def rebuilt(node: Any, change: Callable[[nodes.Node], Any]) -> Any:
+    """Return a copy of a tree with *change* applied to each node, to the inner ones first."""
+    if isinstance(node, tuple):
+        return tuple([rebuilt(part, change) for part in node])
+    if not isinstance(node, nodes.Node):
+        return node
+    return change(type(node)(*[rebuilt(part, change) for part in node.parts()], span=node.span))
+
+
+def is_ground(node: object) -> bool:
+    """Return whether there is no variable in a piece of syntax."""
+    return next(variables_in(node), None) is None
 
 
 def children(node: nodes.Node) -> Iterator[nodes.Node]:
@@ -50,6 +72,17 @@ def occurrences(*parts: object) -> dict[str, int]:
             if not variable.unnamed:
                 counts[variable.name] = counts.get(variable.name, 0) + 1
     return counts
+
+
+def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
+    """Yield the conditions that *formula* joins by ``&``, ``|`` and ``not``, in source order."""
+    stack = [formula]
+    while stack:
+        term = stack.pop()
+        if isinstance(term, nodes.Connective):
+            stack += reversed(term.operands)
+        else:
+            yield term
 
 
 Kind = TypeVar("Kind", bound=nodes.Node)
@@ -88,3 +121,16 @@ def shape(node: object, names: dict[str, int] | None = None) -> object:
     if isinstance(node, nodes.Node):
         return (type(node).__name__, *[shape(part, names) for part in node.parts()])
     return node
+
+
+class ByKind:
+    """All nodes of pieces of syntax by their kind, collected in one walk."""
+
+    def __init__(self, *roots: object) -> None:
+        self._nodes: defaultdict[type, list[Any]] = defaultdict(list)
+        for node in walk(*roots):
+            self._nodes[type(node)].append(node)
+
+    def of(self, *kinds: type[Kind]) -> list[Kind]:
+        """Return the nodes of these kinds, in order for each kind."""
+        return [node for kind in kinds for node in self._nodes[kind]]

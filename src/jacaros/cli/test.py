@@ -92,11 +92,6 @@ MOST_NAMES = 8
     help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
 )
 @click.option(
-    "--shared",
-    is_flag=True,
-    help="Run all tests of a file in one run, as Jason does (default: a separate run for each test).",
-)
-@click.option(
     "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the results to FILE as JUnit XML."
 )
 @click.option(

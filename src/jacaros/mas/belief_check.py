@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
-from jacaros.asl.checks.formulas import parts_of
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import Slips, is_slip_of
+from jacaros.asl.walk import parts_of
 from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.suggestions import did_you_mean
 from jacaros.text_files import file_bytes

@@ -8,7 +8,7 @@ from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import clauses as clauses_of
 from jacaros.asl.checks.needs import needs_of
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import ByKind
 from jacaros.env.resources.resource import local_name, read_uses
 from jacaros.suggestions import close_matches, did_you_mean
 
@@ -25,7 +25,7 @@ def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifac
     known = sorted(set(_used_by(types)))
     if not known:
         return
-    found = [each for program in programs for each in needs_of(list(walk(*clauses_of(program))))]
+    found = [each for program in programs for each in needs_of(ByKind(*clauses_of(program)))]
     counts = Counter(name for name, _ in found)
     for name, item in found:
         if local_name(name) in known:

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import conditions, parts_of
+from jacaros.asl.checks.formulas import conditions
 from jacaros.asl.lexer import Comment, tokenize
 from jacaros.asl.source import SourceFile
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import parts_of, walk
 from jacaros.metrics.comments import Stretch, line_starts
 
 

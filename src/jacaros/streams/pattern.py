@@ -7,7 +7,7 @@ from collections import deque
 from typing import Any
 
 from jacaros.streams.operator import Emit, Operator, Values
-from jacaros.streams.schema import Spec, make
+from jacaros.streams.schema import OPERATORS, Spec
 
 _DATA = (bool, int, float, str, tuple, list, deque, type(None))
 
@@ -32,7 +32,7 @@ class Pattern:
 
     def __init__(self, spec: Spec, start: float, emit: Emit) -> None:
         self.spec = spec
-        self._operator = make(spec, emit)
+        self._operator = OPERATORS[spec.operator].make(spec, emit)
         self._start, self._lateness = start, spec.lateness if self._operator.ordered else 0.0
         self._mark = 0.0
         self._early: list[tuple[float, int, int, Values | None]] = []

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
     from jacaros.testing.run import RunResult, run_project
     from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
-    from jacaros.testing.trial import TrialOptions, run_suite, run_suites
+    from jacaros.testing.trial import TrialOptions, run_suite
 
 __all__ = [
     "ActionFailed",
@@ -36,7 +36,6 @@ __all__ = [
     "judge",
     "run_project",
     "run_suite",
-    "run_suites",
     "suite_of",
     "write_junit",
 ]
@@ -49,7 +48,7 @@ _MODULES = {
     "recorded": ("ActionFailed", "RecordedAct", "SentMessage"),
     "run": ("RunResult", "run_project"),
     "suites": ("AgentTest", "Suite", "collect", "suite_of"),
-    "trial": ("TrialOptions", "run_suite", "run_suites"),
+    "trial": ("TrialOptions", "run_suite"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 

@@ -15,9 +15,10 @@ from jacaros.bdi.rules.context import Context
 from jacaros.errors import InternalError
 from jacaros.terms.substitution import equal
 from jacaros.terms.text import display, text
-from jacaros.terms.unifier import Trail, undo, unify
+from jacaros.terms.unifier import undo
 from jacaros.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
 from jacaros.testing.probe import Asserting, Probe
+from jacaros.testing.recorded import matches
 
 _SHOWN = 8
 """Number of beliefs or lines shown for a failed assertion."""
@@ -67,13 +68,7 @@ def _holds(ctx: Context, formula: Term) -> bool:
 
 
 def _is_in(item: Term, items: Iterable[Term]) -> bool:
-    trail = Trail()
-    for candidate in items:
-        if unify(item, candidate, trail):
-            undo(trail, 0)
-            return True
-        undo(trail, 0)
-    return False
+    return any(matches(item, candidate) for candidate in items)
 
 
 def _same(expected: Term, actual: Term) -> bool:

@@ -98,11 +98,6 @@ class FakeGraph:
                 listed = f"services that artifacts call: {', '.join(sorted(clients)) or 'none'}"
                 yield f"no artifact calls the service {name} of fake_service; {suggestion(name, sorted(clients), listed)}"
 
-    def forget(self) -> None:
-        """Discard all received messages and requests."""
-        for messages in (*self._heard.values(), *self._asked.values()):
-            messages.clear()
-
     @_graph_errors()
     def hear(self, topic: str, type_name: str) -> None:
         """Subscribe to a topic, which makes its type known to the run."""

@@ -14,6 +14,7 @@ when the test says so::
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from operator import methodcaller
 from pathlib import Path
 from typing import NoReturn
 
@@ -31,13 +32,12 @@ from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.project_modules import ProjectModules
-from jacaros.terms.substitution import rename
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Term
 from jacaros.testing.port import HarnessPort
-from jacaros.testing.recorded import Action, RecordedAct
+from jacaros.testing.recorded import Action, RecordedAct, matches
 from jacaros.text_files import file_text
 
+__tracebackhide__ = methodcaller("errisinstance", AssertionError)
+"""pytest shows a failed assertion where the test makes it, not the functions of this file."""
 _QUANTUM = 50
 _SHOWN = 20
 _LONGEST = 3600.0
@@ -154,7 +154,6 @@ class AgentHarness(OpenMind):
         Raises:
             AssertionError: the agent reached that number of cycles, or did not become idle within an hour of virtual time.
         """
-        __tracebackhide__ = True
         over: list[bool] = []
         end = self._port.clock.call_later(_LONGEST if seconds is None else seconds, lambda: over.append(True))
         while not self._stopped:
@@ -169,7 +168,6 @@ class AgentHarness(OpenMind):
             self._fail("not idle after an hour of virtual time: use run(seconds=...)")
 
     def _reason(self, cycles: int) -> int:
-        __tracebackhide__ = True
         while self.step(_QUANTUM):
             cycles -= _QUANTUM
             if cycles <= 0:
@@ -193,10 +191,9 @@ class AgentHarness(OpenMind):
         Raises:
             AssertionError: no such action is pending.
         """
-        __tracebackhide__ = True
         wanted = literal(pattern)
         pending = [act for act in self.acts if act.pending]
-        found = next((act for act in pending if act.name == pattern or _matches(wanted, act.term)), None)
+        found = next((act for act in pending if act.name == pattern or matches(wanted, act.term)), None)
         if found is None:
             self._fail(f"no pending action {pattern}")
         return found
@@ -205,38 +202,32 @@ class AgentHarness(OpenMind):
 
     def assert_believes(self, *formulae: str) -> None:
         """Assert that each formula holds."""
-        __tracebackhide__ = True
         for formula in formulae:
             self._require(self.believes(formula), f"it does not believe {formula}")
 
     def assert_believes_not(self, *formulae: str) -> None:
         """Assert that none of the formulae holds."""
-        __tracebackhide__ = True
         for formula in formulae:
             self._require(not self.believes(formula), f"it believes {formula}")
 
     def assert_pursues(self, goal: str) -> None:
         """Assert that the agent pursues a matching goal."""
-        __tracebackhide__ = True
         self._require(self._pursues(goal), f"it does not pursue !{goal}")
 
     def assert_pursues_not(self, goal: str) -> None:
         """Assert that the agent pursues no matching goal."""
-        __tracebackhide__ = True
         self._require(not self._pursues(goal), f"it pursues !{goal}")
 
     def _pursues(self, goal: str) -> bool:
         pattern = literal(goal)
-        return any(_matches(pattern, each) for each, _ in goals.desires(self.mind))
+        return any(matches(pattern, each) for each, _ in goals.desires(self.mind))
 
     def assert_idle(self) -> None:
         """Assert that the agent has no goal and nothing to do."""
-        __tracebackhide__ = True
         self._require(not self.goals and self.mind.is_idle(), "it is not idle")
 
     def assert_achieved(self, goal: PursuedGoal) -> None:
         """Assert that a goal given by this test was achieved."""
-        __tracebackhide__ = True
         self._require(goal.achieved, f"not achieved: {goal}")
 
     def assert_failed(self, goal: PursuedGoal, reason: str | None = None) -> None:
@@ -247,47 +238,40 @@ class AgentHarness(OpenMind):
             reason: an annotation of the failure, such as ``error(no_relevant)`` or ``env_failure_reason(blocked(wall))``;
                 None for any.
         """
-        __tracebackhide__ = True
         self._require(goal.failed, f"it did not fail: {goal}")
-        if reason is not None and not any(_matches(literal(reason), each) for each in goal.reasons):
+        if reason is not None and not any(matches(literal(reason), each) for each in goal.reasons):
             self._fail(f"it failed for another reason than {reason}: {goal}")
 
     def assert_printed(self, part: str) -> None:
         """Assert that a printed line contains *part*."""
-        __tracebackhide__ = True
         self._require(any(part in line for line in self.prints), f"it did not print {part!r}")
 
     def assert_printed_not(self, part: str) -> None:
         """Assert that no printed line contains *part*."""
-        __tracebackhide__ = True
         self._require(not any(part in line for line in self.prints), f"it printed {part!r}")
 
     def assert_did(self, *actions: str) -> None:
         """Assert that matching actions were started in this order, possibly with others between them."""
-        __tracebackhide__ = True
         begun = iter(self.acts)
         for action in actions:
             pattern = literal(action)
-            if not any(_matches(pattern, act.term) for act in begun):
+            if not any(matches(pattern, act.term) for act in begun):
                 order = " in this order" if len(actions) > 1 else ""
                 self._fail(f"it did not do {', '.join(actions)}{order}")
 
     def assert_did_not(self, *actions: str) -> None:
         """Assert that no matching action was started."""
-        __tracebackhide__ = True
         for action in actions:
             pattern = literal(action)
-            self._require(not any(_matches(pattern, act.term) for act in self.acts), f"it did {action}")
+            self._require(not any(matches(pattern, act.term) for act in self.acts), f"it did {action}")
 
     def assert_sent(self, receiver: str, performative: str, content: str) -> None:
         """Assert that a message was sent whose content matches."""
-        __tracebackhide__ = True
         if not self._has_sent(receiver, performative, content):
             self._fail(f"it did not send {performative} {content} to {receiver}")
 
     def assert_sent_not(self, receiver: str, performative: str, content: str) -> None:
         """Assert that no such message was sent."""
-        __tracebackhide__ = True
         if self._has_sent(receiver, performative, content):
             self._fail(f"it sent {performative} {content} to {receiver}")
 
@@ -295,7 +279,7 @@ class AgentHarness(OpenMind):
         pattern = lower_value(parse_term(content))
         return any(
             (message.receiver, message.performative) == (receiver, performative)
-            and _matches(pattern, message.term)
+            and matches(pattern, message.term)
             for message in self.sent
         )
 
@@ -317,18 +301,8 @@ class AgentHarness(OpenMind):
         return "\n".join(lines)
 
     def _require(self, holds: bool, message: str) -> None:
-        __tracebackhide__ = True
         if not holds:
             self._fail(message)
 
     def _fail(self, message: str) -> NoReturn:
-        __tracebackhide__ = True
         raise AssertionError(f"{message}\n{self}")
-
-
-def _matches(pattern: Term, term: Term) -> bool:
-    """Return whether a pattern unifies with a term; annotations count only if the pattern has some."""
-    trail = Trail()
-    found = unify(pattern, rename(term), trail)
-    undo(trail, 0)
-    return found

@@ -26,6 +26,14 @@ Complete = Callable[[int, Completion], None]
 Later = Callable[[float, Callable[[], None]], object]
 
 
+def matches(pattern: Term, term: Term) -> bool:
+    """Return whether a pattern unifies with a term; annotations count only if the pattern has some."""
+    trail = Trail()
+    found = unify(pattern, rename(term), trail)
+    undo(trail, 0)
+    return found
+
+
 class ActionFailed(Exception):
     """Raised by a fake action to make the step fail.
 

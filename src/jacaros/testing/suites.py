@@ -22,10 +22,12 @@ from pathlib import Path
 from typing import Final
 
 from jacaros.asl import nodes
+from jacaros.asl.checks.formulas import labelled
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatter import format_term
 from jacaros.asl.loader import load_program, parse_literals
 from jacaros.asl.source import Span
+from jacaros.asl.walk import rebuilt
 from jacaros.errors import JacarosError, UsageError
 from jacaros.excerpts import help_line
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
@@ -231,11 +233,8 @@ def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes
     """
     code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
     code.actions.update(UNTESTED)
-
-    def prepare(program: nodes.Program, code: PythonCode) -> nodes.Program:
-        return with_assertions(program)
-
-    return Programs(deployment.source_paths, warn, code, prepare).load_all(deployment.agents)
+    programs = Programs(deployment.source_paths, warn, code, lambda program, _: with_assertions(program))
+    return programs.load_all(deployment.agents)
 
 
 def _lone(path: Path) -> Deployment:
@@ -250,15 +249,12 @@ def _lone(path: Path) -> Deployment:
 def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> Iterator[AgentTest]:
     known: dict[str, nodes.Plan] = {}
     for plan in program.plans:
-        if next(_marks(plan, "test"), None) is None:
+        if not _marks(plan, "test"):
             continue
         literal = plan.trigger.literal
         if plan.trigger.operator + plan.trigger.kind != "+!" or not isinstance(literal, nodes.Literal):
-            problems.append(
-                Diagnostic(
-                    "error", "a test is a plan for a goal", plan.span, "as in @name[test] +!goal <- ..."
-                )
-            )
+            help = "as in @name[test] +!goal <- ..."
+            problems.append(Diagnostic("error", "a test is a plan for a goal", plan.span, help))
             continue
         goal = nodes.replace(literal, annotations=None)
         signature = _signature(goal)
@@ -273,12 +269,9 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
         yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(plan), mappings)
 
 
-def _marks(plan: nodes.Plan, functor: str) -> Iterator[nodes.Literal]:
-    """Yield the annotations of a plan's label with that functor."""
-    if isinstance(plan.label, nodes.Literal) and plan.label.annotations is not None:
-        for annotation in plan.label.annotations.items:
-            if isinstance(annotation, nodes.Literal) and annotation.functor == functor:
-                yield annotation
+def _marks(plan: nodes.Plan, functor: str) -> list[nodes.Literal]:
+    """Return the annotations of a plan's label with that functor."""
+    return [annotation for annotation in labelled(plan) if annotation.functor == functor]
 
 
 def _timeout(plan: nodes.Plan) -> float | None:
@@ -314,12 +307,7 @@ def _name(plan: nodes.Plan, goal: nodes.Literal) -> str:
 
 def _signature(goal: nodes.Literal) -> str:
     """Return the goal as text, with all variables written alike."""
+    return format_term(rebuilt(goal, lambda node: _ANY if isinstance(node, nodes.Variable) else node))
 
-    def plain(term: nodes.Term) -> nodes.Term:
-        if isinstance(term, nodes.Variable):
-            return nodes.Variable("_")
-        if isinstance(term, nodes.Literal):
-            return nodes.replace(term, arguments=tuple(map(plain, term.arguments)))
-        return term
 
-    return format_term(plain(goal))
+_ANY: Final = nodes.Variable("_")

@@ -32,7 +32,7 @@ from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.terms.text import text
 from jacaros.testing.assertions import actions
-from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome
+from jacaros.testing.outcomes import Outcome, Problem
 from jacaros.testing.probe import Assertion, Probe
 from jacaros.testing.recorded import Fakes
 from jacaros.testing.suites import AgentTest, Suite, with_assertions
@@ -55,7 +55,6 @@ class TrialOptions(RunOptions):
         cycles: reasoning cycles of all agents together after which a test fails.
         patience: seconds of real time after which a test fails; 0 for no limit. Works only in the main thread, on POSIX
             systems.
-        shared: run all tests of a file in one system, in turn, as Jason does.
     """
 
     fast: bool = True
@@ -63,7 +62,6 @@ class TrialOptions(RunOptions):
     timeout: float = 60.0
     cycles: int = 1_000_000
     patience: float = 300.0
-    shared: bool = False
 
 
 def run_suite(
@@ -79,26 +77,17 @@ def run_suite(
     """
     options = options or TrialOptions()
     options.check()
-    tests = [test for test in suite.tests if chosen(test)]
-    if suite.error is not None or not tests:
-        return
-    for together in [tests] if options.shared else [[test] for test in tests]:
-        yield from _outcomes(suite, together, options)
+    if suite.error is None:
+        for test in suite.tests:
+            if chosen(test):
+                yield _outcome(suite, test, options)
 
 
-def _outcomes(suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> list[Outcome]:
-    """Run tests in one system."""
+def _outcome(suite: Suite, test: AgentTest, options: TrialOptions) -> Outcome:
     try:
-        trial = Trial(suite, tests, options)
+        return Trial(suite, test, options).run()
     except ProjectError as wrong:
-        problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), tests[0].span)
-        return [Outcome(test, problems=[problem]) for test in tests]
-    return trial.run()
-
-
-def run_suites(suites: Sequence[Suite], options: TrialOptions | None = None) -> list[SuiteOutcome]:
-    """Run the tests of several files."""
-    return [SuiteOutcome(suite, list(run_suite(suite, options))) for suite in suites]
+        return Outcome(test, [Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)])
 
 
 class TookTooLong(BaseException):
@@ -106,28 +95,25 @@ class TookTooLong(BaseException):
 
 
 class Trial:
-    """A run of one system for one test or, in turn, for several."""
+    """A run of one system for one test."""
 
-    def __init__(self, suite: Suite, tests: Sequence[AgentTest], options: TrialOptions) -> None:
+    def __init__(self, suite: Suite, test: AgentTest, options: TrialOptions) -> None:
         assert suite.deployment is not None
         self._warnings = frozenset(suite.warnings)
         self._options = options
-        self._outcomes = [Outcome(test) for test in tests]
-        self._number = -1
+        self._outcome = Outcome(test)
         self._goal: WatchedGoal | None = None
         self._done = False
         self._lingers = False
         self._cycles = 0
         self._began = self._began_run = 0.0
-        self._timers: list[Any] = []
         self._probes: dict[str, Probe] = {}
         self._actions = actions(self._probes)
-        clock_class = _MeteredVirtualClock if options.fast else _MeteredWallClock
-        self._clock: Clock = clock_class(self._busy)
+        clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
+        clock.on_busy = self._busy
+        self._clock: Clock = clock
         self._others: FakeGraph | None = None
-        self._mappings = tuple(
-            dict.fromkeys((*options.mappings, *(name for test in tests for name in test.mappings)))
-        )
+        self._mappings = tuple(dict.fromkeys((*options.mappings, *test.mappings)))
         self._mas = self._system(suite.deployment)
 
     def _system(self, deployment: Deployment) -> System:
@@ -150,14 +136,14 @@ class Trial:
         code.actions.update(self._actions)
         return with_assertions(program)
 
-    def run(self) -> list[Outcome]:
-        """Run the tests; return their outcomes in order.
+    def run(self) -> Outcome:
+        """Run the test.
 
         Raises:
             InternalError: JaCaROS has a defect.
         """
         try:
-            with _patience(self._options.patience * len(self._outcomes)):
+            with _patience(self._options.patience):
                 run(self._main, self._clock)
         except TookTooLong:
             self._hangs()
@@ -166,34 +152,20 @@ class Trial:
         except JacarosError as wrong:
             self._end_run(Problem("cannot start the system", tuple(str(wrong).splitlines())))
         self._end_run(Problem("the program ended the run (.stopMAS) before the test ended"))
-        return self._outcomes
+        return self._outcome
 
     async def _main(self) -> None:
         asyncio.get_running_loop().set_exception_handler(self._escaped)
-        await self._mas.run(self._next)
+        await self._mas.run(self._start)
 
-    # ---- tests in turn
-
-    @property
-    def _outcome(self) -> Outcome:
-        return self._outcomes[max(self._number, 0)]
-
-    def _next(self) -> None:
-        """Start the next test, or end the run."""
-        for timer in self._timers:
-            timer.cancel()
-        if self._number + 1 == len(self._outcomes):
-            self._done = True
-            self._mas.end(0)
-            return
-        self._number += 1
+    def _start(self) -> None:
+        """Post the goal of the test."""
         test = self._outcome.test
-        self._forget_messages()
-        self._lingers = False
-        self._cycles = 0
+        if self._mappings:
+            self._others_in_graph()
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
-        self._timers = [self._clock.call_later(limit, lambda: self._timed_out(limit))]
+        self._clock.call_later(limit, lambda: self._timed_out(limit))
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
             self._fail(
@@ -201,13 +173,6 @@ class Trial:
             )
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
-
-    def _forget_messages(self) -> None:
-        """Discard messages published before this test."""
-        if self._others is not None:
-            self._others.forget()
-        elif self._mappings:
-            self._others_in_graph()
 
     def _others_in_graph(self) -> "FakeGraph":
         """Return the rest of the ROS graph, created on first use."""
@@ -225,17 +190,20 @@ class Trial:
             return
         self._lingers = True
         self._cycles = 0
-        self._timers.append(self._clock.call_later(LINGER_SECONDS, self._finish))
+        self._clock.call_later(LINGER_SECONDS, self._finish)
 
     def _finish(self) -> None:
-        """End the test."""
+        """End the test, unless it has ended."""
+        if self._done:
+            return
         if self._others is not None and not self._outcome.problems:
             span = self._outcome.test.span
             self._outcome.problems += [
                 Problem(each, (), span) for each in self._others.services_without_clients()
             ]
         self._note_times()
-        self._next()
+        self._done = True
+        self._mas.end(0)
 
     def _note_times(self) -> None:
         self._outcome.seconds = time.perf_counter() - self._began
@@ -246,7 +214,7 @@ class Trial:
         self._finish()
 
     def _end_run(self, problem: Problem) -> None:
-        """Handle an early end of the run: a problem of the current test and of those not yet started."""
+        """Handle an early end of the run."""
         if self._done:
             return
         self._done = True
@@ -254,22 +222,19 @@ class Trial:
             self._outcome.problems.append(problem)
         if self._began:
             self._note_times()
-        for outcome in self._outcomes[max(self._number, 0) + 1 :]:
-            outcome.problems.append(Problem("the test was not started: the run had ended"))
 
     # ---- limits
 
     def _timed_out(self, limit: float) -> None:
         if self._lingers:
             self._finish()
-            return
-        problem = f"the test did not end within {limit:g} s of the run's clock"
-        self._give_up(problem)
+        elif not self._done:
+            self._give_up(f"the test did not end within {limit:g} s of the run's clock")
 
     def _busy(self, cycles: int) -> None:
         """Count reasoning cycles."""
         self._cycles += cycles
-        if self._done or self._number < 0:
+        if self._done or not self._began:
             return
         if self._lingers:
             if self._cycles > LINGER_CYCLES:
@@ -384,27 +349,22 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
 
 
-class _MeteredVirtualClock(VirtualClock):
-    """A virtual clock that reports reasoning cycles."""
+class _Metered:
+    """A clock that reports reasoning cycles."""
 
-    def __init__(self, on_busy: Callable[[int], None]) -> None:
-        super().__init__()
-        self._on_busy = on_busy
+    on_busy: Callable[[int], None]
 
     def busy(self, cycles: int) -> None:
-        super().busy(cycles)
-        self._on_busy(cycles)
+        super().busy(cycles)  # type: ignore[misc]
+        self.on_busy(cycles)
 
 
-class _MeteredWallClock(WallClock):
-    """A wall clock that reports reasoning cycles."""
+class _MeteredVirtualClock(_Metered, VirtualClock):
+    pass
 
-    def __init__(self, on_busy: Callable[[int], None]) -> None:
-        super().__init__()
-        self._on_busy = on_busy
 
-    def busy(self, cycles: int) -> None:
-        self._on_busy(cycles)
+class _MeteredWallClock(_Metered, WallClock):
+    pass
 
 
 @contextmanager

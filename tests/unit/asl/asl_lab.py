@@ -3,7 +3,7 @@
 from jacaros.asl import nodes
 from jacaros.asl.diagnostics import AslError, Diagnostic
 from jacaros.asl.formatter import format_plan, format_term
-from jacaros.asl.loader import load_program
+from jacaros.asl.loader import load_program, parse_plans
 
 
 def program(text: str, files: dict[str, str] | None = None) -> nodes.Program:
@@ -44,3 +44,9 @@ def plan_texts(text: str, files: dict[str, str] | None = None) -> list[str]:
 def belief_texts(text: str, files: dict[str, str] | None = None) -> list[str]:
     """The beliefs and rules of a program as text."""
     return [format_term(belief) for belief in program(text, files).beliefs]
+
+
+def parse_plan(text: str, functions: dict[str, int] | None = None) -> nodes.Plan:
+    """Parse the one plan in *text*."""
+    (plan,) = parse_plans(text, functions)
+    return plan

@@ -4,12 +4,13 @@ import re
 from pathlib import Path
 
 import pytest
+from asl_lab import parse_plan
 
 from jacaros.asl.checker import check
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.formatter import format_plan
-from jacaros.asl.loader import load_program, parse_plan
+from jacaros.asl.loader import load_program
 
 TESTS = Path(__file__).parents[2]
 PROGRAMS = sorted(

@@ -1,9 +1,9 @@
 """Control statements that are written as internal actions."""
 
 import pytest
+from asl_lab import parse_plan
 
 from jacaros.asl import nodes
-from jacaros.asl.loader import parse_plan
 
 
 def step(text: str) -> object:

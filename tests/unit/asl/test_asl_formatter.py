@@ -1,10 +1,11 @@
 """The tree as text."""
 
 import pytest
+from asl_lab import parse_plan
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_body, format_plan, format_term
-from jacaros.asl.loader import parse_plan, parse_term
+from jacaros.asl.loader import parse_term
 
 TERMS = [
     "p",

@@ -4,12 +4,12 @@ import pytest
 
 from jacaros.asl.checks.needs import wrong_needs
 from jacaros.asl.loader import load_program
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import ByKind
 
 
 def told(program: str) -> list[tuple[str, str | None]]:
     read, _ = load_program("test.asl", program)
-    return [(each.message, each.help) for each in wrong_needs(list(walk(*read.plans)))]
+    return [(each.message, each.help) for each in wrong_needs(ByKind(*read.plans))]
 
 
 @pytest.mark.parametrize(

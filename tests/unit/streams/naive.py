@@ -40,49 +40,9 @@ def _latest_start(steps: list[int], events: Sequence[Event], time: float) -> flo
     return max(starts, default=-math.inf)
 
 
-def _window(spec: Spec, past: Sequence[Event], end: float) -> list[tuple[float, float]]:
-    within = spec.options["within"]
-    return [
-        (time, float(values[spec.place]))  # type: ignore[arg-type]
-        for _, time, values in past
-        if values is not None and end - within < time <= end
-    ]
-
-
-def _limited(spec: Spec, value: float | None) -> Values | None:
-    if value is None:
-        return None
-    above, below = spec.options.get("above"), spec.options.get("below")
-    if above is None and below is None:
-        return (value,)
-    return () if (above is None or value > above) and (below is None or value < below) else None
-
-
-def _aggregate(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    newest = max((time for _, time, values in past if values is not None), default=-math.inf)
-    if newest + spec.options["within"] <= now:
-        return None
-    window = _window(spec, past, newest)
-    numbers = [value for _, value in window]
-    if spec.operator == "slope":
-        return _limited(spec, _slope(window))
-    made = {
-        "mean": lambda: sum(numbers) / len(numbers),
-        "min": lambda: min(numbers),
-        "max": lambda: max(numbers),
-    }
-    return _limited(spec, made[spec.operator]())
-
-
-def _slope(window: list[tuple[float, float]]) -> float | None:
-    t_mean = sum(t for t, _ in window) / len(window)
-    v_mean = sum(v for _, v in window) / len(window)
-    spread = sum((t - t_mean) ** 2 for t, _ in window)
-    return sum((t - t_mean) * (v - v_mean) for t, v in window) / spread if spread > 1e-9 else None
-
-
 def _count(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
-    count = len(_window(spec, past, now))
+    within = spec.options["within"]
+    count = sum(values is not None and now - within < time <= now for _, time, values in past)
     wanted = spec.options.get("at_least")
     if wanted is not None:
         return () if count >= wanted else None
@@ -134,7 +94,6 @@ def _absent(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
 
 
 _STATES = {
-    **dict.fromkeys(("mean", "min", "max", "slope"), _aggregate),
     "count": _count,
     "hysteresis": _hysteresis,
     "held": _held,

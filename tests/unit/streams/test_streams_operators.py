@@ -20,13 +20,8 @@ STEP = 0.25
 STATES = [
     Spec("count", ("a",), {"within": 2.0}),
     Spec("count", ("a",), {"within": 2.0, "at_least": 3}),
-    Spec("mean", ("a",), {"within": 3.0}),
-    Spec("mean", ("a",), {"within": 3.0, "above": 2.0}),
-    Spec("min", ("a",), {"within": 2.5}),
-    Spec("max", ("a",), {"within": 2.5}, 1),
-    Spec("slope", ("a",), {"within": 4.0}),
     Spec("hysteresis", ("a",), {"on_above": 3.0, "off_below": 1.0}),
-    Spec("hysteresis", ("a",), {"on_below": 1.0, "off_above": 3.0}),
+    Spec("hysteresis", ("a",), {"on_below": 1.0, "off_above": 3.0}, 1),
     Spec("held", ("a",), {"for": 1.5, "above": 1.0}),
     Spec("held", ("a",), {"for": 1.0, "equals": 1.0}),
     Spec("held", ("a",), {"for": 1.5}),
@@ -218,14 +213,3 @@ def test_sets_are_close_ordered_and_disjoint(events: list[tuple[int, int]]) -> N
         assert len(set(samples)) == len(samples)
         assert [each[0] for each in samples] == sorted(each[0] for each in samples)  # type: ignore[index]
     assert all(abs(one[0] - other[0]) <= 2 * STEP for one, other in made)  # type: ignore[index]
-
-
-@pytest.mark.parametrize("operator", ["mean", "slope"])
-def test_running_sums_do_not_drift(operator: str) -> None:
-    spec = Spec(operator, ("a",), {"within": 1.0})
-    pattern = Pattern(spec, 1.7e9, lambda kind, values: None)
-    for step in range(50_000):
-        pattern.take(0, 1.7e9 + step * 0.01, (1e6 + math.sin(step) if step < 49_000 else step * 0.02,))
-    expected = 0.02 * (49_999 - 49.5) if operator == "mean" else 2.0
-    assert pattern.shown is not None
-    assert pattern.shown[0] == pytest.approx(expected, rel=1e-5)

@@ -127,15 +127,6 @@ def test_the_option_gives_all_tests_a_mapping(run: Run, files: Path) -> None:
     assert outcome.passed, told(outcome)
 
 
-def test_each_test_hears_from_its_beginning_also_in_a_common_run(run: Run) -> None:
-    outcomes = run(
-        'drive(1, 0.5); !assert_published("cmd_vel", "linear.x: 1", 5)',
-        '!assert_not_published("cmd_vel")',
-        shared=True,
-    )
-    assert [told(each) for each in outcomes] == ["", ""]
-
-
 def test_a_missing_message_is_reported_with_the_published_ones(run: Run) -> None:
     [outcome] = run(
         'drive(0.5, 1); !assert_published("cmd_vel", "linear.x: 0.7"); !assert_not_published("cmd_vel")'

@@ -148,7 +148,6 @@ def test_a_failure_has_the_location_of_the_executed_branch(outcomes: Outcomes) -
 def test_each_test_starts_with_a_new_agent(outcomes: Outcomes) -> None:
     both = "@a[test] +!a <- +p. @b[test] +!b <- !assert_false(p)."
     assert [outcome.passed for outcome in outcomes(both)] == [True, True]
-    assert [outcome.passed for outcome in outcomes(both, replace(BRIEF, shared=True))] == [True, False]
 
 
 def test_the_goals_of_the_program_are_pursued_too(outcomes: Outcomes) -> None:
@@ -252,17 +251,6 @@ def test_a_dropped_test_fails(told: Callable[..., str]) -> None:
 def test_a_program_that_ends_the_run_fails_the_test(outcomes: Outcomes) -> None:
     (outcome,) = outcomes("@t[test] +!t <- .stopMAS; .wait(10).")
     assert "(.stopMAS)" in outcome.problems[0].message
-    first, second = outcomes(
-        "@t[test] +!t <- .stopMAS; .wait(10). @u[test] +!u.", replace(BRIEF, shared=True)
-    )
-    assert "(.stopMAS)" in first.problems[0].message
-    assert second.problems[0].message == "the test was not started: the run had ended"
-
-
-def test_a_shared_run_continues_after_a_stuck_test(outcomes: Outcomes) -> None:
-    stuck, other = outcomes('@t[test] +!t <- .wait("+never"). @u[test] +!u.', replace(BRIEF, shared=True))
-    assert not stuck.passed
-    assert other.passed
 
 
 def test_a_test_may_fork(outcomes: Outcomes) -> None:

@@ -6,16 +6,7 @@ from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, Place,
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import belief_name
 from jacaros.artifacts.mapping.read_topics import plain_constant
-from jacaros.streams.schema import (
-    LONGEST,
-    OPERATORS,
-    PARTNERS_WAIT,
-    VALUED,
-    Fault,
-    Spec,
-    faults,
-    unknown,
-)
+from jacaros.streams.schema import LONGEST, OPERATORS, PARTNERS_WAIT, Fault, Spec, faults, unknown
 from jacaros.suggestions import suggestion
 from jacaros.yaml_nodes import Node, Problem
 
@@ -40,7 +31,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
     wrong = list(faults(operator, [each.text for each in sources], options))
     for fault in wrong:
         _report(fault, entries, node)
-    if "value" in entries and operator not in VALUED:
+    if "value" in entries and not OPERATORS[operator].valued:
         entries["value"].wrong(f"`{operator}` does not use values", "leave `value` out")
     spec = Spec(
         operator,
@@ -130,7 +121,7 @@ def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
             f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`",
         )
     needed = spec.place + 1
-    if spec.operator in VALUED and topic.fields is not None:
+    if OPERATORS[spec.operator].valued and topic.fields is not None:
         count = sum(field.count for field in topic.fields)
         if count < needed:
             yield place.problem(f"`{topic.name}` has {count} values, not {needed}", "write a smaller `value`")

@@ -1,21 +1,25 @@
-"""Check internal actions: names, numbers of arguments, and where they are used."""
+"""Check internal actions: names, numbers of arguments, and where they are used.
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "+!go <- .prnt(hi).")
+>>> known = KnownActions({".print": Declaration()})
+>>> [(each.message, each.help) for each in unknown_actions(program, ByKind(program.plans), known)]
+[('unknown internal action `.prnt`', 'did you mean `.print`?')]
+"""
+
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import conditions, parts_of
+from jacaros.asl.checks.formulas import CONDITIONED, conditions
 from jacaros.asl.declaration import UNDECLARED, Declaration
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED, is_slip_of
+from jacaros.asl.term_parser import PERFORMATIVES
+from jacaros.asl.walk import ByKind, parts_of
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.functions import ARITIES
-
-_PERFORMATIVES: Final = (
-    *("tell", "untell", "achieve", "unachieve", "askOne", "askAll", "askHow"),
-    *("tellHow", "untellHow", "signal"),
-)
 
 
 def _no_hint(_: str) -> str | None:
@@ -41,58 +45,37 @@ class KnownActions:
         return self.declared.get(call.name, UNDECLARED)
 
 
-def unknown_actions(
-    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
-) -> Iterator[Diagnostic]:
+def unknown_actions(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of unknown internal actions."""
-    functions = {function.implementation for function in program.functions}
-    registered = {function.name for function in program.functions}
+    own = {name for function in program.functions for name in (function.implementation, function.name)}
     hints: dict[str, str | None] = {}
-    for node in found:
-        if not isinstance(node, nodes.InternalAction):
-            continue
+    for node in found.of(nodes.InternalAction):
         name = node.name
-        if name in known.declared or name in functions or name in registered:
+        if name in known.declared or name in own:
             continue
         if name in ARITIES:
-            yield _wrong_function(node)
+            least, most = ARITIES[name]
+            yield _arguments_message(node, least, None if most == float("inf") else int(most), "function")
             continue
-        if known.is_unseen(name):
-            continue
-        if not name.startswith(".") and not node.arguments:
-            # An atom with a dot, such as a class name.
+        is_atom = not name.startswith(".") and not node.arguments  # such as the name of a class
+        if is_atom or known.is_unseen(name):
             continue
         if name not in hints:
-            hints[name] = _meant_action(name, known) if len(hints) < MOST_ASKED else None
-        yield Diagnostic(
-            "warning",
-            f"unknown internal action `{name}`",
-            node.span,
-            hints[name],
-            "unknown-internal-action",
-        )
+            meant = known.help(name) or suggestion(name, known.declared) if len(hints) < MOST_ASKED else None
+            hints[name] = meant or None
+        yield problem("unknown-internal-action", f"unknown internal action `{name}`", node.span, hints[name])
 
 
-def _meant_action(name: str, known: KnownActions) -> str | None:
-    return known.help(name) or suggestion(name, known.declared) or None
-
-
-def _wrong_function(node: nodes.InternalAction) -> Diagnostic:
-    least, most = ARITIES[node.name]
-    return _arguments_message(node, least, None if most == float("inf") else int(most), "function")
-
-
-def wrong_arguments(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
+def wrong_arguments(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of internal actions with too few or too many arguments."""
-    for node in found:
-        if isinstance(node, nodes.InternalAction):
-            action = known.declared.get(node.name)
-            count = len(node.arguments)
-            if action is not None and not action.takes(count):
-                found_wrong = _arguments_message(node, action.minimum, action.maximum, "internal action")
-                if action.maximum is not None and count == action.maximum + 1 and action.result_hint:
-                    found_wrong = replace(found_wrong, help=action.result_hint)
-                yield found_wrong
+    for node in found.of(nodes.InternalAction):
+        action = known.declared.get(node.name)
+        count = len(node.arguments)
+        if action is not None and not action.takes(count):
+            wrong = _arguments_message(node, action.minimum, action.maximum, "internal action")
+            if action.maximum is not None and count == action.maximum + 1 and action.result_hint:
+                wrong = replace(wrong, help=action.result_hint)
+            yield wrong
 
 
 def _arguments_message(node: nodes.InternalAction, least: int, most: int | None, what: str) -> Diagnostic:
@@ -102,12 +85,10 @@ def _arguments_message(node: nodes.InternalAction, least: int, most: int | None,
         wanted = _arguments(least)
     else:
         wanted = f"{least} to {most} arguments"
-    return Diagnostic(
-        "warning",
+    return problem(
+        "wrong-arguments",
         f"{what} `{node.name}` expects {wanted}, found {len(node.arguments) or 'none'}",
         node.span,
-        None,
-        "wrong-arguments",
     )
 
 
@@ -115,19 +96,14 @@ def _arguments(count: int) -> str:
     return f"{count or 'no'} argument{'' if count == 1 else 's'}"
 
 
-def acting_conditions(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
+def acting_conditions(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of internal actions that act or wait and are used as conditions."""
-    for node in found:
+    for node in found.of(*CONDITIONED):
         for formula in conditions(node):
             for part in parts_of(formula):
                 if isinstance(part, nodes.InternalAction) and known.of(part).suspends:
-                    yield Diagnostic(
-                        "warning",
-                        f"`{part.name}` acts or takes time and never holds as a condition",
-                        part.span,
-                        "make it a step of the body",
-                        "acting-condition",
-                    )
+                    message = f"`{part.name}` acts or takes time and never holds as a condition"
+                    yield problem("acting-condition", message, part.span, "make it a step of the body")
 
 
 _PRINTING: Final = frozenset({".print", ".println", ".printf"})
@@ -135,41 +111,36 @@ _SHORT: Final = 10
 """Milliseconds: a shorter `.wait` was probably meant in seconds."""
 
 
-def doubtful_values(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def doubtful_values(found: ByKind) -> Iterator[Diagnostic]:
     """Note waits that are probably meant in seconds, and atoms that are probably meant as texts."""
-    for node in found:
-        if not isinstance(node, nodes.InternalAction):
-            continue
+    for node in found.of(nodes.InternalAction):
         first = node.arguments[0] if node.arguments else None
         if node.name == ".wait" and isinstance(first, nodes.Number) and 0 < first.value < _SHORT:
             time = f"{first.value:g}"
             help = f"for {time} s write `.wait({first.value * 1000:g})`"
-            yield Diagnostic("note", f"`.wait({time})` waits for {time} ms", first.span, help, "short-wait")
+            yield problem("short-wait", f"`.wait({time})` waits for {time} ms", first.span, help)
         for word in node.arguments if node.name in _PRINTING else ():
             if isinstance(word, nodes.Literal) and word.functor.startswith("'") and not word.arguments:
                 text = word.functor.strip("'")
                 message = f"`{word.functor}` is an atom, which is printed with its quotes"
-                yield Diagnostic("note", message, word.span, f'write a text as `"{text}"`', "quoted-atom")
+                yield problem("quoted-atom", message, word.span, f'write a text as `"{text}"`')
 
 
-def unknown_performatives(found: Sequence[nodes.Node], known: KnownActions) -> Iterator[Diagnostic]:
+def unknown_performatives(found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of misspelt performatives; a word that is not similar to one may be the program's own."""
-    for node in found:
-        if not isinstance(node, nodes.InternalAction):
-            continue
+    for node in found.of(nodes.InternalAction):
         place = known.of(node).performative
         if place is None or len(node.arguments) <= place:
             continue
         word = node.arguments[place]
-        if not isinstance(word, nodes.Literal) or word.arguments or word.functor in _PERFORMATIVES:
+        if not isinstance(word, nodes.Literal) or word.arguments or word.functor in PERFORMATIVES:
             continue
-        meant = [each for each in _PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
-        meant += [each for each in _PERFORMATIVES if word.functor.lower() == each.lower()]
+        meant = [each for each in PERFORMATIVES if is_slip_of(word.functor.lower(), each.lower())]
+        meant += [each for each in PERFORMATIVES if word.functor.lower() == each.lower()]
         if meant:
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "unknown-performative",
                 f"unknown performative `{word.functor}`",
                 word.span,
                 did_you_mean(meant[:1]),
-                "unknown-performative",
             )

@@ -1,4 +1,12 @@
-"""Collect the beliefs that a program asks for, and the text in it that may add them."""
+"""Collect the beliefs that a program asks for, and the text in it that may add them.
+
+>>> from jacaros.asl.loader import load_program
+>>> found = beliefs_of(load_program("robot.asl", "at(home). +!go : near(X) <- +at(X).")[0], {})
+>>> found.made, list(found.asked)
+({'at'}, ['near'])
+>>> is_misspelt("batery", "battery"), is_misspelt("room1", "room2")
+(True, False)
+"""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -6,11 +14,11 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import clauses, in_order, parts_of
+from jacaros.asl.checks.formulas import clauses, in_order
 from jacaros.asl.declaration import UNDECLARED, Declaration
 from jacaros.asl.formatter import format_term
 from jacaros.asl.slips import is_slip_of
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import parts_of, walk
 
 _WORD: Final = re.compile(r"\w+")
 _SHORTEST: Final = 5
@@ -31,11 +39,11 @@ class Beliefs:
 
     Attributes:
         asked: beliefs that plans react to and conditions ask for, by name.
-        made: names that the program gives to its own beliefs and to those of others.
+        made_as: beliefs that the program gives itself and others; derived ones with -1 arguments.
         mentioned: all other names in it, and words of strings: they may become beliefs in ways that are not visible.
         is_open: beliefs, plans or agents come from elsewhere at run time.
         events: events that plans and ``.wait`` react to, sign and belief; default namespace only, without strong negation.
-        made_as, concluded, mentioned_as: as `made`, but for rules; the conclusions of rules; as `mentioned`, without words.
+        concluded, mentioned_as: the conclusions of rules; as `mentioned`, without words.
         said: words of strings that are not only printed.
         facts: initial beliefs, by name.
         noted: beliefs that the agent itself adds: initial ones, and those of steps without a source annotation.
@@ -44,7 +52,6 @@ class Beliefs:
     """
 
     asked: dict[str, list[nodes.Literal]] = field(default_factory=dict)
-    made: set[str] = field(default_factory=set)
     mentioned: set[str] = field(default_factory=set)
     is_open: bool = False
     events: dict[Key, list[tuple[str, nodes.Literal]]] = field(default_factory=dict)
@@ -56,6 +63,11 @@ class Beliefs:
     noted: set[Key] = field(default_factory=set)
     brought: set[Key] = field(default_factory=set)
 
+    @property
+    def made(self) -> set[str]:
+        """Names that the program gives to its own beliefs and to those of others."""
+        return {name for name, _ in (*self.made_as, *self.concluded)}
+
 
 def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Beliefs:
     """Collect the beliefs of a program and its includes; *actions* are the internal actions by name."""
@@ -64,7 +76,6 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
     for belief in program.beliefs:
         head = belief.head if isinstance(belief, nodes.Rule) else belief
         heads.add(id(head))
-        found.made.update(_names(head))
         if isinstance(belief, nodes.Rule):
             found.concluded.setdefault(key_of(belief.head), belief)
         else:
@@ -104,7 +115,7 @@ def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
     """Note the derived beliefs and events, whatever their arguments, and their streams."""
     for derived in program.derived:
         if derived.namespace is None:
-            found.made.add(derived.name)
+            found.made_as.add((derived.name, -1))
             found.said.add(derived.name)
         for stream in derived.streams:
             _ask(stream, asked, found)
@@ -173,7 +184,6 @@ def _ask(node: nodes.Node, asked: set[int], found: Beliefs) -> None:
 
 def _make(term: nodes.Node, found: Beliefs) -> None:
     """Note a belief that is added, or a list of them."""
-    found.made.update(_names(term))
     found.made_as.update(_keys(term))
 
 
@@ -223,13 +233,6 @@ def _keys(term: nodes.Node) -> Iterator[Key]:
 def key_of(literal: nodes.Literal) -> Key:
     """Name and number of arguments of a belief."""
     return _name(literal), len(literal.arguments)
-
-
-def _names(term: nodes.Node) -> Iterator[str]:
-    """Yield the name of a belief, or of each belief in a list."""
-    for node in term.items if isinstance(term, nodes.ListTerm) else (term,):
-        if isinstance(node, nodes.Literal):
-            yield _name(node)
 
 
 def _name(literal: nodes.Literal) -> str:

@@ -1,11 +1,17 @@
-"""Find the conditions in a program, and those that never hold."""
+"""Find the conditions in a program, and those that never hold.
+
+>>> from jacaros.asl.loader import parse_formula
+>>> contradiction(parse_formula("X < 3 & X > 5"))
+'X cannot be both above 5 and below 3'
+"""
 
 from collections.abc import Iterator, Sequence
 from math import inf
+from typing import Any, Final, cast
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
-from jacaros.asl.walk import children, walk
+from jacaros.asl.walk import children, operands, variables_in
 from jacaros.terms.operators import BINARY
 
 Clause = nodes.Plan | nodes.Rule
@@ -17,6 +23,17 @@ def clauses(program: nodes.Program) -> Iterator[Clause]:
     for belief in program.beliefs:
         if isinstance(belief, nodes.Rule):
             yield belief
+
+
+CONDITIONED: Final[tuple[type[Any], ...]] = (
+    nodes.Plan,
+    nodes.Rule,
+    nodes.If,
+    nodes.While,
+    nodes.For,
+    nodes.Test,
+)
+"""The kinds of nodes that have conditions, besides labels with ``while``."""
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
@@ -36,34 +53,17 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
         yield node.arguments[0]
 
 
-def labelled(plan: nodes.Plan) -> Iterator[nodes.Literal]:
-    """Yield the annotations of a plan's label that are literals."""
-    annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
-    for item in () if annotations is None else annotations.items:
-        if isinstance(item, nodes.Literal):
-            yield item
+def labelled(plan: nodes.Plan) -> list[nodes.Literal]:
+    """Return the annotations of a plan's label that are literals."""
+    return annotations_of(plan.label) if isinstance(plan.label, nodes.Literal) else []
 
 
-def parts_of(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """Yield the conditions that *formula* joins by ``&``, ``|`` and ``not``, in source order."""
-    stack = [formula]
-    while stack:
-        term = stack.pop()
-        if isinstance(term, nodes.Connective):
-            stack += reversed(term.operands)
-        else:
-            yield term
-
-
-def conjuncts(formula: nodes.Term) -> Iterator[nodes.Term]:
-    """Yield the conditions that must all hold for *formula* to hold, in source order."""
-    stack = [formula]
-    while stack:
-        term = stack.pop()
-        if isinstance(term, nodes.And):
-            stack += [term.right, term.left]
-        else:
-            yield term
+def annotations_of(term: nodes.Node) -> list[nodes.Literal]:
+    """Return the annotations of a literal or variable that are literals."""
+    annotations = term.annotations if isinstance(term, nodes.Literal | nodes.Variable) else None
+    return (
+        [] if annotations is None else [item for item in annotations.items if isinstance(item, nodes.Literal)]
+    )
 
 
 def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
@@ -88,7 +88,7 @@ def is_true(formula: nodes.Term | None) -> bool:
 
 def contradiction(formula: nodes.Term) -> str | None:
     """Explain why *formula* never holds, or return None if that is not evident."""
-    parts = list(conjuncts(formula))
+    parts = cast("list[nodes.Term]", operands(formula)) if isinstance(formula, nodes.And) else [formula]
     return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
 
 
@@ -122,7 +122,7 @@ def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
 
 def _is_fixed(term: nodes.Term) -> bool:
     """Return whether two occurrences of *term* mean the same."""
-    return not any(isinstance(node, nodes.Variable) and node.unnamed for node in walk(term))
+    return not any(variable.unnamed for variable in variables_in(term))
 
 
 def _two_values(parts: Sequence[nodes.Term]) -> str | None:

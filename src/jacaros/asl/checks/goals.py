@@ -1,78 +1,62 @@
-"""Check for goals without a plan."""
+"""Check for goals without a plan.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "!strat. +!start.")
+>>> [each.help for each in goals_without_plan(program, ByKind(program.plans), KnownActions({}))]
+['did you mean `!start`?']
+"""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
 from jacaros.asl.checks.formulas import labelled
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED
+from jacaros.asl.walk import ByKind
 from jacaros.suggestions import close_matches, did_you_mean
 
 _Signature = tuple[str | nodes.Variable | None, str, int]
 
 
-def goals_without_plan(
-    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
-) -> Iterator[Diagnostic]:
+def goals_without_plan(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of posted goals without a plan or ``-!`` handler.
 
     Programs with a plan for any goal (``+!G``) and programs that add plans are skipped; those with tests need no plans
     for assertions.
     """
-    handled: set[_Signature] = set()
-    everywhere: set[tuple[str, int]] = set()
-    posted: list[nodes.Literal] = list(program.goals)
-    for node in found:
-        if isinstance(node, nodes.Trigger) and node.kind == "!":
-            if isinstance(node.literal, nodes.Variable):
-                return
-            signature = _signature(node.literal)
-            if isinstance(node.literal.namespace, nodes.Variable):
-                everywhere.add(signature[1:])
-            else:
-                handled.add(signature)
-        elif isinstance(node, nodes.Achieve) and isinstance(node.goal, nodes.Literal):
-            posted.append(node.goal)
-        elif isinstance(node, nodes.Plan):
-            posted += _cleanups(node)
-        elif isinstance(node, nodes.InternalAction):
-            action = known.of(node)
-            if action.brings_in and action.changes_plans:
-                return
-    if any(map(_is_test, program.plans)):
+    triggers = [trigger for trigger in found.of(nodes.Trigger) if trigger.kind == "!"]
+    if any(isinstance(trigger.literal, nodes.Variable) for trigger in triggers) or any(
+        known.of(call).brings_in and known.of(call).changes_plans for call in found.of(nodes.InternalAction)
+    ):
+        return
+    signatures = [_signature(trigger.literal) for trigger in triggers]
+    handled = {each for each in signatures if not isinstance(each[0], nodes.Variable)}
+    everywhere = {each[1:] for each in signatures if isinstance(each[0], nodes.Variable)}
+    posted: list[nodes.Node] = [*program.goals, *(step.goal for step in found.of(nodes.Achieve))]
+    marks = list(chain.from_iterable(map(labelled, found.of(nodes.Plan))))
+    posted += [mark.arguments[0] for mark in marks if mark.functor == "cleanup" and mark.arguments]
+    if any(mark.functor == "test" for plan in program.plans for mark in labelled(plan)):
         everywhere |= _goals_of_tests()
     reported: set[_Signature] = set()
     for goal in posted:
-        signature = _signature(goal)
-        if signature in handled or signature in reported or isinstance(goal.namespace, nodes.Variable):
+        if not isinstance(goal, nodes.Literal) or isinstance(goal.namespace, nodes.Variable):
             continue
-        if signature[1:] in everywhere:
+        signature = _signature(goal)
+        if signature in handled or signature in reported or signature[1:] in everywhere:
             continue
         reported.add(signature)
-        yield Diagnostic(
-            "warning",
+        yield problem(
+            "unknown-goal",
             f"no plan for `{_goal_text(signature)}`",
             goal.span,
             _meant_goal(signature, handled) if len(reported) <= MOST_ASKED else None,
-            "unknown-goal",
         )
-
-
-def _cleanups(plan: nodes.Plan) -> list[nodes.Literal]:
-    """Return the clean-up goals of a plan: ``cleanup(Goal)`` in its label."""
-    found = [each.arguments[0] for each in labelled(plan) if each.functor == "cleanup" and each.arguments]
-    return [goal for goal in found if isinstance(goal, nodes.Literal)]
-
-
-def _is_test(plan: nodes.Plan) -> bool:
-    annotations = plan.label.annotations if isinstance(plan.label, nodes.Literal) else None
-    items = annotations.items if annotations is not None else ()
-    return any(isinstance(each, nodes.Literal) and each.functor == "test" for each in items)
 
 
 _LIBRARY: Final = Path(__file__).parent.parent / "library"
@@ -89,7 +73,8 @@ def _goals_of_tests() -> frozenset[tuple[str, int]]:
     return frozenset((name, arguments.count(",") + 1 if arguments else 0) for name, arguments in heads)
 
 
-def _signature(literal: nodes.Literal) -> _Signature:
+def _signature(literal: nodes.Literal | nodes.Variable) -> _Signature:
+    assert isinstance(literal, nodes.Literal)
     functor = f"~{literal.functor}" if literal.negated else literal.functor
     return (literal.namespace, functor, len(literal.arguments))
 

@@ -1,18 +1,27 @@
-"""Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies."""
+"""Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> plans = parse_plans("@go[needs(arm, arm)] +!go")
+>>> [each.help for each in wrong_needs(ByKind(plans))]
+['name `arm` once, or give its capacity: `arm(2)`']
+"""
 
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from jacaros.asl import nodes
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.checks.formulas import annotations_of, labelled
+from jacaros.asl.diagnostics import Diagnostic, problem
+from jacaros.asl.walk import ByKind
 from jacaros.suggestions import suggestion
 
 _POLICIES = ("wait", "refuse", "take")
 _NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
 
 
-def wrong_needs(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def wrong_needs(found: ByKind) -> Iterator[Diagnostic]:
     """Warn of needs that no run can meet."""
     for items in _annotated(found):
         needs = [item for item in items if item.functor == "needs"]
@@ -22,28 +31,19 @@ def wrong_needs(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
             yield from _wrong_policies(items)
 
 
-def needs_of(found: Sequence[nodes.Node]) -> Iterator[tuple[str, nodes.Literal]]:
+def needs_of(found: ByKind) -> Iterator[tuple[str, nodes.Literal]]:
     """Yield the names of resources that plans and goals need, each with its annotation."""
-    for items in _annotated(found):
-        for item in items:
-            if item.functor == "needs":
-                for argument in item.arguments:
-                    name, _ = _read(argument)
-                    if name is not None:
-                        yield name, item
+    for item in chain.from_iterable(_annotated(found)):
+        for argument in item.arguments if item.functor == "needs" else ():
+            name, _ = _read(argument)
+            if name is not None:
+                yield name, item
 
 
-def _annotated(found: Sequence[nodes.Node]) -> Iterator[list[nodes.Literal]]:
+def _annotated(found: ByKind) -> Iterator[list[nodes.Literal]]:
     """Yield the annotations of labels and of goals."""
-    for node in found:
-        if isinstance(node, nodes.Plan):
-            owner: object = node.label
-        elif isinstance(node, nodes.Achieve):
-            owner = node.goal
-        else:
-            continue
-        if isinstance(owner, nodes.Literal) and owner.annotations is not None:
-            yield [item for item in owner.annotations.items if isinstance(item, nodes.Literal)]
+    yield from map(labelled, found.of(nodes.Plan))
+    yield from (annotations_of(goal.goal) for goal in found.of(nodes.Achieve))
 
 
 def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
@@ -52,11 +52,8 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
     for argument in need.arguments:
         name, capacity = _read(argument)
         if name is None or (capacity is not None and capacity < 1):
-            yield _wrong(
-                need,
-                "expected a resource",
-                "write a name, `lift(2)` for a resource that two may use, or `map(shared)`",
-            )
+            help = "write a name, `lift(2)` for a resource that two may use, or `map(shared)`"
+            yield problem("wrong-needs", "expected a resource", need.span, help)
             return
         units[name] += 1
         if capacity is not None:
@@ -65,9 +62,10 @@ def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
         there = capacities.get(name, 1)
         if wanted > there:
             are = "is 1" if there == 1 else f"are {there}"
-            yield _wrong(
-                need,
+            yield problem(
+                "wrong-needs",
                 f"needs that can never be met: {wanted} units of `{name}`, of which there {are}",
+                need.span,
                 f"name `{name}` once, or give its capacity: `{name}({wanted})`",
             )
 
@@ -95,12 +93,5 @@ def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
         given = item.arguments[0] if len(item.arguments) == 1 else None
         name = given.functor if isinstance(given, nodes.Literal) and not given.arguments else ""
         if name not in _POLICIES:
-            yield _wrong(
-                item,
-                f"unknown policy `{name}`",
-                suggestion(name, _POLICIES, f"write {', '.join(_POLICIES)}"),
-            )
-
-
-def _wrong(item: nodes.Literal, message: str, help: str) -> Diagnostic:
-    return Diagnostic("warning", message, item.span, help, "wrong-needs")
+            help = suggestion(name, _POLICIES, f"write {', '.join(_POLICIES)}")
+            yield problem("wrong-needs", f"unknown policy `{name}`", item.span, help)

@@ -1,34 +1,38 @@
-"""Check for plans that can never be selected, and for handlers that drop more than you may expect."""
+"""Check for plans that can never be selected, and for handlers that drop more than you may expect.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "+!go. +!go : near.")
+>>> [each.message for each in never_selected(program, ByKind(program.plans), KnownActions({}))]
+['unreachable plan: the plan at line 1 already handles all of these events']
+"""
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.checks.formulas import contradiction, is_true
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.checks.formulas import contradiction, is_true, labelled
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import is_slip_of
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import ByKind, is_ground
 from jacaros.suggestions import did_you_mean
 
 _LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
 
 
-def never_selected(
-    program: nodes.Program, found: Sequence[nodes.Node], known: KnownActions
-) -> Iterator[Diagnostic]:
+def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
     """Warn of plans that an earlier plan makes unreachable.
 
     Programs that change their plans or select among them by their own rules are skipped.
     """
-    for node in found:
-        if isinstance(node, nodes.InternalAction) and known.of(node).changes_plans:
-            return
-        if isinstance(node, nodes.BeliefChange) and isinstance(node.operand, nodes.PlanTerm | nodes.Variable):
-            return
-        if isinstance(node, nodes.Rule) and node.head.functor == "select__option":
-            return
-    yield from _shadowed(program.plans)
+    changed = (nodes.PlanTerm, nodes.Variable)
+    if not (
+        any(known.of(call).changes_plans for call in found.of(nodes.InternalAction))
+        or any(isinstance(change.operand, changed) for change in found.of(nodes.BeliefChange))
+        or any(rule.head.functor == "select__option" for rule in found.of(nodes.Rule))
+    ):
+        yield from _shadowed(program.plans)
 
 
 def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
@@ -43,12 +47,11 @@ def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
             if _is_made(plan):
                 continue
             where = _where(before, plan)
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "plan-never-selected",
                 f"unreachable plan: the plan{where} already handles all of these events",
                 plan.trigger.span,
                 "give that plan a context, or move it after this one",
-                "plan-never-selected",
             )
         elif is_true(plan.context):
             taken.add(plan, literal)
@@ -69,7 +72,7 @@ class _Taken:
     def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
         """Add a plan, unless its trigger matches fewer events than its fixed arguments show."""
         annotations = literal.annotations
-        if annotations is not None and not _is_ground(annotations):
+        if annotations is not None and not is_ground(annotations):
             return
         fixed: list[int] = []
         met: set[str] = set()
@@ -78,7 +81,7 @@ class _Taken:
                 if argument.annotations is not None or argument.negated or argument.name in met:
                     return
                 met.add(argument.name)
-            elif _is_ground(argument):
+            elif is_ground(argument):
                 fixed.append(place)
             else:
                 return
@@ -107,10 +110,6 @@ def _values(literal: nodes.Literal, places: Sequence[int]) -> object:
     return tuple([literal.arguments[place] for place in places])
 
 
-def _is_ground(term: nodes.Node) -> bool:
-    return not any(isinstance(node, nodes.Variable) for node in walk(term))
-
-
 def _is_made(plan: nodes.Plan) -> bool:
     """Return whether a directive made the plan: such plans have the place of the directive."""
     span = plan.span
@@ -124,19 +123,13 @@ def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
     return f" at line {before.span.line}{file}"
 
 
-def contexts_never_true(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def contexts_never_true(found: ByKind) -> Iterator[Diagnostic]:
     """Warn of plans whose context contradicts itself."""
-    for node in found:
-        if isinstance(node, nodes.Plan) and node.context is not None:
-            why = contradiction(node.context)
-            if why is not None:
-                yield Diagnostic(
-                    "warning",
-                    f"unreachable plan: {why}",
-                    node.context.span or node.trigger.span,
-                    None,
-                    "context-never-true",
-                )
+    for plan in found.of(nodes.Plan):
+        why = None if plan.context is None else contradiction(plan.context)
+        if plan.context is not None and why is not None:
+            span = plan.context.span or plan.trigger.span
+            yield problem("context-never-true", f"unreachable plan: {why}", span)
 
 
 def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
@@ -156,50 +149,28 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
     for plans in handlers.values():
         if not any(is_true(plan.context) for plan in plans):
             trigger = plans[-1].trigger
-            yield Diagnostic(
-                "note",
+            yield problem(
+                "narrow-handler",
                 "if no context of these failure plans holds, the whole intention is dropped",
                 trigger.span,
                 "add a failure plan without a context; the failure is not passed to the goals further out",
-                "narrow-handler",
             )
 
 
-def misspelt_label_words(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Warn of misspelt annotations of labels."""
-    for node in found:
-        if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
-            continue
-        annotations = node.label.annotations
-        for item in () if annotations is None else annotations.items:
-            if not isinstance(item, nodes.Literal):
-                continue
-            meant = [word for word in _LABEL_WORDS if is_slip_of(item.functor, word)]
-            if meant:
-                yield Diagnostic(
-                    "warning",
-                    f"label annotation `{item.functor}` has no meaning",
-                    item.span,
-                    did_you_mean(meant[:1]),
-                    "misspelt-annotation",
-                )
-
-
-def wrong_urgencies(found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
-    """Warn of ``urgency`` annotations of labels that are not non-negative integers: they have no effect."""
-    for node in found:
-        if not isinstance(node, nodes.Plan) or not isinstance(node.label, nodes.Literal):
-            continue
-        annotations = node.label.annotations
-        for item in () if annotations is None else annotations.items:
-            if isinstance(item, nodes.Literal) and item.functor == "urgency" and not _is_urgency(item):
-                yield Diagnostic(
-                    "warning",
-                    "urgency must be a non-negative integer; this one has no effect",
-                    item.span,
-                    "write a number, such as `urgency(10)`; the greatest goes first",
-                    "wrong-urgency",
-                )
+def wrong_labels(found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of misspelt annotations of labels, and of an ``urgency`` that is not a non-negative integer."""
+    for item in chain.from_iterable(map(labelled, found.of(nodes.Plan))):
+        meant = [word for word in _LABEL_WORDS if is_slip_of(item.functor, word)]
+        if meant:
+            message = f"label annotation `{item.functor}` has no meaning"
+            yield problem("misspelt-annotation", message, item.span, did_you_mean(meant[:1]))
+        elif item.functor == "urgency" and not _is_urgency(item):
+            yield problem(
+                "wrong-urgency",
+                "urgency must be a non-negative integer; this one has no effect",
+                item.span,
+                "write a number, such as `urgency(10)`; the greatest goes first",
+            )
 
 
 def _is_urgency(item: nodes.Literal) -> bool:

@@ -1,11 +1,17 @@
-"""Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions."""
+"""Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> [each.message for each in wrong_supervision((), ByKind(parse_plans("+!go <- !move[within(0)]")))]
+['invalid `within`']
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import contradiction, labelled
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.checks.formulas import annotations_of, contradiction, labelled
+from jacaros.asl.diagnostics import Diagnostic, problem
+from jacaros.asl.walk import ByKind
 
 _Check = Callable[[tuple[nodes.Term, ...]], bool]
 _HELP: Final = {
@@ -39,86 +45,54 @@ def _is_retry(arguments: tuple[nodes.Term, ...]) -> bool:
     return whole and (len(arguments) == 1 or _number(arguments[1], 0))
 
 
-def _is_single(arguments: tuple[nodes.Term, ...]) -> bool:
-    return len(arguments) == 1
-
-
 def _is_goal(arguments: tuple[nodes.Term, ...]) -> bool:
     return len(arguments) == 1 and isinstance(arguments[0], nodes.Literal | nodes.Variable)
 
 
-_OF_GOALS: Final[dict[str, _Check]] = {
-    "within": _is_time,
-    "hard_deadline": _is_time,
-    "every": _is_time,
+_CHECKS: Final[dict[str, _Check]] = {
+    **dict.fromkeys(("within", "hard_deadline", "every"), _is_time),
     "retry": _is_retry,
+    "while": lambda arguments: len(arguments) == 1,
+    "cleanup": _is_goal,
 }
-_OF_LABELS: Final[dict[str, _Check]] = {"within": _is_time, "while": _is_single, "cleanup": _is_goal}
+_OF_GOALS: Final = ("within", "hard_deadline", "every", "retry")
+_OF_LABELS: Final = ("within", "while", "cleanup")
+_MISPLACED: Final = {
+    "goals": (("while",), "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
+    "test goals": (("within", "every", "retry"), "write it at a goal that asks: `!ask[within(5000)]`"),
+    "plans": (("every", "retry", "hard_deadline"), "write it at the goal: `!g[{}]`"),
+}
+"""Annotations that have no effect on these, and where they belong."""
 
 
-def wrong_supervision(goals: Sequence[nodes.Literal], found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
+def wrong_supervision(goals: Sequence[nodes.Literal], found: ByKind) -> Iterator[Diagnostic]:
     """Warn of supervising annotations of goals and labels that have no effect."""
-    for goal in goals:
-        yield from _of_goal(goal)
-    for node in found:
-        if isinstance(node, nodes.Achieve):
-            yield from _of_goal(node.goal)
-        elif isinstance(node, nodes.Test):
-            yield from _of_test(node.formula)
-        elif isinstance(node, nodes.Plan):
-            yield from _of_label(node)
+    for goal in (*goals, *(step.goal for step in found.of(nodes.Achieve))):
+        yield from _wrong_of(annotations_of(goal), _OF_GOALS, "goals")
+    for test in found.of(nodes.Test):
+        yield from _wrong_of(annotations_of(test.formula), (), "test goals")
+    for plan in found.of(nodes.Plan):
+        yield from _wrong_of(labelled(plan), _OF_LABELS, "plans")
 
 
-def _of_goal(goal: nodes.Term) -> Iterator[Diagnostic]:
-    for item in _annotations(goal):
-        if item.functor in _OF_GOALS:
-            if not _OF_GOALS[item.functor](item.arguments):
-                yield _invalid(item)
-        elif item.functor == "while":
-            yield _misplaced(item, "goals", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`")
-
-
-def _of_test(formula: nodes.Term) -> Iterator[Diagnostic]:
-    for item in _annotations(formula):
-        if item.functor in ("within", "every", "retry") and item.arguments:
-            yield _misplaced(item, "test goals", "write it at a goal that asks: `!ask[within(5000)]`")
-
-
-def _of_label(plan: nodes.Plan) -> Iterator[Diagnostic]:
-    for item in labelled(plan):
-        if item.functor in _OF_LABELS:
-            if not _OF_LABELS[item.functor](item.arguments):
-                yield _invalid(item)
-            elif item.functor == "while":
-                yield from _never_true(item)
-        elif item.functor in ("every", "retry", "hard_deadline") and item.arguments:
-            yield _misplaced(item, "plans", f"write it at the goal: `!g[{_example(item.functor)}]`")
+def _wrong_of(items: Sequence[nodes.Literal], valid: Sequence[str], where: str) -> Iterator[Diagnostic]:
+    misplaced, help = _MISPLACED[where]
+    for item in items:
+        word = item.functor
+        if word in valid and not _CHECKS[word](item.arguments):
+            yield problem("wrong-supervision", f"invalid `{word}`", item.span, _HELP[word])
+        elif word in valid and word == "while":
+            yield from _never_true(item)
+        elif word in misplaced and item.arguments:
+            message = f"`{word}` has no effect on {where}"
+            yield problem("wrong-supervision", message, item.span, help.format(_example(word)))
 
 
 def _never_true(item: nodes.Literal) -> Iterator[Diagnostic]:
     why = contradiction(item.arguments[0])
     if why is not None:
-        yield Diagnostic("warning", f"this plan always fails: {why}", item.span, None, "context-never-true")
-
-
-def _annotations(goal: nodes.Term) -> Iterator[nodes.Literal]:
-    annotations = goal.annotations if isinstance(goal, nodes.Literal | nodes.Variable) else None
-    for item in () if annotations is None else annotations.items:
-        if isinstance(item, nodes.Literal):
-            yield item
+        yield problem("context-never-true", f"this plan always fails: {why}", item.span)
 
 
 def _example(word: str) -> str:
     return _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
-
-
-def _invalid(item: nodes.Literal) -> Diagnostic:
-    return Diagnostic(
-        "warning", f"invalid `{item.functor}`", item.span, _HELP[item.functor], "wrong-supervision"
-    )
-
-
-def _misplaced(item: nodes.Literal, where: str, help: str) -> Diagnostic:
-    return Diagnostic(
-        "warning", f"`{item.functor}` has no effect on {where}", item.span, help, "wrong-supervision"
-    )

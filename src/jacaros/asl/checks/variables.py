@@ -1,4 +1,9 @@
-"""Check for variables that occur once, and comparisons with variables that have no value."""
+"""Check for variables that occur once, and comparisons with variables that have no value.
+
+>>> from jacaros.asl.loader import parse_plans
+>>> [each.message for each in singletons(parse_plans("+!go <- move(X)")[0])]
+['variable `X` occurs only once in this plan']
+"""
 
 import re
 from collections import Counter
@@ -7,9 +12,9 @@ from typing import Final
 
 from jacaros.asl import nodes
 from jacaros.asl.checks.formulas import Clause, in_order
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.asl.diagnostics import Diagnostic, problem
 from jacaros.asl.slips import MOST_ASKED
-from jacaros.asl.walk import walk
+from jacaros.asl.walk import names_in, nodes_in, variables_in, walk
 from jacaros.suggestions import did_you_mean, suggestion
 from jacaros.terms.operators import BINARY
 
@@ -48,20 +53,18 @@ def singletons(clause: Clause) -> Iterator[Diagnostic]:
     once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
     for number, name in enumerate(once):
         if name in _CONSTANTS:
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "capital-constant",
                 f"`{name}` is a variable here, not a value",
                 first[name].span,
                 _CONSTANTS[name],
-                "capital-constant",
             )
         elif name not in in_head:
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "singleton-variable",
                 f"variable `{name}` occurs only once in this {what}",
                 first[name].span,
                 _meant_variable(name, occurrences) if number < MOST_ASKED else None,
-                "singleton-variable",
             )
 
 
@@ -73,27 +76,26 @@ def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[D
         what: the kind, for the message.
     """
     for fact in facts:
-        named = [
-            node for node in walk(fact) if isinstance(node, nodes.Variable) and not node.name.startswith("_")
-        ]
+        named = [node for node in variables_in(fact) if not node.name.startswith("_")]
         counted = Counter(node.name for node in named)
         for node in named:
             if counted[node.name] == 1 and not node.unnamed:
                 name = node.name
                 lower = name[0].lower() + name[1:]
-                yield Diagnostic(
-                    "warning",
+                yield problem(
+                    "singleton-variable",
                     f"`{name}` is a variable (capital {name[0]}), so this {what} matches any value",
                     node.span,
                     f"{did_you_mean([lower])} If any value is meant, write `_{name}`",
-                    "singleton-variable",
                 )
 
 
-def _in_head(clause: Clause) -> set[str]:
-    triggers = [node for node in walk(clause) if isinstance(node, nodes.Trigger)]
-    heads = triggers if isinstance(clause, nodes.Plan) else [clause.head]
-    return {node.name for node in walk(*heads) if isinstance(node, nodes.Variable)}
+def _in_head(clause: Clause) -> list[str]:
+    return (
+        names_in(*nodes_in(nodes.Trigger, clause))
+        if isinstance(clause, nodes.Plan)
+        else names_in(clause.head)
+    )
 
 
 def _meant_variable(name: str, occurrences: Counter[str]) -> str:
@@ -120,12 +122,11 @@ def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
             and not atom.arguments
             and isinstance(other, nodes.Number | nodes.Arithmetic)
         ):
-            yield Diagnostic(
-                "warning",
+            yield problem(
+                "ordered-atom",
                 f"`{atom.functor}` is an atom, and an atom is greater than any number",
                 atom.span,
                 f"begin a variable with a capital letter: `{atom.functor[:1].upper()}{atom.functor[1:]}`",
-                "ordered-atom",
             )
 
 
@@ -134,22 +135,16 @@ def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> 
     if variable.unnamed:
         return
     if relation.operator == "==" and name not in met:
-        yield Diagnostic(
-            "warning",
+        yield problem(
+            "comparison-without-value",
             f"`{name}` has no value here, so this comparison never holds",
             relation.span,
             f"to give {name} a value, write `{name} = ...`",
-            "comparison-without-value",
         )
-    elif (
-        relation.operator == "="
-        and isinstance(right, nodes.Arithmetic)
-        and any(isinstance(node, nodes.Variable) and node.name == name for node in walk(right))
-    ):
-        yield Diagnostic(
-            "warning",
+    elif relation.operator == "=" and isinstance(right, nodes.Arithmetic) and name in names_in(right):
+        yield problem(
+            "changed-variable",
             f"`{name}` cannot be equal to a sum that contains it: variables keep their value",
             relation.span,
             f"use another variable, as in `New{name} = {name} + 1`",
-            "changed-variable",
         )

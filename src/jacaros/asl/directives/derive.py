@@ -1,11 +1,22 @@
-"""``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs."""
+"""``{ derive(name, pattern) }``: a belief or event composed of changes of beliefs.
+
+>>> from jacaros.asl.loader import load_program
+>>> program, _ = load_program("robot.asl", "{ derive(often, count(bump(_), within(5000), at_least(3))) }")
+>>> program.derived[0].options
+(('within', 5.0), ('at_least', 3.0))
+>>> format_derivation(program.derived[0])
+'{ derive(often, count(bump(_), within(5000), at_least(3))) }'
+"""
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from jacaros.asl import nodes
-from jacaros.asl.source import Span
-from jacaros.streams.schema import OPERATORS, VALUED, Fault, faults, unknown
+from jacaros.asl.formatter import format_term
+from jacaros.asl.program_parser import WrongDirective
+from jacaros.asl.walk import is_ground
+from jacaros.streams.schema import OPERATORS, faults, unknown
+from jacaros.terms.text import number_text
 
 EXAMPLE: Final = "write `{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }`"
 _TIMES: Final = {"within": "within", "lasting": "for"}
@@ -17,121 +28,89 @@ _OF_MAPPINGS: Final = {
 }
 """Options that only mapping files have, and the alternative here."""
 
-Report = Callable[[str, Span | None, str], None]
-"""Reports a message with its place and help."""
-
-
 Placed = Callable[[nodes.Term], nodes.Term]
 """Puts a literal without a namespace into that of its block."""
 
+Mistakes = list[WrongDirective]
+
 
 def read_derivation(
-    directive: nodes.Literal, namespace: str | None, placed: Placed, report: Report
-) -> nodes.Derivation | None:
-    """Return the derivation that the directive declares, or None after reporting an error."""
+    directive: nodes.Literal, namespace: str | None, placed: Placed
+) -> tuple[nodes.Derivation | None, Mistakes]:
+    """Return the derivation that the directive declares, and its mistakes."""
     match directive.arguments:
         case (
             nodes.Literal(arguments=(), negated=False, annotations=None) as name,
-            nodes.Literal() as pattern,
+            nodes.Literal(operator, arguments) as pattern,
         ):
-            reader = _Reader(report, placed)
-            made = reader.read(name, pattern, namespace, directive.span)
-            return None if reader.wrong else made
-    report("`derive` expects a name and a pattern", directive.span, EXAMPLE)
-    return None
+            pass
+        case _:
+            return None, [WrongDirective("`derive` expects a name and a pattern", EXAMPLE)]
+    if operator not in OPERATORS:
+        fault = unknown(operator)
+        return None, [WrongDirective(fault.message, fault.help, pattern.span)]
+    if not arguments:
+        return None, [WrongDirective(f"`{operator}` expects a belief", EXAMPLE, pattern.span)]
+    first, *rest = arguments
+    wrong: Mistakes = []
+    several = OPERATORS[operator].several and isinstance(first, nodes.ListTerm)
+    written_streams = first.items if several and isinstance(first, nodes.ListTerm) else (first,)
+    streams = [each for each in written_streams if _is_stream(each, operator, wrong)]
+    placed_streams = cast("list[nodes.Literal]", list(map(placed, streams)))
+    options = dict(_options(rest, wrong))
+    values = {name: value for name, (value, _) in options.items()}
+    for fault in faults(operator, list(map(written, placed_streams)), values):
+        place = options[fault.option][1] if fault.option in options else pattern
+        wrong.append(WrongDirective(_as_written(fault.message), _as_written(fault.help), place.span))
+    if OPERATORS[operator].valued and streams:
+        _check_values(operator, placed_streams[0], values, wrong)
+    made = nodes.Derivation(
+        name.functor, namespace, operator, tuple(placed_streams), tuple(values.items()), span=directive.span
+    )
+    return made, wrong
 
 
-class _Reader:
-    """Reads one pattern, and records whether it has errors."""
+def _is_stream(term: nodes.Term, operator: str, wrong: Mistakes) -> bool:
+    if not isinstance(term, nodes.Literal):
+        help = "write its name and arguments, such as `bump(_)`"
+        wrong.append(WrongDirective(f"`{operator}` expects a belief", help, term.span))
+        return False
+    if term.annotations is not None:
+        wrong.append(WrongDirective("annotations have no effect here", "remove them", term.span))
+    for argument in term.arguments:
+        if not isinstance(argument, nodes.Variable) and not is_ground(argument):
+            help = "write `_` for the whole argument"
+            wrong.append(WrongDirective("variable within a term", help, argument.span))
+    return True
 
-    def __init__(self, report: Report, placed: Placed) -> None:
-        self.wrong = False
-        self._placed = placed
-        self._report = report
 
-    def _report_error(self, message: str, place: nodes.Node, help_: str) -> None:
-        self.wrong = True
-        self._report(message, place.span, help_)
-
-    def read(
-        self, name: nodes.Literal, pattern: nodes.Literal, namespace: str | None, span: Span | None
-    ) -> nodes.Derivation | None:
-        operator = pattern.functor
-        if operator not in OPERATORS or not pattern.arguments:
-            fault = (
-                unknown(operator)
-                if operator not in OPERATORS
-                else Fault("", f"`{operator}` expects a belief", EXAMPLE)
-            )
-            self._report_error(fault.message, pattern, fault.help)
-            return None
-        first, *rest = pattern.arguments
-        streams = list(self._streams(first, OPERATORS[operator].several, operator))
-        options, places = self._options(rest)
-        for fault in list(faults(operator, [written(each) for each in streams], options)):
-            self._report_error(
-                _as_written(fault.message), places.get(fault.option, pattern), _as_written(fault.help)
-            )
-        if operator in VALUED and streams:
-            self._check_values(operator, streams[0], options)
-        return nodes.Derivation(
-            name.functor, namespace, operator, tuple(streams), tuple(options.items()), span=span
-        )
-
-    def _streams(self, term: nodes.Term, several: bool, operator: str) -> Iterator[nodes.Literal]:
-        terms = term.items if several and isinstance(term, nodes.ListTerm) else (term,)
-        for each in terms:
-            if not isinstance(each, nodes.Literal):
-                self._report_error(
-                    f"`{operator}` expects a belief", each, "write its name and arguments, such as `bump(_)`"
-                )
-                continue
-            if each.annotations is not None:
-                self._report_error("annotations have no effect here", each, "remove them")
-            for argument in each.arguments:
-                if isinstance(argument, nodes.Variable):
-                    continue
-                if any(isinstance(part, nodes.Variable) for part in _inside(argument)):
-                    self._report_error("variable within a term", argument, "write `_` for the whole argument")
-            found = self._placed(each)
-            assert isinstance(found, nodes.Literal)
-            yield found
-
-    def _options(self, terms: list[nodes.Term]) -> tuple[dict[str, Any], dict[str, nodes.Node]]:
-        found: dict[str, Any] = {}
-        places: dict[str, nodes.Node] = {}
-        for term in terms:
-            if not isinstance(term, nodes.Literal) or not term.arguments:
-                self._report_error(
-                    "expected an option", term, "write options after the belief, such as `within(5000)`"
-                )
-                continue
-            if term.functor in _OF_MAPPINGS:
-                self._report_error(
-                    f"option `{term.functor}` exists in mapping files only", term, _OF_MAPPINGS[term.functor]
-                )
-                continue
-            name = _TIMES.get(term.functor, term.functor)
-            places[name] = term
+def _options(terms: list[nodes.Term], wrong: Mistakes) -> Iterator[tuple[str, tuple[Any, nodes.Node]]]:
+    """Yield the names of options, with values as in the schema and places."""
+    for term in terms:
+        if not isinstance(term, nodes.Literal) or not term.arguments:
+            help = "write options after the belief, such as `within(5000)`"
+            wrong.append(WrongDirective("expected an option", help, term.span))
+        elif term.functor in _OF_MAPPINGS:
+            message = f"option `{term.functor}` exists in mapping files only"
+            wrong.append(WrongDirective(message, _OF_MAPPINGS[term.functor], term.span))
+        else:
             values = [_constant(each) for each in term.arguments]
-            if len(values) > 1:
-                found[name] = tuple(values)
-            elif term.functor in _TIMES and isinstance(values[0], float):
-                found[name] = values[0] / 1000.0
-            else:
-                found[name] = values[0]
-        return found, places
+            value: Any = values[0] if len(values) == 1 else tuple(values)
+            if term.functor in _TIMES and isinstance(value, float):
+                value /= 1000.0
+            yield _TIMES.get(term.functor, term.functor), (value, term)
 
-    def _check_values(self, operator: str, stream: nodes.Literal, options: Mapping[str, object]) -> None:
-        bare = operator == "held" and not {"above", "below"} & options.keys()
-        if len(values_of(stream)) != (needed := 0 if bare else 1):
-            self._report_error(
-                f"`{operator}` expects {needed or 'no'} named variable{'s' if bare else ''} in its belief",
-                stream,
-                "write `_` for the arguments that do not matter"
-                if bare
-                else "make one argument a variable, and the others `_`",
-            )
+
+def _check_values(
+    operator: str, stream: nodes.Literal, options: Mapping[str, object], wrong: Mistakes
+) -> None:
+    bare = operator == "held" and not {"above", "below"} & options.keys()
+    if len(values_of(stream)) != (0 if bare else 1):
+        wanted = "no named variables" if bare else "1 named variable"
+        help = "make one argument a variable, and the others `_`"
+        if bare:
+            help = "write `_` for the arguments that do not matter"
+        wrong.append(WrongDirective(f"`{operator}` expects {wanted} in its belief", help, stream.span))
 
 
 def values_of(stream: nodes.Literal) -> list[int]:
@@ -141,12 +120,6 @@ def values_of(stream: nodes.Literal) -> list[int]:
         for place, argument in enumerate(stream.arguments)
         if isinstance(argument, nodes.Variable) and not argument.unnamed
     ]
-
-
-def _inside(term: nodes.Node) -> Iterator[nodes.Node]:
-    from jacaros.asl.walk import walk
-
-    return walk(term)
 
 
 def _constant(term: nodes.Term) -> object:
@@ -161,8 +134,6 @@ def _constant(term: nodes.Term) -> object:
 
 def written(stream: nodes.Literal) -> str:
     """Return a name for a stream, equal for equal ones."""
-    from jacaros.asl.formatter import format_term
-
     return format_term(nodes.replace(stream, arguments=tuple(map(_named_alike, stream.arguments))))
 
 
@@ -195,8 +166,6 @@ def format_derivation(derived: nodes.Derivation) -> str:
 
 def _option(name: str, value: float) -> str:
     """Return an option as programs write it."""
-    from jacaros.terms.text import number_text
-
     for here, known in _TIMES.items():
         if name == known:
             return f"{here}({number_text(milliseconds(value))})"
@@ -210,20 +179,17 @@ def milliseconds(seconds: float) -> float:
     return rounded if rounded / 1000.0 == seconds else exact
 
 
-def circle(derived: list[nodes.Derivation]) -> nodes.Derivation | None:
-    """Return the last declaration of a cycle, if a belief is derived from itself."""
+def circle(derived: list[nodes.Derivation]) -> bool:
+    """Return whether the belief of the last declaration is derived from itself."""
     made_of: dict[tuple[object, str], list[tuple[object, str]]] = {
         (each.namespace, each.name): [(stream.namespace, stream.functor) for stream in each.streams]
         for each in derived
     }
-    last = derived[-1]
-    begin: tuple[object, str] = (last.namespace, last.name)
+    begin = (derived[-1].namespace, derived[-1].name)
     todo, seen = list(made_of[begin]), set[object]()
     while todo:
         name = todo.pop()
-        if name == begin:
-            return last
         if name not in seen:
             seen.add(name)
             todo += made_of.get(name, ())
-    return None
+    return begin in seen

@@ -2,6 +2,9 @@
 
 Their contents are built in here (joining and focusing, answers to messages), have a counterpart in our own library
 (questions about workspaces), or are not supported (organisations).
+
+>>> is_library("$jacamo/templates/common-cartago.asl"), is_library("robot.asl")
+(True, False)
 """
 
 from pathlib import Path

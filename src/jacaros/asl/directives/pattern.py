@@ -1,24 +1,28 @@
-"""Shared parts of goal patterns: their arguments, and the plans they are built of.
+"""Shared parts of goal patterns: their arguments, and the plans they add.
 
 A pattern is a function from the clauses of its block to the clauses that replace them. Where patterns are known to
 misbehave in Jason, ours follow the intent of the pattern; each such function says so.
+
+>>> parse_nothing = lambda text, read, what: None
+>>> call = PatternCall("dg", (nodes.Literal("at_home"),), None, 1, parse_nothing)
+>>> from jacaros.asl.formatter import format_plan
+>>> [format_plan(plan) for plan in call.plans("+Goal <- .succeed_goal(Goal). -!Goal : Possible <- !Goal.", Possible=TRUE)]
+['+at_home <- .succeed_goal(at_home).', '-!at_home <- !at_home.']
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import count
+from typing import Any
 
 from jacaros.asl import nodes
-from jacaros.asl.source import Span
+from jacaros.asl.cursor import Names
+from jacaros.asl.plan_parser import PlanParser
+from jacaros.asl.program_parser import WrongDirective
+from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.walk import rebuilt
 
 TRUE = nodes.Literal("true")
-
-
-class PatternError(Exception):
-    """Raised when a pattern is used wrongly; with a message and help for the user."""
-
-    def __init__(self, message: str, help: str | None = None) -> None:
-        super().__init__(message)
-        self.help = help
 
 
 @dataclass(frozen=True)
@@ -26,74 +30,70 @@ class PatternCall:
     """One use of a pattern.
 
     ``arguments`` belong to the namespace of the block. Their unnamed variables have names, so that one argument may be
-    put into several places of one plan. ``number`` differs for each use in a program; ``parse_trigger`` and
-    ``parse_formula`` parse arguments given as text; ``apply`` applies another pattern by name.
+    put into several places of one plan. ``number`` differs for each use in a program; ``parse`` parses an argument given
+    as text (a trigger or a condition, as its last argument says).
     """
 
     name: str
     arguments: tuple[nodes.Term, ...]
     span: Span | None
     number: int
-    apply: "Callable[[PatternCall, nodes.Section], nodes.Section]"
-    parse_trigger: Callable[[str], nodes.Trigger]
-    parse_formula: Callable[[str], nodes.Term]
+    parse: Callable[[str, Callable[[PlanParser], Any], str], Any]
 
     def literal(self, index: int, what: str) -> nodes.Literal:
         """Return the argument *index*, which has to be a literal."""
         if index >= len(self.arguments):
-            raise PatternError(f"`{self.name}` expects {what} as argument {index + 1}")
+            raise WrongDirective(f"`{self.name}` expects {what} as argument {index + 1}")
         argument = self.arguments[index]
         if not isinstance(argument, nodes.Literal):
-            raise PatternError(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
+            raise WrongDirective(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
         return argument
-
-    def nested(self, section: nodes.Section, index: int) -> nodes.Section:
-        """Apply the pattern that argument *index* names, to the same goal unless it names another one."""
-        written = self.literal(index, "a pattern")
-        arguments = written.arguments or self.arguments[:1]
-        return self.apply(replace(self, name=written.functor, arguments=arguments), section)
 
     def at_most(self, count: int) -> None:
         """Reject more than *count* arguments."""
         if len(self.arguments) > count:
-            raise PatternError(
+            raise WrongDirective(
                 f"`{self.name}` expects at most {count} argument{'s' if count > 1 else ''}, found {len(self.arguments)}"
             )
 
-    # parts of the plans that a pattern adds; all have the place of the directive
+    def plans(self, text: str, **parts: nodes.Node) -> list[nodes.Plan]:
+        """Return the plans written in *text*, with *parts* in place of its variables; ``Goal`` is the first argument.
 
-    def plan(
-        self,
-        trigger: nodes.Trigger,
-        *steps: nodes.Step,
-        context: nodes.Term | None = None,
-        atomic: str | None = None,
-    ) -> nodes.Plan:
-        """Return a plan without a label, or an atomic one whose label ends with *atomic*."""
-        label = None
-        if atomic is not None:
-            annotations = nodes.Annotations((nodes.Literal("atomic"),))
-            label = nodes.Literal(
-                f"p__{self.name}{self.number}_{atomic}", annotations=annotations, span=self.span
-            )
-        return nodes.Plan(label, trigger, context, nodes.Body(steps, span=self.span), span=self.span)
+        They have the place of the directive. A part that is ``true`` is left out of a context. A label is the end of the
+        name that the plan gets.
+        """
+        if "Goal" not in parts:
+            parts["Goal"] = self.literal(0, "the goal")
+        return [rebuilt(plan, lambda node: self._filled(node, parts)) for plan in _template(text)]
 
-    def achieve(self, goal: nodes.Literal, separate: bool = False) -> nodes.Step:
-        """Return ``!goal`` or ``!!goal``."""
-        return nodes.Achieve(goal, separate, span=self.span)
-
-    def internal(self, name: str, *arguments: nodes.Term) -> nodes.Step:
-        """Return an internal action as a step."""
-        return nodes.Constraint(nodes.InternalAction(name, arguments, span=self.span), span=self.span)
-
-    def change(self, operator: str, belief: nodes.Literal) -> nodes.Step:
-        """Return ``+belief``, ``-belief`` or ``+>belief``."""
-        return nodes.BeliefChange(operator, belief, span=self.span)
+    def _filled(self, node: nodes.Node, parts: dict[str, nodes.Node]) -> nodes.Node:
+        """Return the part that a variable of a template stands for; other nodes get the place of the directive."""
+        match node:
+            case nodes.Variable(name, annotations) if name in parts:
+                part = parts[name]
+                return nodes.replace(part, annotations=annotations) if annotations else part
+            case nodes.And(left, right) if right == TRUE:
+                return left
+            case nodes.Trigger(literal=nodes.Trigger() as given):
+                return given
+            case nodes.Trigger(literal=literal):
+                return nodes.replace(node, span=literal.span)
+            case nodes.Plan(label, context=context):
+                if isinstance(label, nodes.Literal):
+                    label = nodes.replace(label, functor=f"p__{self.name}{self.number}_{label.functor}")
+                context = None if context == TRUE else context
+                return nodes.replace(node, label=label, context=context, span=self.span)
+        return nodes.replace(node, span=self.span)
 
 
-def on(event: str, literal: nodes.Literal) -> nodes.Trigger:
-    """Return a trigger: *event* is ``+!``, ``-!``, ``+`` or ``-``."""
-    return nodes.Trigger(event[0], event[1:], literal, span=literal.span)
+def _template(text: str) -> tuple[nodes.Plan, ...]:
+    parser = PlanParser(SourceFile("a goal pattern", text), Names(count(1), count(1), count(1)), [])
+    plans = []
+    while parser.token.kind != "end":
+        plans.append(parser.plan())
+        parser.advance()
+    assert not parser.diagnostics, parser.diagnostics
+    return tuple(plans)
 
 
 def is_about(plan: nodes.Plan, goal: nodes.Literal) -> bool:
@@ -125,10 +125,3 @@ def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
         return left.value == right.value
     # Lists and expressions may turn out to be equal; a list and a number do not.
     return type(left) is type(right) or not isinstance(left, nodes.Number | nodes.String | nodes.Literal)
-
-
-def with_plans(
-    section: nodes.Section, before: list[nodes.Plan], plans: list[nodes.Plan], after: list[nodes.Plan]
-) -> nodes.Section:
-    """Return *section* with other plans."""
-    return replace(section, plans=[*before, *plans, *after])

@@ -1,47 +1,33 @@
-"""Run the directives of a program: includes, namespaces, functions and goal patterns."""
+"""Run the directives of a program: includes, namespaces, functions and goal patterns.
+
+>>> from jacaros.asl.loader import load_program
+>>> files = {"doors.asl": "door(kitchen)."}
+>>> program, _ = load_program("robot.asl", '{ include("doors.asl") }', lambda path, _: (path, files[path]))
+>>> len(program.beliefs)
+1
+"""
 
 from collections.abc import Callable
 from itertools import count
-from typing import Final, TypeVar
+from typing import Any, Final
 
 from jacaros.asl import nodes
 from jacaros.asl.cursor import Names, SyntaxPanic
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.directives.goal_patterns import (
-    backtracking,
-    blind,
-    declarative,
-    exclusive,
-    maintenance,
-    open_minded,
-    relativised,
-    sequenced,
-    single_minded,
-)
+from jacaros.asl.directives.goal_patterns import PATTERNS, apply_pattern
 from jacaros.asl.directives.libraries import counterpart, is_known_library, is_library, is_of_organisations
-from jacaros.asl.directives.pattern import PatternCall, PatternError
-from jacaros.asl.literal_parser import Namespaces
+from jacaros.asl.directives.pattern import PatternCall
 from jacaros.asl.plan_parser import PlanParser
-from jacaros.asl.program_parser import ProgramParser
+from jacaros.asl.program_parser import ProgramParser, WrongDirective
 from jacaros.asl.source import SourceFile, Span
+from jacaros.asl.term_parser import Namespaces
+from jacaros.asl.walk import rebuilt
 from jacaros.suggestions import suggestion
 
 Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
 whose text says where it was searched."""
 
-PATTERNS: Final[dict[str, Callable[[PatternCall, nodes.Section], nodes.Section]]] = {
-    "dg": declarative,
-    "bdg": backtracking,
-    "ebdg": exclusive,
-    "mg": maintenance,
-    "bc": blind,
-    "smc": single_minded,
-    "rc": relativised,
-    "omc": open_minded,
-    "sga": sequenced,
-}
-_Result = TypeVar("_Result")
 _SIMPLE: Final = ("derive", "include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
@@ -77,69 +63,64 @@ class DirectiveProcessor:
     def apply(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         """Run a directive without a block."""
         name = directive.functor
-        if name == "include":
-            section.extend(self._include(parser, directive))
-        elif name == "namespace":
-            self._declare_namespace(parser, directive)
-        elif name == "register_function":
-            function = self._function(parser, directive)
-            if function is not None:
-                section.functions.append(function)
-        elif name == "derive":
-            self._derive(parser, directive, section)
-        elif name in PATTERNS:
-            parser.report(
-                "wrong-directive",
-                f"`{name}` expects a block",
-                directive.span,
-                f"{{ begin {name}(...) }} plans {{ end }}",
-            )
-        else:
-            parser.report("unknown-directive", f"unknown directive `{name}`", directive.span, _meant(name))
+        run = {
+            "include": self._include,
+            "namespace": self._declare_namespace,
+            "register_function": self._register,
+            "derive": self._derive,
+        }.get(name)
+        try:
+            if run is not None:
+                run(parser, directive, section)
+            elif name in PATTERNS:
+                raise WrongDirective(f"`{name}` expects a block", f"{{ begin {name}(...) }} plans {{ end }}")
+            else:
+                message = f"unknown directive `{name}`"
+                parser.report("unknown-directive", message, directive.span, _meant(name))
+        except WrongDirective as wrong:
+            _report(parser, directive, wrong)
 
     def apply_to_block(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
         """Parse the block of a directive and add the resulting clauses to *section*."""
         name = directive.functor
-        if name == "namespace":
-            outside = parser.namespaces.current
-            parser.namespaces.current = self._namespace(parser, directive)
-            section.extend(parser.block(directive))
-            parser.namespaces.current = outside
-            return
-        if name not in PATTERNS:
-            help = f"write `{{ {name}(...) }}` without `begin`" if name in _SIMPLE else _meant(name)
-            parser.report(
-                "unknown-directive", f"unknown directive `{name}` with a block", directive.span, help
-            )
-            section.extend(parser.block(directive))
-            return
-        block = parser.block(directive)
+        outside = parser.namespaces.current
         try:
-            section.extend(PATTERNS[name](self._call(parser, directive), block))
-        except PatternError as error:
-            parser.report("wrong-directive", str(error), directive.span, error.help)
+            if name == "namespace":
+                parser.namespaces.current = self._namespace(parser, directive)
+            elif name not in PATTERNS:
+                help = f"write `{{ {name}(...) }}` without `begin`" if name in _SIMPLE else _meant(name)
+                message = f"unknown directive `{name}` with a block"
+                parser.report("unknown-directive", message, directive.span, help)
+        except WrongDirective as wrong:
+            _report(parser, directive, wrong)
+        block = parser.block(directive)
+        parser.namespaces.current = outside
+        try:
+            section.extend(apply_pattern(self._call(parser, directive), block) if name in PATTERNS else block)
+        except WrongDirective as wrong:
+            _report(parser, directive, wrong)
             section.extend(block)
 
     # include
 
-    def _include(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.Section:
-        arguments = directive.arguments
-        if not 1 <= len(arguments) <= 2 or not isinstance(arguments[0], nodes.String):
-            parser.report(
-                "wrong-directive",
-                "`include` expects the name of a file as a string",
-                directive.span,
-                'write `{ include("file.asl") }`',
-            )
-            return nodes.Section()
-        path = arguments[0].value
+    def _include(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        match directive.arguments:
+            case (nodes.String(path), *namespace) if len(namespace) <= 1:
+                pass
+            case _:
+                message = "`include` expects the name of a file as a string"
+                raise WrongDirective(message, 'write `{ include("file.asl") }`')
         # As in Jason, local namespaces are local to their file.
         namespaces = Namespaces(parser.namespaces.current)
-        if len(arguments) == 2:
-            namespaces.current = self._include_namespace(parser, arguments[1])
+        if namespace:
+            namespaces.current = self._include_namespace(parser, namespace[0])
         found = self._find(parser, path, directive)
-        if found is None:
-            return nodes.Section()
+        if found is not None:
+            self._refuse_circles(found, path)
+            self._included += 1
+            section.extend(self.read_file(found, namespaces))
+
+    def _refuse_circles(self, found: SourceFile, path: str) -> None:
         if found.name in self._open_files:
             wrong, help = f"file `{path}` includes itself", "break the cycle: files cannot include each other"
         elif len(self._open_files) > _DEEPEST:
@@ -148,176 +129,120 @@ class DirectiveProcessor:
         elif self._included >= _MOST_INCLUDES:
             wrong, help = f"program includes more than {_MOST_INCLUDES} files", "include each file once"
         else:
-            wrong = help = ""
-        if wrong:
-            parser.report("include-circle", wrong, directive.span, help)
-            return nodes.Section()
-        self._included += 1
-        return self.read_file(found, namespaces)
+            return
+        raise WrongDirective(wrong, help, code="include-circle")
 
     def _find(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> SourceFile | None:
         """Return the included file; None for most libraries of other systems."""
         try:
             if self._read is None:
                 raise FileNotFoundError(path)
-            name, text = self._read(path, parser.file.name)
-            return SourceFile(name, text)
+            return SourceFile(*self._read(path, parser.file.name))
         except FileNotFoundError as missing:
-            ours = counterpart(path)
-            if ours is not None or is_known_library(path):
-                return ours
-            if is_of_organisations(path):
-                self._warn_of_organisations(parser, path, directive)
-                return None
-            if is_library(path):
-                parser.warn(
-                    "unknown-library",
-                    f"unknown library `{path}`: nothing is included",
-                    _place(directive),
-                )
-                return None
-            parser.report(
-                "include-not-found",
-                f"included file not found: `{path}`",
-                directive.span,
-                str(missing),
-            )
+            if not is_library(path):
+                message = f"included file not found: `{path}`"
+                raise WrongDirective(message, str(missing), code="include-not-found") from None
         except (OSError, UnicodeError) as error:
-            parser.report(
-                "include-not-found", f"cannot read the included file `{path}`: {error}", directive.span
-            )
-        return None
+            message = f"cannot read the included file `{path}`: {error}"
+            raise WrongDirective(message, code="include-not-found") from error
+        ours = counterpart(path)
+        if is_of_organisations(path):
+            self._warn_of_organisations(parser, path, directive)
+        elif ours is None and not is_known_library(path):
+            message = f"unknown library `{path}`: nothing is included"
+            parser.warn("unknown-library", message, _place(directive))
+        return ours
 
     def _warn_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
         """Warn once per program that organisations are not supported: their libraries are included together."""
         if not self._warned_of_organisations:
             self._warned_of_organisations = True
-            parser.warn(
-                "organisation-library",
-                f"nothing of `{path}` is included: organisations are not supported",
-                _place(directive),
-            )
+            message = f"nothing of `{path}` is included: organisations are not supported"
+            parser.warn("organisation-library", message, _place(directive))
 
     def _include_namespace(self, parser: ProgramParser, term: nodes.Term) -> str | None:
-        if isinstance(term, nodes.Literal) and not term.arguments:
-            return Namespaces().resolve(term.functor)
-        if isinstance(term, nodes.String):
-            return Namespaces().resolve(term.value)
-        if isinstance(term, nodes.Variable):
-            return f"{term.name}#{next(self._names.local_namespaces)}"
+        match term:
+            case nodes.Literal(name, ()) | nodes.String(name):
+                return Namespaces().resolve(name)
+            case nodes.Variable(name):
+                return f"{name}#{next(self._names.local_namespaces)}"
         parser.report("wrong-directive", "the namespace of an include must be an atom", term.span)
         return None
 
     # namespaces and functions
 
-    def _declare_namespace(self, parser: ProgramParser, directive: nodes.Literal) -> None:
+    def _declare_namespace(
+        self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section
+    ) -> None:
         """Declare a namespace local or global; without a block it stays empty."""
-        before = len(self._diagnostics)
         self._namespace(parser, directive)
-        if len(directive.arguments) == 1 and directive.span is not None and len(self._diagnostics) == before:
-            parser.warn(
-                "wrong-directive",
-                "this directive has no effect without a block",
-                directive.span,
-                "write `{ begin namespace(...) } clauses { end }`",
-            )
+        if len(directive.arguments) == 1:
+            message = "this directive has no effect without a block"
+            help = "write `{ begin namespace(...) } clauses { end }`"
+            parser.warn("wrong-directive", message, _place(directive), help)
 
     def _namespace(self, parser: ProgramParser, directive: nodes.Literal) -> str | None:
         """Return the namespace that the directive switches to."""
-        arguments = directive.arguments
-        names = [term.functor for term in arguments if isinstance(term, nodes.Literal) and not term.arguments]
-        if (
-            not 1 <= len(arguments) <= 2
-            or len(names) != len(arguments)
-            or names[1:] not in ([], ["local"], ["global"])
-        ):
-            parser.report(
-                "wrong-directive",
-                "`namespace` expects an atom, and optionally `local` or `global`",
-                directive.span,
-                "write `{ begin namespace(robot) }` or `{ namespace(robot, local) }`",
-            )
-            return parser.namespaces.current
-        name = names[0]
-        if names[1:] == ["local"] and name not in parser.namespaces.local:
-            # A name that cannot be written, so that the namespace cannot be reached from outside.
-            parser.namespaces.local[name] = f"{name}#{next(self._names.local_namespaces)}"
-        elif names[1:] == ["global"]:
-            parser.namespaces.local.pop(name, None)
+        local = parser.namespaces.local
+        match directive.arguments:
+            case (nodes.Literal(name, ()),):
+                pass
+            case (nodes.Literal(name, ()), nodes.Literal("local", ())):
+                if name not in local:
+                    # A name that cannot be written, so that the namespace cannot be reached from outside.
+                    local[name] = f"{name}#{next(self._names.local_namespaces)}"
+            case (nodes.Literal(name, ()), nodes.Literal("global", ())):
+                local.pop(name, None)
+            case _:
+                message = "`namespace` expects an atom, and optionally `local` or `global`"
+                help = "write `{ begin namespace(robot) }` or `{ namespace(robot, local) }`"
+                raise WrongDirective(message, help)
         return parser.namespaces.resolve(name)
 
-    def _function(self, parser: ProgramParser, directive: nodes.Literal) -> nodes.RegisteredFunction | None:
-        arguments = directive.arguments
-        if len(arguments) == 1 and isinstance(arguments[0], nodes.String):
-            if self._names.known.get(arguments[0].value) is None:
-                _warn_of_java_function(parser, directive, arguments[0].value)
-            return None
-        match arguments:
-            case (nodes.String(value=name), nodes.Number(value=arity), nodes.String(value=rule)):
+    def _register(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
+        match directive.arguments:
+            case (nodes.String(name),):
+                if self._names.known.get(name) is None:
+                    _warn_of_java_function(parser, directive, name)
+            case (nodes.String(name) as written, nodes.Number(arity), nodes.String(rule)):
                 if "." not in name.strip(".") or name.startswith("."):
-                    parser.report(
-                        "wrong-directive",
-                        f"function name `{name}` must contain a dot, but not at the beginning",
-                        arguments[0].span,
-                        "write a name such as `my.sum`",
-                    )
-                    return None
+                    message = f"function name `{name}` must contain a dot, but not at the beginning"
+                    raise WrongDirective(message, "write a name such as `my.sum`", written.span)
                 self._names.functions[name] = int(arity)
-                return nodes.RegisteredFunction(name, int(arity), rule, span=directive.span)
-        parser.report(
-            "wrong-directive",
-            "`register_function` expects a name, a number of arguments and a rule",
-            directive.span,
-            '{ register_function("my.sum", 2, "sum") }',
-        )
-        return None
+                function = nodes.RegisteredFunction(name, int(arity), rule, span=directive.span)
+                section.functions.append(function)
+            case _:
+                message = "`register_function` expects a name, a number of arguments and a rule"
+                raise WrongDirective(message, '{ register_function("my.sum", 2, "sum") }')
 
     def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        from jacaros.asl.directives.derive import (
-            circle,
-            read_derivation,
-        )  # imported here: few programs use `derive`
+        from jacaros.asl.directives.derive import circle, read_derivation  # here: few programs use `derive`
 
-        def report(message: str, span: Span | None, help: str) -> None:
-            parser.report("wrong-directive", message, span or directive.span, help)
-
-        def placed(term: nodes.Term) -> nodes.Term:
-            return self._placed(parser.namespaces, term)
-
-        made = read_derivation(directive, parser.namespaces.current, placed, report)
-        if made is None:
-            return
-        self._derived.append(made)
-        if circle(self._derived) is not None:
-            report(f"`{made.name}` is derived from itself", directive.span, "derive it from other beliefs")
-            self._derived.pop()
-            return
-        section.derived.append(made)
+        made, mistakes = read_derivation(
+            directive, parser.namespaces.current, lambda term: self._placed(parser.namespaces, term)
+        )
+        if made is not None and not mistakes and circle([*self._derived, made]):
+            message = f"`{made.name}` is derived from itself"
+            mistakes.append(WrongDirective(message, "derive it from other beliefs"))
+        for mistake in mistakes:
+            _report(parser, directive, mistake)
+        if made is not None and not mistakes:
+            self._derived.append(made)
+            section.derived.append(made)
 
     # patterns
 
     def _call(self, parser: ProgramParser, directive: nodes.Literal) -> PatternCall:
-        def reader(text: str) -> PlanParser:
+        def parse(text: str, read: Callable[[PlanParser], Any], what: str) -> Any:
             text_parser = PlanParser(SourceFile(f"`{text}`", text), self._names, [])
             text_parser.namespaces = parser.namespaces
-            return text_parser
-
-        def parse_trigger(text: str) -> nodes.Trigger:
-            text_parser = reader(text)
-            return _parse_text(text_parser, text_parser.trigger, "trigger")
-
-        def parse_formula(text: str) -> nodes.Term:
-            text_parser = reader(text)
-            return _parse_text(text_parser, text_parser.condition, "condition")
+            return _parse_text(text_parser, read, what)
 
         arguments = tuple(
-            self._placed(parser.namespaces, _with_named_variables(argument))
-            for argument in directive.arguments
+            self._placed(parser.namespaces, rebuilt(argument, _named)) for argument in directive.arguments
         )
         number = next(self._pattern_numbers)
-        return PatternCall(
-            directive.functor, arguments, directive.span, number, _apply_pattern, parse_trigger, parse_formula
-        )
+        return PatternCall(directive.functor, arguments, directive.span, number, parse)
 
     def _placed(self, namespaces: Namespaces, argument: nodes.Term) -> nodes.Term:
         """Put a goal or belief given to a pattern into the namespace of the block."""
@@ -326,12 +251,8 @@ class DirectiveProcessor:
         return argument
 
 
-def _apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
-    """Apply the named pattern to *section*."""
-    pattern = PATTERNS.get(call.name)
-    if pattern is None:
-        raise PatternError(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
-    return pattern(call, section)
+def _report(parser: ProgramParser, directive: nodes.Literal, wrong: WrongDirective) -> None:
+    parser.report(wrong.code, str(wrong), wrong.span or directive.span, wrong.help)
 
 
 def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name: str) -> None:
@@ -345,28 +266,22 @@ def _warn_of_java_function(parser: ProgramParser, directive: nodes.Literal, name
     )
 
 
-def _parse_text(parser: PlanParser, read: Callable[[], _Result], what: str) -> _Result:
+def _parse_text(parser: PlanParser, read: Callable[[PlanParser], Any], what: str) -> Any:
     """Parse the whole text of *parser* with *read*; an invalid text is an invalid argument of the directive."""
     try:
-        result = read()
+        result = read(parser)
     except SyntaxPanic:
         result = None
     if result is None or parser.token.kind != "end" or parser.diagnostics:
         reason = parser.diagnostics[0].message if parser.diagnostics else f"unexpected `{parser.token.text}`"
-        raise PatternError(f"{parser.file.name} is not a {what}: {reason}")
+        raise WrongDirective(f"{parser.file.name} is not a {what}: {reason}")
     return result
 
 
-def _with_named_variables(term: nodes.Term) -> nodes.Term:
-    """Return *term* with its unnamed variables named, so that it means the same in several places of a plan."""
-    if isinstance(term, nodes.Variable) and term.unnamed:
-        return nodes.replace(term, unnamed=False)
-    if isinstance(term, nodes.Literal):
-        return nodes.replace(term, arguments=tuple(map(_with_named_variables, term.arguments)))
-    if isinstance(term, nodes.ListTerm):
-        tail = None if term.tail is None else _with_named_variables(term.tail)
-        return nodes.replace(term, items=tuple(map(_with_named_variables, term.items)), tail=tail)
-    return term
+def _named(node: nodes.Node) -> nodes.Node:
+    """Give an unnamed variable a name, so that it means the same in several places of a plan."""
+    unnamed = isinstance(node, nodes.Variable) and node.unnamed
+    return nodes.replace(node, unnamed=False) if unnamed else node
 
 
 def _meant(name: str) -> str | None:

@@ -1,5 +1,7 @@
 """Lay out whole programs: clauses, plans and directives, and plan bodies with one step per line."""
 
+from collections.abc import Callable
+
 from jacaros.asl.layout.document import HARD, NOTHING, Break, Document, Group, Nest, OwnLine, Row, row
 from jacaros.asl.layout.expressions import ExpressionLayout
 
@@ -75,17 +77,21 @@ class StepLayout(ExpressionLayout):
 
     def block(self, opener: int, hard: bool) -> Document:
         """Lay out steps in braces."""
-        closer = self.closer[opener]
-        closing = self.pieces[closer]
-        if closer == opener + 1 and not closing.before:
-            return row(self.piece(opener), " ", self.piece(closer))
-        hard = hard or not self.on_one_line(opener, closer + 1)
+        hard = hard or not self.on_one_line(opener, self.closer[opener] + 1)
         edge = HARD if hard else Break()
-        last = Row(tuple(row(HARD, OwnLine(remark.text)) for remark in closing.before))
-        inner = self.steps(opener + 1, closer, hard) if closer > opener + 1 else Row(())
-        first = edge if closer > opener + 1 else Row(())
-        content = Nest(_BLOCK_INDENT, row(first, inner, last))
-        return row(self.piece(opener), content, edge, "}", self.line_end(closer))
+        return self._braced(opener, edge, _BLOCK_INDENT, lambda begin, end: self.steps(begin, end, hard))
+
+    def _braced(
+        self, opener: int, edge: Break, indent: int, lay_out: Callable[[int, int], Document]
+    ) -> Document:
+        """Lay out braces with contents between two edges, and with the comments at their end."""
+        closer = self.closer[opener]
+        remarks = self.pieces[closer].before
+        if closer == opener + 1 and not remarks:
+            return row(self.piece(opener), " ", self.piece(closer))
+        inner = row(edge, lay_out(opener + 1, closer)) if closer > opener + 1 else NOTHING
+        last = Row(tuple(row(HARD, OwnLine(remark.text)) for remark in remarks))
+        return row(self.piece(opener), Nest(indent, row(inner, last)), edge, "}", self.line_end(closer))
 
 
 _TRIGGERS = frozenset({"+", "-", "^"})
@@ -149,11 +155,15 @@ class ProgramLayout(StepLayout):
         if inner is not None and self._is_last_of_plan(begin, inner):
             behind = self.closer[inner] + 1
             dot = self.piece(behind) if behind < end and self.pieces[behind].kind == "." else NOTHING
-            plan = row(self.plan(begin, inner), " ", self._subplans(inner), dot)
+            plan = row(
+                self.plan(begin, inner), " ", self._braced(inner, HARD, _BODY_INDENT, self.clauses), dot
+            )
             return plan, behind + (dot is not NOTHING)
         plan = row(self.plan(begin, stop), self.piece(stop))
         if stop + 1 < end and self.pieces[stop + 1].kind == "{" and self._holds_plans(stop + 1):
-            return row(plan, " ", self._subplans(stop + 1)), self.closer[stop + 1] + 1
+            return row(plan, " ", self._braced(stop + 1, HARD, _BODY_INDENT, self.clauses)), self.closer[
+                stop + 1
+            ] + 1
         return plan, stop + 1
 
     def _holds_plans(self, opener: int) -> bool:
@@ -166,16 +176,6 @@ class ProgramLayout(StepLayout):
         if before == ")":
             return self.pieces[self.opener[opener - 1] - 1].kind not in ("if", "while", "for", "elif")
         return opener > begin and before in ("atom", "variable", "number", "string", "]", "}", "true")
-
-    def _subplans(self, opener: int) -> Document:
-        closer = self.closer[opener]
-        closing = self.pieces[closer]
-        last = Row(tuple(row(HARD, OwnLine(remark.text)) for remark in closing.before))
-        if closer == opener + 1 and not closing.before:
-            return row(self.piece(opener), " ", self.piece(closer))
-        first = HARD if closer > opener + 1 else NOTHING
-        content = Nest(_BODY_INDENT, row(first, self.clauses(opener + 1, closer), last))
-        return row(self.piece(opener), content, HARD, "}", self.line_end(closer))
 
     def plan(self, begin: int, end: int) -> Document:
         """Lay out a plan without its final dot: on one line if it is written so and fits."""

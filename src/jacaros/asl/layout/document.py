@@ -3,25 +3,25 @@
 After Wadler's "prettier printer": a group is put on one line if it fits, and otherwise broken at its own breaks.
 Comments do not count for the width. A comment at the end of a line is held back until the line ends, and ends it at the
 next possible break, so that it can never swallow code.
+
+>>> print(render(Group(row("if (near)", Break(), "{ stop }"))), end="")
+if (near) { stop }
 """
 
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 WIDTH: Final = 100
 _ALIGNED: Final = 60
 """Comments of consecutive lines are aligned in one column, unless the code of a line is longer than this."""
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(NamedTuple):
     """Characters without a line break."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Break:
+class Break(NamedTuple):
     """A possible line break: *flat* is the text without the break; None for a mandatory break.
 
     ``blank`` asks for a blank line there.
@@ -31,37 +31,32 @@ class Break:
     blank: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(NamedTuple):
     """Parts in sequence."""
 
     parts: "tuple[Document, ...]"
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(NamedTuple):
     """On one line, if it fits."""
 
     content: "Document"
 
 
-@dataclass(frozen=True, slots=True)
-class Nest:
+class Nest(NamedTuple):
     """Indents new lines: by *by* columns, or to the present column if it is None."""
 
     by: int | None
     content: "Document"
 
 
-@dataclass(frozen=True, slots=True)
-class LineEnd:
+class LineEnd(NamedTuple):
     """A comment for the end of the line."""
 
     comment: str
 
 
-@dataclass(frozen=True, slots=True)
-class OwnLine:
+class OwnLine(NamedTuple):
     """A comment on its own line, if it is at the beginning of one."""
 
     comment: str

@@ -1,4 +1,10 @@
-"""Tokens with their comments, and the layout of terms and conditions."""
+"""Tokens with their comments, and the layout of terms and conditions.
+
+>>> [piece.text for piece in pieces_of(SourceFile("robot.asl", "at(X).  // the place"))][:3]
+['at', '(', 'X']
+>>> pieces_of(SourceFile("robot.asl", "at(X).  // the place"))[-2].behind
+['// the place']
+"""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
