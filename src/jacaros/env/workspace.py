@@ -284,7 +284,7 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         steps = self._steps_of(artifact_id)
-        return describe(steps.artifact_type, steps.interface, steps.publication.committed())
+        return describe(type(steps.artifact), steps.interface, steps.publication.committed())
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
         """Update the indexes after an artifact has changed its operations."""
@@ -306,7 +306,7 @@ class Workspace(ports.Workspace):
         Raises:
             UnknownArtifact: it is gone.
         """
-        method = vars(self._steps_of(artifact_id).artifact_type).get(name)
+        method = vars(type(self._steps_of(artifact_id).artifact)).get(name)
         if name.startswith("_") or not callable(method):
             return False
         # `Artifact.remove_operation` has removed a method that is marked but not offered.

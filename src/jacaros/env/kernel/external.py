@@ -54,7 +54,7 @@ class ExternalSession:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         assert self._execution is not None
-        self._steps.leave_task(self._execution, error)
+        self._steps.end(self._execution, error)
 
     # ---- another thread
 

@@ -82,7 +82,7 @@ class Registry:
         if steps.id in self._steps:
             self._remove(steps.id)
         steps.dispose()
-        self._ending = [each for each in (*self._ending, steps) if not each.over]
+        self._ending = [each for each in (*self._ending, steps) if not each.ending.over]
         for callback in self.when_disposed:
             callback(steps.id)
 
