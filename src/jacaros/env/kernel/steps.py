@@ -140,7 +140,7 @@ class Steps:
             if not self.disposed:
                 for each in started:
                     self._claim(each)
-                self.turns.line_up(started, self._guard)
+                self.turns.line_up([each for each in started if not each.ended], self._guard)
 
     def _publish_delayed(self) -> None:
         delayed, self._delayed = self._delayed, []
