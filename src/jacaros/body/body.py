@@ -94,27 +94,6 @@ class AgentBody:
         """The running acts."""
         return tuple(self._pending)
 
-    def join(self, path: str) -> None:
-        """Join a workspace for the project, before the agent acts.
-
-        Raises:
-            OperationFailed: no workspace has this full path.
-        """
-        self.presence.enter()
-        self.presence.join(self._environment.workspace(path))
-
-    def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
-        """Focus on an artifact for the project, and join its workspace.
-
-        Raises:
-            OperationFailed: the artifact does not exist.
-        """
-        if not self.presence.workspaces.has_joined(artifact.workspace):
-            self.join(artifact.workspace)
-        self.presence.enter()
-        workspace = self.presence.workspaces.at(artifact.workspace)
-        self.presence.focused.begin(workspace, artifact, namespace)
-
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
         self.presence.enter()

@@ -59,9 +59,9 @@ class AgentPresence(Presence):
         if self._session is None:
             return
         for workspace in self.workspaces.joined():
-            self.focused.end_all(workspace)
             self._withdraw(workspace, self.focused.body_in(workspace))
         self._withdraw(self.workspaces.home, self._session)
+        super().leave()
 
     def changed(self, workspace: Workspace, joined: bool) -> None:
         """Add or remove the belief about a workspace, and the artifact that stands for the agent there."""

@@ -1,4 +1,4 @@
-"""The execution of one operation: waiting, running, paused, cancelled or ended."""
+"""The execution of one operation: waiting, running, paused, cancelled or ended, and the resources that it holds."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -7,12 +7,16 @@ from typing import Protocol
 from jacaros.clock import Clock, Timer
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.faults import is_interruption
-from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.unawaited import AskedFor
-from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.resources.claim import Claim
-from jacaros.env.resources.resource import Use
+from jacaros.env.operation import OperationOutcome, OperationRequest, WhenPreempted
+from jacaros.env.resources.arbiter import Arbiter
+from jacaros.env.resources.claim import Claim, State
+from jacaros.env.resources.resource import Use, local_name
+from jacaros.env.values import Atom, Structure
 from jacaros.trace import Cause
+
+Stop = Callable[[Structure | Atom], None]
+"""Fails the operation with a reason."""
 
 
 class Turns(Protocol):
@@ -29,7 +33,7 @@ class Turns(Protocol):
     def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that does not fail an operation."""
 
-    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> Holding:
+    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> "Holding":
         """Return a claim of an operation, which the operation enters and leaves."""
 
 
@@ -166,7 +170,7 @@ class OperationExecution:
         """Whether its code has begun, or its task exists."""
         return self.begun or self.task is not None
 
-    def hold(self, uses: tuple[Use, ...]) -> Holding:
+    def hold(self, uses: tuple[Use, ...]) -> "Holding":
         """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
             assert self._turns is not None
@@ -180,11 +184,6 @@ class OperationExecution:
         if self.holding is None or not self.holding.entered:
             return self.request.within
         return (*self.request.within, self.holding.claim)
-
-    @property
-    def waits_for_others(self) -> bool:
-        """Whether it is waiting for linked operations."""
-        return bool(self.linked)
 
     @property
     def pausable(self) -> bool:
@@ -284,3 +283,144 @@ class Pause:
         """Return the seconds of pause that have not been taken before."""
         spent, self._spent = self._spent, 0.0
         return spent
+
+
+class Holding:
+    """The claim of one operation.
+
+    It may be entered and left several times. While it is entered and not granted, the operation is paused.
+
+    Args:
+        operation: the operation that uses resources.
+        arbiter: arbiter of its environment.
+        uses: the resources.
+        when_preempted: what it does when a more urgent claim takes them away.
+        stop: fails the operation.
+
+    Attributes:
+        claim: the claim at the arbiter.
+        entered: whether the claim has been made and not released.
+        resting: whether the operation waits for the end of its pause, so that nothing moves.
+    """
+
+    def __init__(
+        self,
+        operation: OperationExecution,
+        arbiter: Arbiter,
+        uses: tuple[Use, ...],
+        when_preempted: WhenPreempted,
+        stop: Stop,
+    ) -> None:
+        request = operation.request
+        self._operation, self._arbiter, self._stop = operation, arbiter, stop
+        self._when_preempted = when_preempted
+        agent = f"[{request.agent}] " if request.agent is not None else ""
+        who = f"{agent}{request.operation}"
+        blocks = request.agent if request.agent is not None and not request.yields else ""
+        self.claim = Claim(uses, who, self, request.urgency, request.policy, request.within, blocks=blocks)
+        self.entered = self.resting = self._entering = False
+        self._told = False
+        self._watchers: list[Callable[[], None]] = []
+
+    @property
+    def barred(self) -> bool:
+        """Whether the operation has claimed its resources, and must not continue without them."""
+        return self.entered and self.claim.state is not State.HELD
+
+    @property
+    def holds(self) -> bool:
+        """Whether no other claim can have the resources. Also true while the operation yields."""
+        return self.claim.holds
+
+    def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* whenever the claim is granted or preempted, or the caller pauses or resumes the operation.
+
+        Return a function that ends this.
+        """
+        self._watchers.append(callback)
+        return lambda: self._watchers.remove(callback)
+
+    def enter(self) -> None:
+        """Claim the resources, unless they are claimed."""
+        if self.entered:
+            return
+        self.entered = self._entering = True
+        if not self._operation.suspended:
+            self._arbiter.enter(self.claim)
+        self._entering = False
+        self._operation.adapt()
+
+    def leave(self) -> None:
+        """Release the resources, or the place in the queue."""
+        self.entered = False
+        self._arbiter.leave(self.claim)
+        self._tell(None)
+        self._operation.adapt()
+
+    # ---- the caller pauses and resumes the operation
+
+    def suspended(self) -> None:
+        """The caller has paused the operation: others may have its turn, as soon as nothing moves."""
+        if self.entered and (self.resting or self.claim.state is State.WAITING or not self._operation.active):
+            self._arbiter.leave(self.claim)
+        self._tell(None)
+        self._changed()
+
+    def resumed(self) -> None:
+        """The caller has resumed the operation: it claims again what it has released."""
+        if self.entered and self.claim.state is State.OUT:
+            self._arbiter.enter(self.claim)
+        self._changed()
+
+    def rest(self) -> None:
+        """Nothing moves: the operation yields."""
+        if self._operation.suspended:
+            self._arbiter.leave(self.claim)
+        else:
+            self._arbiter.gave_way(self.claim)
+
+    # ---- the claimant of the arbiter
+
+    @property
+    def can_yield(self) -> bool:
+        """Whether it may be preempted now."""
+        if not self._operation.active:
+            return True
+        return self._when_preempted != "finish" and self._operation.request.yields
+
+    def granted(self, claim: Claim) -> None:
+        """Continue, or begin."""
+        self._operation.adapt()
+        self._tell(None)
+        if not self._entering:
+            self._changed()
+
+    def preempted(self, claim: Claim, resource: str) -> None:
+        """Yield: immediately before the operation has begun, after braking while it runs."""
+        if not self._operation.active:
+            self._operation.adapt()
+            self._arbiter.gave_way(claim)
+        elif self._when_preempted == "cancel":
+            self._stop(Structure("preempted", (Atom(local_name(resource)),)))
+        else:
+            if not self._operation.suspended:
+                self._tell(local_name(resource))
+            self._operation.adapt()
+            if self.resting or self._operation.linked:
+                self.rest()
+        self._changed()
+
+    def refused(self, claim: Claim, reason: Structure | Atom) -> None:
+        """Fail."""
+        self.entered = False
+        self._stop(reason)
+
+    def _tell(self, resource: str | None) -> None:
+        """Report to the caller that the operation is preempted, or no longer."""
+        if self._told is not (resource is not None):
+            self._told = resource is not None
+            self._operation.request.on_preempted(resource)
+
+    def _changed(self) -> None:
+        for callback in list(self._watchers):
+            callback()

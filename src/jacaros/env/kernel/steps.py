@@ -14,13 +14,12 @@ from typing import Any, TypeVar
 
 from jacaros.clock import Clock, standing_still, start_thread
 from jacaros.env.errors import InvalidArtifact, OperationFailed
-from jacaros.env.execution import OperationExecution
+from jacaros.env.execution import Holding, OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import faults
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.ending import Ending
 from jacaros.env.kernel.faults import is_interruption
-from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.interface import Interface
 from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting

@@ -6,6 +6,7 @@ searched: the current one, home, then the others (see `jacaros.env.lookup` for s
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from jacaros.env.environment import Environment
@@ -88,6 +89,12 @@ class Presence:
         self.focused.end_all(workspace)
         self.workspaces.quit(workspace)
         self.changed(workspace, False)
+
+    def leave(self) -> None:
+        """End everything silently: waits for artifacts, too."""
+        for workspace in self.workspaces.joined():
+            self.focused.end_all(workspace)
+            self.workspaces.quit(workspace)
 
     def changed(self, workspace: Workspace, joined: bool) -> None:
         """Note that a workspace was joined (True) or quit (False)."""
@@ -230,10 +237,9 @@ class Presence:
                 on_done(None, OperationOutcome(False, failure.message, failure.reason))
             waiting.cancel()
 
-        for artifact in workspace.artifacts():
-            if artifact.name == name:
-                begin(artifact)
-                return None
+        with suppress(UnknownArtifact):
+            begin(workspace.lookup(name))
+            return None
         waiting = _Waiting(workspace.watch(look))
         return waiting
 
