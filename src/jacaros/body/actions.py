@@ -135,7 +135,7 @@ def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderW
         help = "; the id is the fourth argument" if parameters.__class__ is Var else ""
         raise _wrong(call, holder, f"argument 3: expected a list of parameters{help}", 2)
     _give(presence, call, holder, 3, holder)
-    workspace, plain_name = presence.place(here, name)
+    workspace, plain_name = presence.environment.place(here, name)
 
     def made(artifact: ArtifactId | None, outcome: OperationOutcome) -> None:
         if artifact is None:

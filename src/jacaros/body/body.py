@@ -19,6 +19,7 @@ from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import UnderWay
 from jacaros.env.presence.presence import ANYWHERE, Direction, UnknownOperation
+from jacaros.env.session.account import Activity
 from jacaros.env.values import Structure
 from jacaros.terms.text import display
 
@@ -36,16 +37,6 @@ class ServedMind(PerceivingMind, Protocol):
 
     def regained(self, act_id: int) -> None:
         """Handle that an act has its resource again, or no longer waits for it."""
-
-
-class Activity(Protocol):
-    """Counts running actions."""
-
-    def begin(self) -> None:
-        """Note that an action has begun."""
-
-    def end(self) -> None:
-        """Note that an action has ended or was cancelled."""
 
 
 class AgentBody:
@@ -87,7 +78,7 @@ class AgentBody:
         self._activity = activity
         # Running acts; without a handle until the call that begins them returns.
         self._pending: dict[int, UnderWay | None] = {}
-        self._needs = Needs(agent, environment, self)
+        self._needs = Needs(agent, environment)
 
     @property
     def pending(self) -> tuple[int, ...]:
@@ -149,27 +140,19 @@ class AgentBody:
     def _need(self, act: Act) -> None:
         focused = self.presence.focused.in_order()
         near = [each for workspace in self.presence.workspaces.joined() for each in workspace.artifacts()]
+        on_done, on_preempted = partial(self._need_ended, act.id), partial(self._on_preempted, act.id)
         try:
-            self._needs.ask(act, focused, near)
+            self._needs.ask(act, focused, near, on_done, on_preempted)
         except OperationFailed as failure:
             self._finish(act.id, refused(failure, self._references))
 
-    def acquired(self, number: int) -> None:
-        """Report that a plan has its resources."""
-        self._finish(number, SUCCEEDED)
-
-    def unavailable(self, number: int, failure: OperationFailed) -> None:
-        """Report that a plan does not get its resources; one that has begun fails at its next claim."""
-        self._needs.forget(number)
-        self._finish(number, refused(failure, self._references))
-
-    def preempted(self, number: int, resource: str) -> None:
-        """Report that a plan has lost a resource."""
-        self._mind.preempted(number, resource)
-
-    def regained(self, number: int) -> None:
-        """Report that a plan has its resource again, or no longer waits for it."""
-        self._mind.regained(number)
+    def _need_ended(self, number: int, failure: OperationFailed | None) -> None:
+        """Report that a plan has its resources, or cannot have them; one that has begun fails at its next claim."""
+        if failure is None:
+            self._finish(number, SUCCEEDED)
+        else:
+            self._needs.forget(number)
+            self._finish(number, refused(failure, self._references))
 
     def _on_preempted(self, number: int, resource: str | None) -> None:
         if resource is None:

@@ -1,11 +1,8 @@
 """Workspaces and artifacts as in CArtAgO, usable without agents.
 
 To write artifacts, use `Artifact`, the decorators and the plain values. A host uses `Environment`. To use artifacts from
-Python, use a `Session`, which is imported on first use. This package does not depend on agents, ROS or the language.
+Python, use a `Session`. This package does not depend on agents, ROS or the language.
 """
-
-from importlib import import_module
-from typing import TYPE_CHECKING
 
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
@@ -31,14 +28,12 @@ from jacaros.env.operation import (
     operation,
 )
 from jacaros.env.property import ObservableProperty
+from jacaros.env.session.observed import ObservedProperty, PropertyChange
+from jacaros.env.session.operation import SessionOperation
+from jacaros.env.session.session import Session
+from jacaros.env.session.signal_stream import ReceivedSignal, SignalStream
 from jacaros.env.values import UNSET, Atom, Out, Structure, plain, text
 from jacaros.env.workspace import Workspace
-
-if TYPE_CHECKING:
-    from jacaros.env.session.observed import ObservedProperty, PropertyChange
-    from jacaros.env.session.operation import SessionOperation
-    from jacaros.env.session.session import Session
-    from jacaros.env.session.signal_stream import ReceivedSignal, SignalStream
 
 __all__ = [
     "UNSET",
@@ -80,20 +75,3 @@ __all__ = [
     "resolve_path",
     "text",
 ]
-
-_LATER = {
-    "ObservedProperty": "jacaros.env.session.observed",
-    "PropertyChange": "jacaros.env.session.observed",
-    "ReceivedSignal": "jacaros.env.session.signal_stream",
-    "Session": "jacaros.env.session.session",
-    "SessionOperation": "jacaros.env.session.operation",
-    "SignalStream": "jacaros.env.session.signal_stream",
-}
-
-
-def __getattr__(name: str) -> object:
-    place = _LATER.get(name)
-    if place is None:
-        raise AttributeError(f"module 'jacaros.env' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(place), name)
-    return value

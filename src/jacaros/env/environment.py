@@ -13,7 +13,6 @@ from jacaros.env.kernel.setting import Setting, log_to_stderr
 from jacaros.env.listener import EnvironmentListener
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
-from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.resource import Use
 from jacaros.env.standard_artifacts import add_standard_artifacts
 from jacaros.env.tree import WorkspaceTree
@@ -31,7 +30,7 @@ def knows_no_type(type_name: str) -> type[Artifact]:
     raise UnknownArtifactType(type_name)
 
 
-class Environment:
+class Environment(WorkspaceTree):
     """All workspaces of a process. ``/main`` always exists.
 
     Args:
@@ -40,6 +39,11 @@ class Environment:
         find_type: finds the artifact class for a type name. Raises `UnknownArtifactType`.
         log: takes a line of the log.
         on_internal_error: called with defects of JaCaROS itself. Without it they are raised where they arise.
+
+    Attributes:
+        clock: clock of the run.
+        resources: services of the host for artifacts, by name.
+        arbiter: assigns resources to operations and plans.
     """
 
     def __init__(
@@ -50,27 +54,13 @@ class Environment:
         log: Callable[[str], None] = log_to_stderr,
         on_internal_error: Callable[[BaseException], None] | None = None,
     ) -> None:
-        self._setting = Setting(clock, resources or {}, log, None, on_internal_error)
+        self._setting = setting = Setting(clock, resources or {}, log, None, on_internal_error)
+        self.clock, self.resources, self.arbiter = setting.clock, setting.resources, setting.arbiter
         self._find_type = find_type
         self._registry = Registry()
         self._own: list[Workspace] = []
-        self._tree = WorkspaceTree(self._make)
-        self._tree.create("/main")
-
-    @property
-    def clock(self) -> Clock:
-        """Clock of the run."""
-        return self._setting.clock
-
-    @property
-    def resources(self) -> Mapping[str, object]:
-        """Services of the host for artifacts, by name."""
-        return self._setting.resources
-
-    @property
-    def arbiter(self) -> Arbiter:
-        """Assigns resources to operations and plans."""
-        return self._setting.arbiter
+        super().__init__(self._make)
+        self.create_workspace("/main")
 
     def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
         """Return the resources that the operations of an artifact use, with the name of its robot.
@@ -108,62 +98,20 @@ class Environment:
         """Call *callback* with the id of every disposed artifact, after its observers have been notified."""
         self._registry.when_disposed.append(callback)
 
-    def workspaces(self) -> tuple[ports.Workspace, ...]:
-        """Return all workspaces, the oldest first."""
-        return self._tree.all()
-
-    def workspace(self, path: str) -> ports.Workspace:
-        """Return the workspace with this full path, which may contain names of links.
-
-        Raises:
-            UnknownWorkspace: the workspace does not exist.
-        """
-        return self._tree.find(path)
-
-    def create_workspace(self, path: str) -> ports.Workspace:
-        """Create a workspace with its standard artifacts.
-
-        Args:
-            path: full path. Its parent workspace must exist.
-
-        Raises:
-            OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the parent workspace does not exist.
-        """
-        return self._tree.create(path)
-
-    def link_workspace(self, path: str, target: str) -> None:
-        """Make an unused full path lead to another workspace.
-
-        Raises:
-            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
-        """
-        self._tree.link(path, target)
-
     def _make(self, path: str, above: ports.Workspace | None) -> Workspace:
         if above is not None and above not in self._own:
             message = f"workspace {above.path} is remote: create {path} in the process that serves it"
             raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
         workspace = Workspace(path, self._registry, self._setting, self._find_type)
-        add_standard_artifacts(workspace, self._tree)
+        add_standard_artifacts(workspace, self)
         self._own.append(workspace)
         return workspace
-
-    def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
-        """Add a remote workspace under its `path`. Return a function that removes it.
-
-        Raises:
-            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the parent workspace does not exist.
-        """
-        return self._tree.mount(workspace)
 
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent, wherever the artifact is. See `Workspace.execute`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
-            return self._tree.at(request.artifact.workspace, self._own[0]).execute(request)
+            return self.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
 
     def log(self, text: str) -> None:

@@ -11,9 +11,8 @@ after a cancel.
 import asyncio
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
-from jacaros.env.artifact import Artifact
 from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
@@ -111,7 +110,7 @@ class Workspace(Protocol):
     async def make_artifact(
         self,
         name: str,
-        type_name: str | type[Artifact],
+        type_name: str | type[Any],
         args: Sequence[object] = (),
         creator: str | None = None,
     ) -> ArtifactId:
@@ -133,7 +132,7 @@ class Workspace(Protocol):
     def create(
         self,
         name: str,
-        type_name: str | type[Artifact],
+        type_name: str | type[Any],
         args: Sequence[object] = (),
         creator: str | None = None,
         on_done: OnMade = ignore_made,
@@ -145,7 +144,7 @@ class Workspace(Protocol):
         """Dispose an artifact. Raises `UnknownArtifact` if it is known to be gone."""
 
     def offer(
-        self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
+        self, name: str, artifact_type: type[Any], args: Sequence[object] = (), personal: bool = False
     ) -> ArtifactId:
         """Add an artifact of JaCaROS itself, such as the body of an agent. It may be created at its first use.
 

@@ -1,6 +1,5 @@
 """Workspaces: create, find, focus, link, use and dispose artifacts."""
 
-import asyncio
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 
@@ -214,22 +213,6 @@ class Workspace(ports.Workspace):
             message = f"unknown artifact `{name}` in workspace {self.path}{help}"
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
-
-    async def available(self, name: str) -> ArtifactId:
-        """Wait until an artifact of this name exists, and return it."""
-        if name not in self._artifacts:
-            found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-
-            def look(artifact_id: ArtifactId, present: bool) -> None:
-                if present and artifact_id.name == name and not found.done():
-                    found.set_result(None)
-
-            stop = self.watch(look)
-            try:
-                await found
-            finally:
-                stop()
-        return self.lookup(name)
 
     def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
         """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.bdi.mind import Mind
 from jacaros.body.body import AgentBody
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
@@ -137,8 +138,10 @@ class RunEnvironment:
 
     def make_body(self, host: AgentHost) -> AgentBody:
         """Return a body for an agent, in ``/main``."""
+        mind = host.mind
+        assert isinstance(mind, Mind)
         return AgentBody(
-            host.name, host.mind, self.environment, self._references, self._writer, host.print, self._activity
+            host.name, mind, self.environment, self._references, self._writer, host.print, self._activity
         )
 
     def situate(self, presence: Presence, spec: AgentSpec) -> None:

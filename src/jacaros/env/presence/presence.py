@@ -115,17 +115,6 @@ class Presence:
 
     # ---- artifacts
 
-    def place(self, here: Workspace, path: str) -> tuple[Workspace, str]:
-        """Return the workspace and the plain name of an artifact, given its name, or its path relative to *here*.
-
-        Raises:
-            UnknownWorkspace: the workspace does not exist.
-        """
-        if "/" not in path:
-            return here, path
-        above, _, name = resolve_path(here.path, path).rpartition("/")
-        return self.environment.workspace(above), name
-
     def artifact(self, wanted: ArtifactId | str, places: Sequence[Workspace]) -> ArtifactId:
         """Return the artifact *wanted*: an id, a name in one of the *places*, or a path relative to the first of them.
 
@@ -216,7 +205,7 @@ class Presence:
         Raises:
             OperationFailed: its workspace does not exist, or is not joined.
         """
-        workspace, name = self.place(here, path)
+        workspace, name = self.environment.place(here, path)
         self.workspaces.at(workspace.path)
 
         def begin(artifact: ArtifactId) -> None:

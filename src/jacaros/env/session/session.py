@@ -136,7 +136,7 @@ class Session:
             OperationFailed: see `Workspace.make_artifact`.
         """
         self._check()
-        workspace, plain_name = self.presence.place(self._here, name)
+        workspace, plain_name = self.environment.place(self._here, name)
         self._account.begin()
         try:
             return await workspace.make_artifact(
@@ -152,7 +152,7 @@ class Session:
             OperationFailed: it does not exist; reason ``artifact_not_available(Name)``.
         """
         if "/" in name:
-            workspace, name = self.presence.place(self._here, name)
+            workspace, name = self.environment.place(self._here, name)
             return workspace.lookup(name)
         return artifact_named(self.presence.workspaces.in_order(), name)
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from jacaros.asl.nodes import Literal as LiteralNode
-from jacaros.bdi.state.act import Completion, Percept
+from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
@@ -283,21 +283,8 @@ class _Task:
             self._host.log("error", f"accept_kill: {said(error)}{place_of_fault(error)}")
             return True
 
-    def perceive(self, percepts: list[Percept]) -> None:
-        """Do nothing: it perceives through its session."""
-
-    def has_untaken(self, name: str) -> bool:
-        """Return False: its session processes everything immediately."""
-        return False
-
     def complete(self, act_id: int, completion: Completion) -> None:
         """Do nothing: it acts through its session."""
-
-    def preempted(self, act_id: int, resource: str) -> None:
-        """Do nothing: its operations pause automatically."""
-
-    def regained(self, act_id: int) -> None:
-        """Do nothing: its operations continue automatically."""
 
     def shut_down_in(self, milliseconds: float) -> None:
         """Do nothing: it is cancelled at the end."""
