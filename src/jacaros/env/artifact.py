@@ -25,7 +25,7 @@ from jacaros.env.operation import (
     marks_of,
     operation,
 )
-from jacaros.env.ports import Workspace
+from jacaros.env.ports import UnderWay, Workspace
 from jacaros.env.property import ObservableProperty, PropertySnapshot, plain_annotations
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.trace import Cause
@@ -41,7 +41,7 @@ class Host(Workspace, Protocol):
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """Return the artifacts that are linked to an out port."""
 
-    def execute_linked(self, request: OperationRequest) -> OperationExecution:
+    def execute_linked(self, request: OperationRequest) -> UnderWay:
         """Run a linked operation."""
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
@@ -353,7 +353,7 @@ class Artifact:
     def commit(self) -> None:
         """Publish the changes of the step so far. They can no longer be rolled back."""
         holder = self._steps.current("a commit")
-        if holder.declared is None or not holder.declared.threaded:
+        if not holder.declared.threaded:
             self._steps.commit()
 
     @step_boundary
@@ -446,8 +446,7 @@ class Artifact:
 
     def _fail_call(self, message: str) -> NoReturn:
         # CArtAgO's reason: there, every failed call is an error of the operation.
-        request = self.current.request
-        self.fail(message, "operation_error", f"{request.operation}/{len(request.arguments)}")
+        self.fail(message, "operation_error", self.current.request.key)
 
     def external_session(self, cause: Cause | None = None) -> ExternalSession:
         """Get exclusive access to the artifact from elsewhere: ``with`` in another thread, ``async with`` in another task.

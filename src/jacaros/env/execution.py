@@ -5,10 +5,11 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from jacaros.clock import Clock, Timer
-from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.env.kernel.faults import is_interruption
 from jacaros.env.kernel.unawaited import AskedFor
 from jacaros.env.operation import OperationOutcome, OperationRequest, WhenPreempted
+from jacaros.env.ports import UnderWay
 from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.claim import Claim, State
 from jacaros.env.resources.resource import Use, local_name
@@ -42,7 +43,7 @@ class OperationExecution:
 
     Attributes:
         request: the request of the caller.
-        declared: the operation that serves it. None if it was refused.
+        declared: the operation that serves it.
         arguments: the converted arguments.
         asked_for: step boundaries that may not have been awaited.
         cause: what led to it.
@@ -83,23 +84,22 @@ class OperationExecution:
 
     def __init__(
         self,
-        turns: Turns | None,
+        turns: Turns,
         request: OperationRequest,
-        declared: DeclaredOperation | None = None,
+        declared: DeclaredOperation = NOTHING,
         arguments: tuple[object, ...] = (),
         cause: Cause | None = None,
     ) -> None:
         self._turns = turns
         self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
-        self.begun = self.cancelled = self.told = self.suspended = False
+        self.begun = self.cancelled = self.told = self.suspended = self.ended = False
         self.holding: Holding | None = None
         self.asked_for: Sequence[AskedFor] = ()
-        self.ended = declared is None
         self.verdict: OperationOutcome | None = None
         self.limit: Timer | None = None
         self.thread: int | None = None
         self.task: asyncio.Task[None] | None = None
-        self.linked: list[OperationExecution] = []
+        self.linked: list[UnderWay] = []
         self._pause: Pause | None = None
 
     @property
@@ -113,8 +113,7 @@ class OperationExecution:
         The outcome is not reported. Changes of the step in progress are rolled back; changes in ``finally`` are
         published. An operation in a thread runs to its end.
         """
-        if self._turns is not None:
-            self._turns.cancel(self)
+        self._turns.cancel(self)
 
     def pause(self) -> None:
         """Ask it to pause. Pausable operations obey, and linked operations get the request, too.
@@ -133,26 +132,24 @@ class OperationExecution:
 
     def adapt(self) -> None:
         """Pause or continue, depending on its caller and the resources it uses."""
-        if self._turns is None:
-            return
         barred = self.suspended or (self.holding is not None and self.holding.barred)
         if barred and not self.paused and not self.ended:
-            pause = self._pauses(self._turns)
+            pause = self._pauses()
             pause.since = self._turns.clock.elapsed
-            self._call(pause.callbacks, self._turns)
+            self._call(pause.callbacks)
             self._turns.reconsider()
         elif not barred and self._pause is not None and self._pause.end():
-            self._call(self._pause.resumers, self._turns)
+            self._call(self._pause.resumers)
             self._turns.reconsider()
 
-    def _call(self, callbacks: list[Callable[[], None]], turns: Turns) -> None:
+    def _call(self, callbacks: list[Callable[[], None]]) -> None:
         for callback in list(callbacks):
             try:
                 callback()
             except BaseException as error:
                 if is_interruption(error):
                     raise
-                turns.complain(f"a pause callback of {self.request.operation} failed", error)
+                self._turns.complain(f"a pause callback of {self.request.operation} failed", error)
 
     def resume(self) -> None:
         """Let it continue after `pause`."""
@@ -173,9 +170,7 @@ class OperationExecution:
     def hold(self, uses: tuple[Use, ...]) -> "Holding":
         """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
-            assert self._turns is not None
-            self._turns.hold(self, uses)
-        assert self.holding is not None
+            self.holding = self._turns.hold(self, uses)
         return self.holding
 
     @property
@@ -188,7 +183,7 @@ class OperationExecution:
     @property
     def pausable(self) -> bool:
         """Whether it obeys `pause`."""
-        return self.declared is not None and self.declared.pausable
+        return self.declared.pausable
 
     @property
     def paused(self) -> bool:
@@ -201,9 +196,7 @@ class OperationExecution:
         The callback runs outside of the artifact's steps: it may stop a motor, but must not change properties. Without
         a call of the returned function, it is called until the operation ends.
         """
-        if self._turns is None:
-            return lambda: None
-        callbacks = self._pauses(self._turns).callbacks
+        callbacks = self._pauses().callbacks
         callbacks.append(callback)
         if self.paused:
             callback()
@@ -211,8 +204,7 @@ class OperationExecution:
 
     def on_resume(self, callback: Callable[[], None]) -> None:
         """Call *callback* at the end of every pause. As with `on_pause`, it must not change properties."""
-        if self._turns is not None:
-            self._pauses(self._turns).resumers.append(callback)
+        self._pauses().resumers.append(callback)
 
     async def resumed(self) -> None:
         """Wait until it is not paused. Await it through `Artifact.pause_point` or `Artifact.step`."""
@@ -236,9 +228,9 @@ class OperationExecution:
         """Return the seconds that it has been paused since the last call."""
         return self._pause.take() if self._pause is not None else 0.0
 
-    def _pauses(self, turns: Turns) -> "Pause":
+    def _pauses(self) -> "Pause":
         if self._pause is None:
-            self._pause = Pause(turns.clock)
+            self._pause = Pause(self._turns.clock)
         return self._pause
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
+from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.resources.claim import Claim, Policy
 from jacaros.env.resources.resource import Use
@@ -38,6 +39,16 @@ class OperationOutcome:
     ok: bool
     message: str | None = None
     reason: Structure | Atom | None = None
+
+    @classmethod
+    def of(cls, failure: OperationFailed) -> "OperationOutcome":
+        """Return the outcome of an operation that ends with *failure*."""
+        return cls(False, failure.message, failure.reason)
+
+    @property
+    def failure(self) -> OperationFailed:
+        """The exception for a failed outcome."""
+        return OperationFailed(self.message or "", self.reason)
 
 
 SUCCEEDED = OperationOutcome(True)
@@ -84,6 +95,11 @@ class OperationRequest:
     yields: bool = True
     within: tuple[Claim, ...] = ()
     on_preempted: Callable[[str | None], None] = ignore_preemption
+
+    @property
+    def key(self) -> str:
+        """Name and number of arguments, such as ``inc/1``."""
+        return f"{self.operation}/{len(self.arguments)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,8 @@ after a cancel.
 import asyncio
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
-from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
@@ -43,6 +42,23 @@ class UnderWay(Protocol):
         """Let it continue."""
 
 
+class Waiting:
+    """A request that only waits, so that there is nothing to pause. Cancelling calls *stop*."""
+
+    def __init__(self, stop: Callable[[], None]) -> None:
+        self.cancel = stop
+
+    def pause(self) -> None:
+        """Do nothing."""
+
+    def resume(self) -> None:
+        """Do nothing."""
+
+
+ENDED: Final = Waiting(lambda: None)
+"""The handle of a request that has ended."""
+
+
 async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
     """Begin a request for an artifact, and wait for it. Cancelling the wait cancels the request.
 
@@ -57,7 +73,7 @@ async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
         if artifact_id is not None:
             found.set_result(artifact_id)
         else:
-            found.set_exception(OperationFailed(outcome.message or "", outcome.reason))
+            found.set_exception(outcome.failure)
 
     under_way = begin(on_done)
     try:

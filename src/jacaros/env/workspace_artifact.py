@@ -150,8 +150,7 @@ class WorkspaceArtifact(Artifact):
 
 def refuse(artifact: Artifact, message: str) -> NoReturn:
     """Fail the operation in progress, which is not supported."""
-    request = artifact.current.request
-    artifact.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
+    artifact.fail(message, "not_supported", artifact.current.request.key)
 
 
 def is_called(wanted: str, type_name: str) -> bool:

@@ -13,9 +13,9 @@ from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal
-from jacaros.extension.agent import Agent, agent_of, give_face, overridden
+from jacaros.extension.agent import Agent, agent_of, give_face
 from jacaros.extension.calling import FAULTS, crash_text
-from jacaros.extension.views import Message, Option
+from jacaros.extension.views import Message, Option, overridden
 from jacaros.terms.unifier import bind, undo
 from jacaros.terms.values import Term, Var
 
@@ -28,11 +28,11 @@ class CustomMind(Mind):
     __slots__ = ()
 
     def accepts(self, message: SpeechAct) -> bool:
-        accepts = overridden(agent_of(self), "soc_acc")
+        accepts = overridden(agent_of(self), Agent, "soc_acc")
         return accepts is None or ask(self, accepts, bool, True, Message(message))
 
     def accept_kill(self, killer: str) -> bool:
-        accepts = overridden(agent_of(self), "kill_acc")
+        accepts = overridden(agent_of(self), Agent, "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
 
@@ -74,7 +74,7 @@ class Chosen(Urgent):
 def begin_as(mind: Mind, face: Agent) -> None:
     """Connect an object of the project's class, before the mind has any beliefs."""
     give_face(mind, face)
-    select_option = overridden(face, "select_option")
+    select_option = overridden(face, Agent, "select_option")
     if select_option is not None:
         mind.selections = Chosen(mind, select_option)
 

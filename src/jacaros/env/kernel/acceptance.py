@@ -53,7 +53,7 @@ def _unwrapped(annotation: Any) -> Any:
         elif _is_alias(typing.get_origin(annotation)):
             annotation = _alias_of(annotation)
         else:
-            return _SAME.get(annotation, annotation) if _hashable(annotation) else annotation
+            return annotation
 
 
 def _is_alias(annotation: Any) -> bool:
@@ -268,8 +268,6 @@ _SIMPLE: dict[Any, Kind] = {
     Structure: instance_of(Structure, "a structure"),
     Out: instance_of(Out, "an unbound variable (it is an output)"),
 }
-
-_SAME: dict[Any, Any] = {typing.List: list, typing.Dict: dict, typing.Tuple: tuple, typing.Set: set}  # noqa: UP006
 
 _LIST = _list_like(lambda items: items)
 _CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {

@@ -4,6 +4,7 @@ For a parameter that is a dataclass or a named tuple, agents pass a structure, s
 """
 
 import dataclasses
+import inspect
 import typing
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -106,25 +107,14 @@ def fields_of(kind: type) -> list[Field] | None:
 
     A class with ``__record__ = False`` has more state than its fields, so no structure can represent it.
     """
-    if getattr(kind, "__record__", True) is False:
+    is_named_tuple = issubclass(kind, tuple) and hasattr(kind, "_fields")
+    if getattr(kind, "__record__", True) is False or not (dataclasses.is_dataclass(kind) or is_named_tuple):
         return None
-    if dataclasses.is_dataclass(kind):
-        hints = _hints(kind)
-        missing = dataclasses.MISSING
-        return [
-            Field(
-                f.name,
-                hints.get(f.name, object),
-                f.default is not missing or f.default_factory is not missing,
-            )
-            for f in dataclasses.fields(kind)
-            if f.init
-        ]
-    names: tuple[str, ...] | None = getattr(kind, "_fields", None)
-    if names is not None and issubclass(kind, tuple):
-        hints, defaults = _hints(kind), getattr(kind, "_field_defaults", {})
-        return [Field(name, hints.get(name, object), name in defaults) for name in names]
-    return None
+    hints = _hints(kind)
+    parameters = inspect.signature(kind).parameters.values()
+    return [
+        Field(each.name, hints.get(each.name, object), each.default is not each.empty) for each in parameters
+    ]
 
 
 def _hints(kind: type) -> dict[str, Any]:

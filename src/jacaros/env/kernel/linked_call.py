@@ -4,12 +4,12 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
 
-from jacaros.env.errors import OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.ports import UnderWay
 
-Execute = Callable[[OperationRequest], OperationExecution]
+Execute = Callable[[OperationRequest], UnderWay]
 
 
 async def call_all(
@@ -47,7 +47,7 @@ async def call_all(
     await _until(all_done, execution)
     for outcome in outcomes:
         if outcome is not None and not outcome.ok:
-            raise OperationFailed(outcome.message or "a linked operation failed", outcome.reason)
+            raise outcome.failure
 
 
 async def _until(all_done: Awaitable[None], execution: OperationExecution) -> None:

@@ -161,7 +161,7 @@ class Steps:
         holder = self.current("the signal", name)
         check_name(name)
         signal = Signal(name, tuple(map(plain, arguments)))
-        if holder.declared is not None and holder.declared.threaded:
+        if holder.declared.threaded:
             self._delayed.append((signal, addressee))
             return
         self.publication.publish(holder.cause, (signal,), addressee)
@@ -204,8 +204,7 @@ class Steps:
         if not self.turns.ask(guard):
             if self.disposed:
                 # Nothing else can make it true: only the operation that disposed its own artifact continues.
-                gone = faults.disposed(execution.request)
-                raise OperationFailed(gone.message or "", gone.reason)
+                raise faults.disposed(execution.request).failure
             await self.turns.release_until(execution, guard)
 
     async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
@@ -231,7 +230,7 @@ class Steps:
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
-            what = f"{self.id.path} {faults.key(request)}"
+            what = f"{self.id.path} {request.key}"
             cause = self.setting.trace("operation", what, cause, request)
         execution = OperationExecution(self, request, declared, arguments, cause)
         if self.setting.listener is not None:
@@ -243,7 +242,7 @@ class Steps:
 
     def refuse(self, request: OperationRequest, outcome: OperationOutcome) -> OperationExecution:
         """Fail a request immediately."""
-        refused = OperationExecution(None, request)
+        refused = OperationExecution(self, request)
         self._tell(refused, outcome)
         return refused
 
@@ -338,7 +337,7 @@ class Steps:
             raise
         if execution.verdict is not None:
             self.end(execution, None)
-            raise OperationFailed(execution.verdict.message or "", execution.verdict.reason)
+            raise execution.verdict.failure
 
     # ---- resources of operations
 
@@ -355,15 +354,14 @@ class Steps:
 
     def hold(self, execution: OperationExecution, uses: tuple[Use, ...]) -> Holding:
         """Return a claim that an operation enters and leaves itself."""
-        declared = execution.declared
-        mode = "finish" if declared is None else declared.when_preempted
+        mode = execution.declared.when_preempted
         stop = partial(self._lose, execution)
         execution.holding = Holding(execution, self.setting.arbiter, self._of_robot(uses), mode, stop)
         return execution.holding
 
     def _claim(self, execution: OperationExecution) -> None:
         """Claim the resources of an operation, which begins when they are granted."""
-        if execution.declared is not None and execution.declared.uses:
+        if execution.declared.uses:
             self.hold(execution, execution.declared.uses).enter()
 
     def _lose(self, execution: OperationExecution, reason: Structure | Atom) -> None:
@@ -377,23 +375,20 @@ class Steps:
             self._tell(execution, outcome)
 
     def _guard(self, execution: OperationExecution) -> Guard | None:
-        declared = execution.declared
-        if declared is None or declared.guard is None:
-            return None
-        return partial(declared.guard, self.artifact, *execution.arguments)
+        guard = execution.declared.guard
+        return None if guard is None else partial(guard, self.artifact, *execution.arguments)
 
     # ---- operations begin and end
 
     def _begin(self, execution: OperationExecution, error: BaseException | None) -> None:
         declared = execution.declared
-        assert declared is not None
         execution.begun = not declared.coroutine
         if error is not None:
             self.end(execution, error)
         elif not declared.coroutine:
             self._run(execution, declared)
         else:
-            name = f"{self.id.path} {faults.key(execution.request)}"
+            name = f"{self.id.path} {execution.request.key}"
             self.setting.know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
@@ -455,7 +450,6 @@ class Steps:
     async def _call(self, execution: OperationExecution) -> BaseException | None:
         """Run the code of a coroutine or of a thread. Return what a thread raised, instead of raising it."""
         declared = execution.declared
-        assert declared is not None
         if not declared.threaded:
             result = await declared.function(self.artifact, *execution.arguments)
             if result is not None:
@@ -536,7 +530,7 @@ class Steps:
 
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
         """Log an error that is not reported elsewhere, or that its author must see."""
-        key = faults.key(execution.request)
+        key = execution.request.key
         if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
             return
         if not isinstance(error, OperationFailed):
@@ -570,7 +564,7 @@ class Steps:
 
     def _interrupt(self, execution: OperationExecution) -> None:
         task, declared = execution.task, execution.declared
-        if task is None or declared is None or declared.threaded or not execution.begun:
+        if task is None or declared.threaded or not execution.begun:
             return
         if declared.kind == EXTERNAL:
             return  # the task is not an operation's
@@ -610,7 +604,7 @@ class Steps:
         execution.verdict = outcome
         if self.turns.withdraw(execution):
             self._tell(execution, outcome)
-        elif execution.declared is not None and execution.declared.threaded:
+        elif execution.declared.threaded:
             self._inform(execution, outcome)
         else:
             self._interrupt(execution)
@@ -628,7 +622,7 @@ class Steps:
     @property
     def threads(self) -> list[OperationExecution]:
         """Return the operations that run in a thread."""
-        return [each for each in self._running if each.declared is not None and each.declared.threaded]
+        return [each for each in self._running if each.declared.threaded]
 
     def abandon_threads(self, seconds: float) -> None:
         """Stop waiting for threads of the disposed artifact, after *seconds*."""
@@ -637,17 +631,13 @@ class Steps:
 
     def _leave_behind(self, executions: Iterable[OperationExecution], seconds: float) -> None:
         for execution in tuple(executions):
-            key = faults.key(execution.request)
+            key = execution.request.key
             told = (
                 f"operation {key} did not stop within {seconds:g} s of its artifact's disposal; abandoning it"
             )
             self.setting.log(f"[{self.id.name}] {told}")
             self._tell(execution, faults.disposed(execution.request))
-            if (
-                execution.task is not None
-                and execution.declared is not None
-                and execution.declared.kind != EXTERNAL
-            ):
+            if execution.task is not None and execution.declared.kind != EXTERNAL:
                 self._abandon_task(execution.task)
             self._running.pop(execution, None)
         if not self._running:

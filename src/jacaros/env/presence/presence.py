@@ -5,7 +5,7 @@ the given workspace. With a namespace, the artifacts focused in that namespace c
 searched: the current one, home, then the others (see `jacaros.env.lookup` for several candidates in one).
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import OnMade, UnderWay, Workspace
+from jacaros.env.ports import OnMade, UnderWay, Waiting, Workspace
 from jacaros.env.presence.filtering import Filter
 from jacaros.env.presence.focused import Focused
 from jacaros.env.presence.joined import JoinedWorkspaces
@@ -223,13 +223,13 @@ class Presence:
             except UnknownArtifact:
                 return  # it was disposed immediately: wait for the next one
             except OperationFailed as failure:
-                on_done(None, OperationOutcome(False, failure.message, failure.reason))
+                on_done(None, OperationOutcome.of(failure))
             waiting.cancel()
 
         with suppress(UnknownArtifact):
             begin(workspace.lookup(name))
             return None
-        waiting = _Waiting(workspace.watch(look))
+        waiting = Waiting(workspace.watch(look))
         return waiting
 
     # ---- unknown operations
@@ -273,16 +273,3 @@ def _artifacts(places: Sequence[Workspace]) -> list[tuple[Workspace, ArtifactId]
 
 def _name(key: str) -> str:
     return key.rpartition("/")[0]
-
-
-class _Waiting:
-    """The wait for an artifact that does not exist yet."""
-
-    def __init__(self, stop: Callable[[], None]) -> None:
-        self.cancel = stop
-
-    def pause(self) -> None:
-        """Do nothing: waiting needs no pause."""
-
-    def resume(self) -> None:
-        """Do nothing."""

@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
 from jacaros.env.ports import UnderWay
 from jacaros.env.values import Atom, Out
@@ -55,7 +54,7 @@ class SessionOperation:
         if self.outcome is None:
             raise asyncio.InvalidStateError(f"operation {self.operation} has not ended")
         if not self.outcome.ok:
-            raise OperationFailed(self.outcome.message or "", self.outcome.reason)
+            raise self.outcome.failure
         values = tuple(out.value if out.is_set else None for out in self._outs)
         return values if len(values) > 1 else values[0] if values else None
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any, TypedDict, TypeVar, Unpack
 from weakref import ref
 
 from jacaros.clock import Clock
@@ -25,6 +25,15 @@ from jacaros.env.values import Atom, Out, plain, text
 
 T = TypeVar("T")
 _REQUIRED: Any = object()
+
+
+class ActOptions(TypedDict, total=False):
+    """The options of `Session.act`. See `Session.begin`."""
+
+    artifact: ArtifactId | str | None
+    workspace: str | None
+    timeout: float | None
+    urgency: int
 
 
 class Session:
@@ -358,7 +367,20 @@ class Session:
 
     # ---- operations
 
-    async def act(
+    async def act(self, operation: str, *arguments: object, **options: Unpack[ActOptions]) -> Any:
+        """Run an operation, and wait for its end. The arguments are those of `begin`.
+
+        Cancelling the waiting task cancels the operation.
+
+        Returns:
+            The values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
+
+        Raises:
+            OperationFailed: with message and reason.
+        """
+        return await self.begin(operation, *arguments, **options)
+
+    def begin(
         self,
         operation: str,
         *arguments: object,
@@ -366,10 +388,8 @@ class Session:
         workspace: str | None = None,
         timeout: float | None = None,
         urgency: int = 0,
-    ) -> Any:
-        """Run an operation, and wait for its end.
-
-        Cancelling the waiting task cancels the operation.
+    ) -> SessionOperation:
+        """Begin an operation.
 
         Args:
             operation: name of the operation.
@@ -381,27 +401,6 @@ class Session:
             timeout: time limit in seconds. Afterwards the operation fails with
                 ``operation_timeout(Operation,Milliseconds)``.
             urgency: decides who gets the resources that it uses, such as the wheels of a robot. The greater one wins.
-
-        Returns:
-            The values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
-
-        Raises:
-            OperationFailed: with message and reason.
-        """
-        return await self.begin(
-            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
-        )
-
-    def begin(
-        self,
-        operation: str,
-        *arguments: object,
-        artifact: ArtifactId | str | None = None,
-        workspace: str | None = None,
-        timeout: float | None = None,
-        urgency: int = 0,
-    ) -> SessionOperation:
-        """Begin an operation. The arguments are those of `act`.
 
         Returns:
             Its handle. An operation that cannot begin, for example because no artifact offers it, has failed already.
@@ -423,7 +422,7 @@ class Session:
             direction = Direction(artifact, workspace) if directed else ANYWHERE
             target = self.presence.artifact_for(operation, len(given), direction)
         except OperationFailed as failure:
-            handle.end(OperationOutcome(False, failure.message, failure.reason))
+            handle.end(OperationOutcome.of(failure))
             return handle
         request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
         request.urgency = urgency
