@@ -121,7 +121,7 @@ def _reported(presence: AgentPresence, finish: Finish) -> OnOutcome:
 
 
 @_action("makeArtifact", 2, 3, 4)
-def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay | None:
+def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay:
     """``makeArtifact(Name, Type [, Parameters [, -Id]])``: make an artifact.
 
     It is made in the current workspace, in the one that the action is directed to, or in the one that precedes the
@@ -171,7 +171,7 @@ def _filter(presence: AgentPresence, call: Call) -> Filter | None:
 
 
 @_action("focusWhenAvailable", 1, 2)
-def focus_when_available(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay | None:
+def focus_when_available(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay:
     """``focusWhenAvailable(Name [, Filter])``: wait until an artifact of that name exists, and focus on it."""
     here = _base(presence, call)
     name = _name(call, 0, presence.focused.body_in(here))

@@ -12,12 +12,12 @@ from jacaros.body.focus import PerceivingMind
 from jacaros.body.needs import Needs
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.presence import AgentPresence
-from jacaros.body.values import Outputs, References, to_value
+from jacaros.body.values import Outputs, to_value
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.ports import UnderWay
+from jacaros.env.ports import ENDED, UnderWay
 from jacaros.env.presence.presence import ANYWHERE, Direction, UnknownOperation
 from jacaros.env.session.account import Activity
 from jacaros.env.values import Structure
@@ -49,11 +49,9 @@ class AgentBody:
         agent: name of the agent.
         mind: its mind.
         environment: its environment.
-        references: opaque references, shared by all agents of a run.
-        writer: writes percepts, also shared.
+        writer: writes percepts, shared by all agents of a run.
         show: prints a line of the agent's output.
         activity: counts running actions.
-        home: full path of the agent's home workspace.
 
     Attributes:
         presence: the agent's workspaces and focused artifacts.
@@ -64,20 +62,18 @@ class AgentBody:
         agent: str,
         mind: ServedMind,
         environment: Environment,
-        references: References,
         writer: PerceptWriter,
         show: Callable[[str], None],
         activity: Activity,
-        home: str = "/main",
     ) -> None:
-        self.presence = AgentPresence(agent, mind, environment, references, writer, home, keys())
+        self.presence = AgentPresence(agent, mind, environment, writer, keys())
         self._mind = mind
         self._environment = environment
-        self._references = references
+        self._references = writer.references
         self._show = show
         self._activity = activity
-        # Running acts; without a handle until the call that begins them returns.
-        self._pending: dict[int, UnderWay | None] = {}
+        # Running acts; without a handle of their own until the call that begins them returns.
+        self._pending: dict[int, UnderWay] = {}
         self._needs = Needs(agent, environment)
 
     @property
@@ -88,7 +84,7 @@ class AgentBody:
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
         self.presence.enter()
-        self._pending[act.id] = None
+        self._pending[act.id] = ENDED
         self._activity.begin()
         if act.functor is NEEDS:
             self._need(act)
@@ -108,24 +104,19 @@ class AgentBody:
             return
         handle = self._pending.pop(act_id)
         self._activity.end()
-        if handle is not None:
-            handle.cancel()
+        handle.cancel()
 
     def suspend_act(self, act_id: int) -> None:
         """Pause the operation of an action if it is pausable; or lend the resources of a plan to others."""
         if act_id in self._needs:
             self._needs[act_id].pause()
-        handle = self._pending.get(act_id)
-        if handle is not None:
-            handle.pause()
+        self._pending.get(act_id, ENDED).pause()
 
     def resume_act(self, act_id: int) -> None:
         """Resume the operation of an action; or claim the resources of a plan again."""
         if act_id in self._needs:
             self._needs[act_id].resume()
-        handle = self._pending.get(act_id)
-        if handle is not None:
-            handle.resume()
+        self._pending.get(act_id, ENDED).resume()
 
     def close(self) -> None:
         """Cancel all actions and stop focusing everything; the mind receives nothing more."""
@@ -160,7 +151,7 @@ class AgentBody:
         else:
             self._mind.preempted(number, resource)
 
-    def _begin(self, call: Call) -> UnderWay | None:
+    def _begin(self, call: Call) -> UnderWay:
         action = ACTIONS.get((call.name, len(call.arguments)))
         if action is not None and call.direction.artifact is None:
             return self._by_itself(action, call)
@@ -174,16 +165,16 @@ class AgentBody:
             # Printed here and not by the console artifact, which would receive values, while users want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
-            return None
+            return ENDED
         return self._execute(call, artifact)
 
-    def _by_itself(self, action: Action, call: Call) -> UnderWay | None:
+    def _by_itself(self, action: Action, call: Call) -> UnderWay:
         finish = partial(self._finish, call.act.id)
         if call.direction.timeout is None:
-            return action(self.presence, call, finish)
+            return action(self.presence, call, finish) or ENDED
         deadline = Deadline(call, self._environment.clock, finish, self._references)
         try:
-            return deadline.watch(action(self.presence, call, deadline.ended))
+            return deadline.watch(action(self.presence, call, deadline.ended) or ENDED)
         except OperationFailed:
             deadline.cancel()
             raise

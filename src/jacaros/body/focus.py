@@ -5,7 +5,7 @@ from typing import Protocol
 
 from jacaros.bdi.state.act import Percept
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
-from jacaros.body.values import References, atom_of
+from jacaros.body.values import atom_of
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.ports import Workspace
@@ -69,13 +69,10 @@ class FocusedArtifacts(Focused):
     For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``.
     """
 
-    def __init__(
-        self, agent: str, writer: PerceptWriter, references: References, mind: PerceivingMind
-    ) -> None:
+    def __init__(self, agent: str, writer: PerceptWriter, mind: PerceivingMind) -> None:
         super().__init__()
         self._agent = agent
         self._writer = writer
-        self._references = references
         self._notice: Notice = mind.perceive
         self._untaken = mind.has_untaken
         self._observers: dict[str | None, FocusObserver] = {}
@@ -129,11 +126,12 @@ class FocusedArtifacts(Focused):
             watcher(artifact, kind is ADD)
 
     def _focusing(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> Percept:
+        references = self._writer.references
         arguments: tuple[Term, ...] = (
-            self._references.of(artifact),
+            references.of(artifact),
             atom_of(artifact.name),
             String(artifact.type_name),
-            self._references.of(workspace),
+            references.of(workspace),
             atom_of(workspace.name),
             String(workspace.path),
         )

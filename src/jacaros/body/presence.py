@@ -4,7 +4,7 @@ from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.focus import FocusedArtifacts, PerceivingMind
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
-from jacaros.body.values import References, atom_of
+from jacaros.body.values import atom_of
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
 from jacaros.env.ids import ArtifactId
@@ -23,9 +23,7 @@ class AgentPresence(Presence):
         agent: name of the agent.
         mind: its mind.
         environment: its environment.
-        references: opaque references, shared by all agents of a run.
-        writer: writes percepts, also shared.
-        home: full path of the agent's home workspace.
+        writer: writes percepts, shared by all agents of a run.
         own_actions: the body's own actions, such as ``focus/1``.
     """
 
@@ -36,14 +34,12 @@ class AgentPresence(Presence):
         agent: str,
         mind: PerceivingMind,
         environment: Environment,
-        references: References,
         writer: PerceptWriter,
-        home: str,
         own_actions: tuple[str, ...],
     ) -> None:
-        focused = FocusedArtifacts(agent, writer, references, mind)
-        super().__init__(environment, agent, home, focused, own_actions)
-        self.references = references
+        focused = FocusedArtifacts(agent, writer, mind)
+        super().__init__(environment, agent, "/main", focused, own_actions)
+        self.references = writer.references
         self._mind, self._writer = mind, writer
         self._entered = False
         self._session: ArtifactId | None = None

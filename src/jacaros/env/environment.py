@@ -10,7 +10,6 @@ from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
-from jacaros.env.listener import EnvironmentListener
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
 from jacaros.env.resources.resource import Use
@@ -18,7 +17,6 @@ from jacaros.env.standard_artifacts import add_standard_artifacts
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
-from jacaros.trace import Tracer
 
 
 def knows_no_type(type_name: str) -> type[Artifact]:
@@ -30,7 +28,7 @@ def knows_no_type(type_name: str) -> type[Artifact]:
     raise UnknownArtifactType(type_name)
 
 
-class Environment(WorkspaceTree):
+class Environment(Setting, WorkspaceTree):
     """All workspaces of a process. ``/main`` always exists.
 
     Args:
@@ -39,11 +37,6 @@ class Environment(WorkspaceTree):
         find_type: finds the artifact class for a type name. Raises `UnknownArtifactType`.
         log: takes a line of the log.
         on_internal_error: called with defects of JaCaROS itself. Without it they are raised where they arise.
-
-    Attributes:
-        clock: clock of the run.
-        resources: services of the host for artifacts, by name.
-        arbiter: assigns resources to operations and plans.
     """
 
     def __init__(
@@ -54,12 +47,11 @@ class Environment(WorkspaceTree):
         log: Callable[[str], None] = log_to_stderr,
         on_internal_error: Callable[[BaseException], None] | None = None,
     ) -> None:
-        self._setting = setting = Setting(clock, resources or {}, log, None, on_internal_error)
-        self.clock, self.resources, self.arbiter = setting.clock, setting.resources, setting.arbiter
+        Setting.__init__(self, clock, resources or {}, log, None, on_internal_error)
         self._find_type = find_type
         self._registry = Registry()
         self._own: list[Workspace] = []
-        super().__init__(self._make)
+        WorkspaceTree.__init__(self, self._make)
         self.create_workspace("/main")
 
     def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
@@ -69,25 +61,6 @@ class Environment(WorkspaceTree):
         """
         steps = self._registry.made(artifact_id)
         return () if steps is None else steps.used()
-
-    @property
-    def tracer(self) -> Tracer | None:
-        """Receives every cause. None if no tracer is set."""
-        return self._setting.tracer
-
-    @tracer.setter
-    def tracer(self, tracer: Tracer | None) -> None:
-        self._setting.tracer = tracer
-
-    @property
-    def listener(self) -> EnvironmentListener | None:
-        """Receives what happens in the artifacts of this process. None if no listener is set."""
-        listener: EnvironmentListener | None = self._setting.listener
-        return listener
-
-    @listener.setter
-    def listener(self, listener: EnvironmentListener | None) -> None:
-        self._setting.listener = listener
 
     def artifact(self, artifact_id: ArtifactId) -> object | None:
         """Return the artifact object behind an id, or None if it does not exist yet, is gone or is remote."""
@@ -102,7 +75,7 @@ class Environment(WorkspaceTree):
         if above is not None and above not in self._own:
             message = f"workspace {above.path} is remote: create {path} in the process that serves it"
             raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
-        workspace = Workspace(path, self._registry, self._setting, self._find_type)
+        workspace = Workspace(path, self._registry, self, self._find_type)
         add_standard_artifacts(workspace, self)
         self._own.append(workspace)
         return workspace
@@ -113,14 +86,6 @@ class Environment(WorkspaceTree):
         if steps is None:
             return self.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
-
-    def log(self, text: str) -> None:
-        """Log a line."""
-        self._setting.log(text)
-
-    def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Log that *what* failed in the code of *who*."""
-        self._setting.log_error(who, what, error)
 
     async def close(self) -> None:
         """Dispose all artifacts, those of the newest workspaces first. Remote workspaces do not change."""

@@ -59,7 +59,7 @@ ENDED: Final = Waiting(lambda: None)
 """The handle of a request that has ended."""
 
 
-async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
+async def awaited(begin: Callable[[OnMade], UnderWay]) -> ArtifactId:
     """Begin a request for an artifact, and wait for it. Cancelling the wait cancels the request.
 
     Raises:
@@ -79,8 +79,7 @@ async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
     try:
         return await found
     except asyncio.CancelledError:
-        if under_way is not None:
-            under_way.cancel()
+        under_way.cancel()
         raise
 
 

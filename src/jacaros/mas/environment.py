@@ -129,20 +129,18 @@ class RunEnvironment:
         self.environment = Environment(clock, resources, self.types, console.log, on_internal_error)
         self._console = console
         self._activity = activity
-        self._references = References()
+        references = References()
         older = deployment.environment == CARTAGO_2
-        self._writer = PerceptWriter(self._references, self.environment.workspace, older)
+        self._writer = PerceptWriter(references, self.environment.workspace, older)
         # A run may create and dispose millions of artifacts.
-        self.environment.when_disposed(self._references.forget)
+        self.environment.when_disposed(references.forget)
         self.environment.when_disposed(self._writer.forget)
 
     def make_body(self, host: AgentHost) -> AgentBody:
         """Return a body for an agent, in ``/main``."""
         mind = host.mind
         assert isinstance(mind, Mind)
-        return AgentBody(
-            host.name, mind, self.environment, self._references, self._writer, host.print, self._activity
-        )
+        return AgentBody(host.name, mind, self.environment, self._writer, host.print, self._activity)
 
     def situate(self, presence: Presence, spec: AgentSpec) -> None:
         """Let an agent join and focus what the project declares.

@@ -14,7 +14,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import OnMade, UnderWay, Waiting, Workspace
+from jacaros.env.ports import ENDED, OnMade, UnderWay, Waiting, Workspace
 from jacaros.env.presence.filtering import Filter
 from jacaros.env.presence.focused import Focused
 from jacaros.env.presence.joined import JoinedWorkspaces
@@ -189,7 +189,7 @@ class Presence:
         on_done: OnMade,
         namespace: str | None = None,
         only: Filter | None = None,
-    ) -> UnderWay | None:
+    ) -> UnderWay:
         """Focus an artifact as soon as one with this name or path exists. See `Focused.begin`.
 
         Args:
@@ -200,7 +200,7 @@ class Presence:
             only: filter of what is perceived.
 
         Returns:
-            The handle of the wait; None if the artifact exists.
+            The handle of the wait.
 
         Raises:
             OperationFailed: its workspace does not exist, or is not joined.
@@ -228,7 +228,7 @@ class Presence:
 
         with suppress(UnknownArtifact):
             begin(workspace.lookup(name))
-            return None
+            return ENDED
         waiting = Waiting(workspace.watch(look))
         return waiting
 

@@ -11,6 +11,7 @@ from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.errors import WorkspaceError
+from jacaros.env.kernel.faults import error_text
 from jacaros.env.session.account import Observer
 from jacaros.env.session.session import Session
 from jacaros.errors import JacarosError
@@ -18,7 +19,7 @@ from jacaros.extension.literal import Literal
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.coroutines import without_exit
-from jacaros.mas.python_agents.faults import fault_lines, place_of_fault, said
+from jacaros.mas.python_agents.faults import fault_lines, place_of_fault
 from jacaros.mas.python_agents.handlers import Handlers
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
@@ -105,7 +106,7 @@ class PythonAgentHost(AgentHost):
             tell("dropped", told, self, "")
             raise
         except BaseException as error:
-            tell("failed", told, self, said(error))
+            tell("failed", told, self, error_text(error))
             raise
         tell("achieved", told, self, "")
 
@@ -280,7 +281,7 @@ class _Task:
         try:
             return bool(self._host.agent.accept_kill(killer))
         except Exception as error:
-            self._host.log("error", f"accept_kill: {said(error)}{place_of_fault(error)}")
+            self._host.log("error", f"accept_kill: {error_text(error)}{place_of_fault(error)}")
             return True
 
     def complete(self, act_id: int, completion: Completion) -> None:
