@@ -1,6 +1,7 @@
 """The focused artifacts of an agent, whose properties and signals it perceives."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 from jacaros.bdi.state.act import Percept
@@ -33,29 +34,27 @@ class PerceivingMind(Protocol):
         """Return whether percepts about properties called *name* are still unprocessed."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FocusObserver:
     """Perceives for an agent, in one namespace of its program.
 
     Attributes:
         agent: name of the agent.
+        namespace: namespace of its program.
+        writer: writes its percepts.
         notice: receives its percepts.
         has_untaken: returns whether the mind still has unprocessed percepts about properties of a name.
     """
 
-    __slots__ = ("_namespace", "_writer", "agent", "has_untaken", "notice")
-
-    def __init__(
-        self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice, untaken: Untaken
-    ) -> None:
-        self.agent = agent
-        self.has_untaken = untaken
-        self.notice = notice
-        self._namespace = namespace
-        self._writer = writer
+    agent: str
+    namespace: str | None
+    writer: PerceptWriter
+    notice: Notice
+    has_untaken: Untaken
 
     def observe(self, observation: Observation) -> None:
         """Pass an observation to the mind."""
-        writer, namespace = self._writer, self._namespace
+        writer, namespace = self.writer, self.namespace
         # The percepts just written for another observer are the same.
         if observation is writer.newest and namespace is writer.namespace:
             self.notice(writer.written)

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from jacaros.clock import Clock, Timer
@@ -38,10 +39,12 @@ class Turns(Protocol):
         """Return a claim of an operation, which the operation enters and leaves."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class OperationExecution:
     """The execution of one operation: the handle of its caller, and `Artifact.current` of its code.
 
     Attributes:
+        turns: the operations of its artifact.
         request: the request of the caller.
         declared: the operation that serves it.
         arguments: the converted arguments.
@@ -61,46 +64,24 @@ class OperationExecution:
         linked: executions in other artifacts that it is waiting for.
     """
 
-    __slots__ = (
-        "_pause",
-        "_turns",
-        "arguments",
-        "asked_for",
-        "begun",
-        "cancelled",
-        "cause",
-        "declared",
-        "ended",
-        "holding",
-        "limit",
-        "linked",
-        "request",
-        "suspended",
-        "task",
-        "thread",
-        "told",
-        "verdict",
-    )
-
-    def __init__(
-        self,
-        turns: Turns,
-        request: OperationRequest,
-        declared: DeclaredOperation = NOTHING,
-        arguments: tuple[object, ...] = (),
-        cause: Cause | None = None,
-    ) -> None:
-        self._turns = turns
-        self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
-        self.begun = self.cancelled = self.told = self.suspended = self.ended = False
-        self.holding: Holding | None = None
-        self.asked_for: Sequence[AskedFor] = ()
-        self.verdict: OperationOutcome | None = None
-        self.limit: Timer | None = None
-        self.thread: int | None = None
-        self.task: asyncio.Task[None] | None = None
-        self.linked: list[UnderWay] = []
-        self._pause: Pause | None = None
+    turns: Turns
+    request: OperationRequest
+    declared: DeclaredOperation = NOTHING
+    arguments: tuple[object, ...] = ()
+    cause: Cause | None = None
+    asked_for: Sequence[AskedFor] = field(default=(), init=False)
+    begun: bool = field(default=False, init=False)
+    cancelled: bool = field(default=False, init=False)
+    verdict: OperationOutcome | None = field(default=None, init=False)
+    told: bool = field(default=False, init=False)
+    limit: Timer | None = field(default=None, init=False)
+    thread: int | None = field(default=None, init=False)
+    ended: bool = field(default=False, init=False)
+    holding: "Holding | None" = field(default=None, init=False)
+    suspended: bool = field(default=False, init=False)
+    task: "asyncio.Task[None] | None" = field(default=None, init=False)
+    linked: Sequence[UnderWay] = field(default=(), init=False)
+    _pause: "Pause | None" = field(default=None, init=False)
 
     @property
     def stopped(self) -> bool:
@@ -113,7 +94,7 @@ class OperationExecution:
         The outcome is not reported. Changes of the step in progress are rolled back; changes in ``finally`` are
         published. An operation in a thread runs to its end.
         """
-        self._turns.cancel(self)
+        self.turns.cancel(self)
 
     def pause(self) -> None:
         """Ask it to pause. Pausable operations obey, and linked operations get the request, too.
@@ -135,12 +116,12 @@ class OperationExecution:
         barred = self.suspended or (self.holding is not None and self.holding.barred)
         if barred and not self.paused and not self.ended:
             pause = self._pauses()
-            pause.since = self._turns.clock.elapsed
+            pause.since = self.turns.clock.elapsed
             self._call(pause.callbacks)
-            self._turns.reconsider()
+            self.turns.reconsider()
         elif not barred and self._pause is not None and self._pause.end():
             self._call(self._pause.resumers)
-            self._turns.reconsider()
+            self.turns.reconsider()
 
     def _call(self, callbacks: list[Callable[[], None]]) -> None:
         for callback in list(callbacks):
@@ -149,7 +130,7 @@ class OperationExecution:
             except BaseException as error:
                 if is_interruption(error):
                     raise
-                self._turns.complain(f"a pause callback of {self.request.operation} failed", error)
+                self.turns.complain(f"a pause callback of {self.request.operation} failed", error)
 
     def resume(self) -> None:
         """Let it continue after `pause`."""
@@ -170,7 +151,7 @@ class OperationExecution:
     def hold(self, uses: tuple[Use, ...]) -> "Holding":
         """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
-            self.holding = self._turns.hold(self, uses)
+            self.holding = self.turns.hold(self, uses)
         return self.holding
 
     @property
@@ -230,34 +211,33 @@ class OperationExecution:
 
     def _pauses(self) -> "Pause":
         if self._pause is None:
-            self._pause = Pause(self._turns.clock)
+            self._pause = Pause(self.turns.clock)
         return self._pause
 
 
+@dataclass(slots=True)
 class Pause:
     """The pauses of one execution.
 
     Attributes:
+        clock: clock of the run.
         since: begin of the current pause, or None.
         callbacks: called when a pause begins.
         resumers: called when a pause ends.
     """
 
-    __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "resumers", "since")
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock = clock
-        self.since: float | None = None
-        self.callbacks: list[Callable[[], None]] = []
-        self.resumers: list[Callable[[], None]] = []
-        self._spent = 0.0
-        self._waiting: list[asyncio.Future[None]] = []
+    clock: Clock
+    since: float | None = None
+    callbacks: list[Callable[[], None]] = field(default_factory=list)
+    resumers: list[Callable[[], None]] = field(default_factory=list)
+    _spent: float = 0.0
+    _waiting: list[asyncio.Future[None]] = field(default_factory=list)
 
     def end(self) -> bool:
         """End the current pause and wake the waiting tasks. Return False without a pause."""
         if self.since is None:
             return False
-        self._spent += self._clock.elapsed - self.since
+        self._spent += self.clock.elapsed - self.since
         self.since = None
         waiting, self._waiting = self._waiting, []
         for future in waiting:

@@ -20,7 +20,7 @@ def log_to_stderr(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-@dataclass(eq=False, repr=False)
+@dataclass(slots=True, eq=False, repr=False)
 class Setting:
     """What the artifacts of one environment share.
 
