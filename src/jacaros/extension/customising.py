@@ -3,8 +3,8 @@
 The mind does not know of this: its selection functions are replaced by ones that call the methods.
 """
 
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+from collections.abc import Callable
+from typing import TypeVar, cast
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.selections import options
@@ -61,8 +61,14 @@ class Chosen(Urgent):
         undo(trail, 0)
         if not found:
             return None
-        candidates: list[Option | None] = [*found, None]
-        chosen = ask(self._mind, self._choose, _one_of(candidates), candidates[0], tuple(found))
+
+        def check(chosen: object) -> Option | None:
+            if chosen is None or any(chosen is each for each in found):
+                return cast("Option | None", chosen)
+            raise ValueError(f"it returned {chosen!r}, which is not one of the choices")
+
+        default: Option | None = found[0]
+        chosen = ask(self._mind, self._choose, check, default, tuple(found))
         for option, (frame, bindings) in zip(found, held, strict=True):
             if option is chosen:
                 for variable, value in bindings:
@@ -93,13 +99,3 @@ def ask(
         name = getattr(method, "__qualname__", repr(method))
         owner.architecture.log("error", crash_text(name, method, error))
         return default
-
-
-def _one_of(items: Sequence[Result]) -> Callable[[object], Result]:
-    def check(chosen: object) -> Result:
-        for item in items:
-            if item is chosen:
-                return item
-        raise ValueError(f"it returned {chosen!r}, which is not one of the choices")
-
-    return check

@@ -82,10 +82,18 @@ def shown(argument: object) -> str:
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
 
 
-def got(item: object, unsuitable: Unsuitable) -> str:
-    """Return what a part is, or which part of it is wrong."""
-    deeper = str(unsuitable)
-    return f"is {shown(item)}" + (f": {deeper}" if deeper else "")
+def accept_part(kind: Kind, item: object, part: str, which: object = None) -> Any:
+    """Accept a part of an argument, such as its ``element`` 3.
+
+    Raises:
+        Unsuitable: it is not of its kind; the text says which part it is, and which part of it is wrong.
+    """
+    try:
+        return kind.accept(item)
+    except Unsuitable as unsuitable:
+        where = part if which is None else f"{part} {text(which, quoted=True)}"
+        deeper = f": {unsuitable}" if str(unsuitable) else ""
+        raise Unsuitable(f"{where} is {shown(item)}{deeper}") from None
 
 
 class Field(NamedTuple):
@@ -137,7 +145,7 @@ def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> K
         if not fewest <= len(given) <= len(kinds):
             raise Unsuitable(f"it has {len(given)} arguments")
         values = {
-            field.name: _field(field, wanted, item)
+            field.name: accept_part(wanted, item, field.name)
             for (field, wanted), item in zip(kinds, given, strict=False)
         }
         try:
@@ -155,10 +163,3 @@ def _arguments(argument: object, functor: str) -> tuple[object, ...]:
     if isinstance(argument, Atom) and argument == functor:
         return ()
     raise Unsuitable
-
-
-def _field(field: Field, kind: Kind, item: object) -> object:
-    try:
-        return kind.accept(item)
-    except Unsuitable as unsuitable:
-        raise Unsuitable(f"{field.name} {got(item, unsuitable)}") from None

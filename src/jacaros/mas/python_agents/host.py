@@ -1,10 +1,12 @@
 """The host of a Python agent: its tasks, messages and session."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Iterable, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from jacaros.asl.loader import parse_literals
+from jacaros.asl.lowering import lower_value
 from jacaros.asl.nodes import Literal as LiteralNode
 from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.options import Options
@@ -15,10 +17,12 @@ from jacaros.env.kernel.faults import error_text
 from jacaros.env.session.account import Observer
 from jacaros.env.session.session import Session
 from jacaros.errors import JacarosError
-from jacaros.extension.literal import Literal
+from jacaros.extension.literal import Literal, literal_of
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.agent_options import mind_options
 from jacaros.mas.coroutines import without_exit
+from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_agents.faults import fault_lines, place_of_fault
 from jacaros.mas.python_agents.handlers import Handlers
 from jacaros.mas.python_agents.messaging import Messaging
@@ -34,30 +38,19 @@ class PythonAgentHost(AgentHost):
 
     Args:
         agent: object of the user's class.
-        name: name of the agent.
+        spec: its declaration in the project.
         run: its run.
         seed: seed of the agent's random numbers.
-        mind_options: options for its logs.
-        options: options of the project file.
-        beliefs: beliefs of the project file.
     """
 
-    def __init__(
-        self,
-        agent: PythonAgent,
-        name: str,
-        run: Run,
-        seed: str,
-        mind_options: Options,
-        options: Mapping[str, str],
-        beliefs: tuple[Literal, ...],
-    ) -> None:
-        super().__init__(name, run, seed)
-        self.options, self.beliefs = options, beliefs
+    def __init__(self, agent: PythonAgent, spec: AgentSpec, run: Run, seed: str) -> None:
+        super().__init__(spec.name, run, seed)
+        name, self.options = spec.name, spec.options
+        self.beliefs = _beliefs(spec)
         self.open_session: Callable[[], Session] | None = None
         self.task_activity = TaskActivity(run.activity, self._settled)
         self.mail = Messaging(name, self.send, self.agent_names, run.clock, run.activity, self.task_activity)
-        self.mind = _Task(self, mind_options)
+        self.mind = _Task(self, mind_options(spec.options))
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
@@ -289,3 +282,12 @@ class _Task:
 
     def shut_down_in(self, milliseconds: float) -> None:
         """Do nothing: it is cancelled at the end."""
+
+
+def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
+    if not spec.beliefs.strip():
+        return ()
+    return tuple(
+        literal_of(lower_value(node))
+        for node in parse_literals(spec.beliefs, f"the declaration of {spec.name}")
+    )
