@@ -274,10 +274,8 @@ def _signature(function: Callable[..., object], skip_first: bool) -> operations.
 
 def _hints(function: Callable[..., object]) -> dict[str, object]:
     """Return the annotations; those that cannot be resolved stay as text."""
-    try:
-        return typing.get_type_hints(function)
-    except Exception:
-        return operations.written_annotations(function)
+    known, unknown = operations.annotations_of(function)
+    return {**known, **unknown}
 
 
 def _wants_agent(function: Callable[..., object]) -> bool:
