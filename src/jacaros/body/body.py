@@ -39,7 +39,7 @@ class ServedMind(PerceivingMind, Protocol):
         """Handle that an act has its resource again, or no longer waits for it."""
 
 
-class AgentBody:
+class AgentBody(AgentPresence):
     """Runs the actions of one agent and perceives for it.
 
     The percepts of an operation reach the mind before the end of its action: when the plan continues, the belief base
@@ -52,9 +52,6 @@ class AgentBody:
         writer: writes percepts, shared by all agents of a run.
         show: prints a line of the agent's output.
         activity: counts running actions.
-
-    Attributes:
-        presence: the agent's workspaces and focused artifacts.
     """
 
     def __init__(
@@ -66,10 +63,8 @@ class AgentBody:
         show: Callable[[str], None],
         activity: Activity,
     ) -> None:
-        self.presence = AgentPresence(agent, mind, environment, writer, keys())
+        super().__init__(agent, mind, environment, writer, keys())
         self._mind = mind
-        self._environment = environment
-        self._references = writer.references
         self._show = show
         self._activity = activity
         # Running acts; without a handle of their own until the call that begins them returns.
@@ -83,7 +78,7 @@ class AgentBody:
 
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
-        self.presence.enter()
+        self.enter()
         self._pending[act.id] = ENDED
         self._activity.begin()
         if act.functor is NEEDS:
@@ -92,7 +87,7 @@ class AgentBody:
         try:
             handle = self._begin(read(act))
         except OperationFailed as failure:
-            self._finish(act.id, refused(failure, self._references))
+            self._finish(act.id, refused(failure, self.references))
             return
         if act.id in self._pending:
             self._pending[act.id] = handle
@@ -120,22 +115,22 @@ class AgentBody:
 
     def close(self) -> None:
         """Cancel all actions and stop focusing everything; the mind receives nothing more."""
-        self.presence.focused.fall_silent()
+        self.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
         self._needs.close()
-        self.presence.leave()
+        self.leave()
 
     # ---- resources of plans
 
     def _need(self, act: Act) -> None:
-        focused = self.presence.focused.in_order()
-        near = [each for workspace in self.presence.workspaces.joined() for each in workspace.artifacts()]
+        focused = self.focused.in_order()
+        near = [each for workspace in self.workspaces.joined() for each in workspace.artifacts()]
         on_done, on_preempted = partial(self._need_ended, act.id), partial(self._on_preempted, act.id)
         try:
             self._needs.ask(act, focused, near, on_done, on_preempted)
         except OperationFailed as failure:
-            self._finish(act.id, refused(failure, self._references))
+            self._finish(act.id, refused(failure, self.references))
 
     def _need_ended(self, number: int, failure: OperationFailed | None) -> None:
         """Report that a plan has its resources, or cannot have them; one that has begun fails at its next claim."""
@@ -143,7 +138,7 @@ class AgentBody:
             self._finish(number, SUCCEEDED)
         else:
             self._needs.forget(number)
-            self._finish(number, refused(failure, self._references))
+            self._finish(number, refused(failure, self.references))
 
     def _on_preempted(self, number: int, resource: str | None) -> None:
         if resource is None:
@@ -156,9 +151,9 @@ class AgentBody:
         if action is not None and call.direction.artifact is None:
             return self._by_itself(action, call)
         artifact = self._artifact_for(call)
-        if action is not None and self.presence.is_own(artifact) and self._offers(artifact, call):
-            at_home = artifact is self.presence.session
-            here = None if at_home else self._environment.workspace(artifact.workspace)
+        if action is not None and self.is_own(artifact) and self._offers(artifact, call):
+            at_home = artifact is self.session
+            here = None if at_home else self.environment.workspace(artifact.workspace)
             call.direction = Direction(None, here, call.direction.timeout)
             return self._by_itself(action, call)
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
@@ -171,23 +166,21 @@ class AgentBody:
     def _by_itself(self, action: Action, call: Call) -> UnderWay:
         finish = partial(self._finish, call.act.id)
         if call.direction.timeout is None:
-            return action(self.presence, call, finish) or ENDED
-        deadline = Deadline(call, self._environment.clock, finish, self._references)
+            return action(self, call, finish) or ENDED
+        deadline = Deadline(call, self.environment.clock, finish, self.references)
         try:
-            return deadline.watch(action(self.presence, call, deadline.ended) or ENDED)
+            return deadline.watch(action(self, call, deadline.ended) or ENDED)
         except OperationFailed:
             deadline.cancel()
             raise
 
     def _offers(self, artifact: ArtifactId, call: Call) -> bool:
-        return call.key in self._environment.workspace(artifact.workspace).offers(artifact)
+        return call.key in self.environment.workspace(artifact.workspace).offers(artifact)
 
     def _artifact_for(self, call: Call) -> ArtifactId:
         direction, intention = call.direction, call.act.intention
         try:
-            return self.presence.artifact_for(
-                call.name, len(call.arguments), direction, intention, call.namespace
-            )
+            return self.artifact_for(call.name, len(call.arguments), direction, intention, call.namespace)
         except UnknownArtifact:
             raise
         except OperationFailed as failure:
@@ -206,23 +199,21 @@ class AgentBody:
             raise _too_deep(artifact, call.key) from None
         done = partial(self._done, act.id, outputs)
         timeout = call.direction.timeout
-        tracer, why = self._environment.tracer, act.cause
+        tracer, why = self.environment.tracer, act.cause
         if tracer is not None:
-            why = tracer.link("act", f"{self.presence.name} {call.key}", why, (self.presence.name, act))
-        request = OperationRequest(
-            artifact, call.name, tuple(arguments), self.presence.name, why, done, timeout
-        )
+            why = tracer.link("act", f"{self.name} {call.key}", why, (self.name, act))
+        request = OperationRequest(artifact, call.name, tuple(arguments), self.name, why, done, timeout)
         request.urgency, request.yields = act.urgency, act.yields
         if act.within:
             request.within = self._needs.claims(act.within)
         request.on_preempted = partial(self._on_preempted, act.id)
-        return self._environment.execute(request)
+        return self.environment.execute(request)
 
     def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:
         if outcome.ok and not outputs:
             self._finish(act_id, SUCCEEDED)
         else:
-            self._finish(act_id, of_operation(outcome, outputs, self._references))
+            self._finish(act_id, of_operation(outcome, outputs, self.references))
 
     def _finish(self, act_id: int, completion: Completion) -> None:
         if act_id in self._pending:

@@ -40,7 +40,7 @@ class AgentPresence(Presence):
         focused = FocusedArtifacts(agent, writer, mind)
         super().__init__(environment, agent, "/main", focused, own_actions)
         self.references = writer.references
-        self._mind, self._writer = mind, writer
+        self._perceive, self._writer = mind.perceive, writer
         self._entered = False
         self._session: ArtifactId | None = None
 
@@ -66,7 +66,7 @@ class AgentPresence(Presence):
             made_of = (self.name, self.focused, workspace)
             self.focused.inhabit(workspace, self._offer("body", workspace, AgentBodyArtifact, *made_of))
         about = self.references.of(workspace), atom_of(workspace.name), String(workspace.path)
-        self._mind.perceive([self._writer.own(ADD if joined else REMOVE, session, "joinedWsp", *about)])
+        self._perceive([self._writer.own(ADD if joined else REMOVE, session, "joinedWsp", *about)])
         if not joined:
             self._withdraw(workspace, self.focused.body_in(workspace))
 

@@ -351,8 +351,8 @@ class System:
             host.make_body = lambda: self.run_environment().make_body(host)
         if self._run_environment is not None:
             host.body = body = self._run_environment.make_body(host)
-            body.presence.enter()
-            self._run_environment.situate(body.presence, spec)
+            body.enter()
+            self._run_environment.situate(body, spec)
 
     def _make_directory_agent(self) -> Mind:
         """Create the agent of the directory facilitator. An agent of the project with its name replaces it."""

@@ -15,10 +15,9 @@ from jacaros.env.values import Atom, Out, Structure, equal, text
 
 def kind_of(annotation: Any) -> Kind:
     """Return the kind of values that a parameter with *annotation* accepts. An unknown annotation accepts any input."""
-    simple = _SIMPLE.get(annotation) if _hashable(annotation) else None
-    if simple is not None:
-        return simple
     annotation = _unwrapped(annotation)
+    if _hashable(annotation) and annotation in _SIMPLE:
+        return _SIMPLE[annotation]
     origin, members = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in (typing.Union, types.UnionType):
         return alternatives([kind_of(member) for member in members])
@@ -71,9 +70,6 @@ def _alias_of(annotation: Any) -> Any:
 
 
 def _kind_of_class(kind: type) -> Kind:
-    simple = _SIMPLE.get(kind)
-    if simple is not None:
-        return simple
     if issubclass(kind, enum.Enum):
         return _member(kind)
     fields = kinds.fields_of(kind)
