@@ -560,7 +560,7 @@ class Steps:
         if execution.task is not None:
             self._interrupt(execution)
         elif self.turns.withdraw(execution):
-            self._tell(execution, SUCCEEDED)  # listeners alone are told: it was cancelled
+            self._tell(execution, SUCCEEDED)  # only a listener hears of it: it was cancelled
 
     def _interrupt(self, execution: OperationExecution) -> None:
         task, declared = execution.task, execution.declared
