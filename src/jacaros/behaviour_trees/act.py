@@ -80,7 +80,7 @@ class Act(ArtifactBehaviour):
         try:
             arguments = [self._value(argument) for argument in self.arguments]
         except OperationFailed as failure:
-            self.outcome = OperationOutcome(False, failure.message, failure.reason)
+            self.outcome = OperationOutcome.of(failure)
             return
         self._handle = self.session.begin(
             self.operation, *arguments, artifact=self.artifact, timeout=self.timeout, urgency=self.urgency

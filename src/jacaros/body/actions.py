@@ -121,7 +121,7 @@ def _reported(presence: AgentPresence, finish: Finish) -> OnOutcome:
 
 
 @_action("makeArtifact", 2, 3, 4)
-def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay | None:
+def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay:
     """``makeArtifact(Name, Type [, Parameters [, -Id]])``: make an artifact.
 
     It is made in the current workspace, in the one that the action is directed to, or in the one that precedes the
@@ -135,7 +135,7 @@ def make_artifact(presence: AgentPresence, call: Call, finish: Finish) -> UnderW
         help = "; the id is the fourth argument" if parameters.__class__ is Var else ""
         raise _wrong(call, holder, f"argument 3: expected a list of parameters{help}", 2)
     _give(presence, call, holder, 3, holder)
-    workspace, plain_name = presence.place(here, name)
+    workspace, plain_name = presence.environment.place(here, name)
 
     def made(artifact: ArtifactId | None, outcome: OperationOutcome) -> None:
         if artifact is None:
@@ -171,7 +171,7 @@ def _filter(presence: AgentPresence, call: Call) -> Filter | None:
 
 
 @_action("focusWhenAvailable", 1, 2)
-def focus_when_available(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay | None:
+def focus_when_available(presence: AgentPresence, call: Call, finish: Finish) -> UnderWay:
     """``focusWhenAvailable(Name [, Filter])``: wait until an artifact of that name exists, and focus on it."""
     here = _base(presence, call)
     name = _name(call, 0, presence.focused.body_in(here))

@@ -12,13 +12,14 @@ from jacaros.body.focus import PerceivingMind
 from jacaros.body.needs import Needs
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.presence import AgentPresence
-from jacaros.body.values import Outputs, References, to_value
+from jacaros.body.values import Outputs, to_value
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.ports import UnderWay
+from jacaros.env.ports import ENDED, UnderWay
 from jacaros.env.presence.presence import ANYWHERE, Direction, UnknownOperation
+from jacaros.env.session.account import Activity
 from jacaros.env.values import Structure
 from jacaros.terms.text import display
 
@@ -38,17 +39,7 @@ class ServedMind(PerceivingMind, Protocol):
         """Handle that an act has its resource again, or no longer waits for it."""
 
 
-class Activity(Protocol):
-    """Counts running actions."""
-
-    def begin(self) -> None:
-        """Note that an action has begun."""
-
-    def end(self) -> None:
-        """Note that an action has ended or was cancelled."""
-
-
-class AgentBody:
+class AgentBody(AgentPresence):
     """Runs the actions of one agent and perceives for it.
 
     The percepts of an operation reach the mind before the end of its action: when the plan continues, the belief base
@@ -58,14 +49,9 @@ class AgentBody:
         agent: name of the agent.
         mind: its mind.
         environment: its environment.
-        references: opaque references, shared by all agents of a run.
-        writer: writes percepts, also shared.
+        writer: writes percepts, shared by all agents of a run.
         show: prints a line of the agent's output.
         activity: counts running actions.
-        home: full path of the agent's home workspace.
-
-    Attributes:
-        presence: the agent's workspaces and focused artifacts.
     """
 
     def __init__(
@@ -73,52 +59,27 @@ class AgentBody:
         agent: str,
         mind: ServedMind,
         environment: Environment,
-        references: References,
         writer: PerceptWriter,
         show: Callable[[str], None],
         activity: Activity,
-        home: str = "/main",
     ) -> None:
-        self.presence = AgentPresence(agent, mind, environment, references, writer, home, keys())
+        super().__init__(agent, mind, environment, writer, keys())
         self._mind = mind
-        self._environment = environment
-        self._references = references
         self._show = show
         self._activity = activity
-        # Running acts; without a handle until the call that begins them returns.
-        self._pending: dict[int, UnderWay | None] = {}
-        self._needs = Needs(agent, environment, self)
+        # Running acts; without a handle of their own until the call that begins them returns.
+        self._pending: dict[int, UnderWay] = {}
+        self._needs = Needs(agent, environment)
 
     @property
     def pending(self) -> tuple[int, ...]:
         """The running acts."""
         return tuple(self._pending)
 
-    def join(self, path: str) -> None:
-        """Join a workspace for the project, before the agent acts.
-
-        Raises:
-            OperationFailed: no workspace has this full path.
-        """
-        self.presence.enter()
-        self.presence.join(self._environment.workspace(path))
-
-    def focus(self, artifact: ArtifactId, namespace: str | None = None) -> None:
-        """Focus on an artifact for the project, and join its workspace.
-
-        Raises:
-            OperationFailed: the artifact does not exist.
-        """
-        if not self.presence.workspaces.has_joined(artifact.workspace):
-            self.join(artifact.workspace)
-        self.presence.enter()
-        workspace = self.presence.workspaces.at(artifact.workspace)
-        self.presence.focused.begin(workspace, artifact, namespace)
-
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
-        self.presence.enter()
-        self._pending[act.id] = None
+        self.enter()
+        self._pending[act.id] = ENDED
         self._activity.begin()
         if act.functor is NEEDS:
             self._need(act)
@@ -126,7 +87,7 @@ class AgentBody:
         try:
             handle = self._begin(read(act))
         except OperationFailed as failure:
-            self._finish(act.id, refused(failure, self._references))
+            self._finish(act.id, refused(failure, self.references))
             return
         if act.id in self._pending:
             self._pending[act.id] = handle
@@ -138,59 +99,46 @@ class AgentBody:
             return
         handle = self._pending.pop(act_id)
         self._activity.end()
-        if handle is not None:
-            handle.cancel()
+        handle.cancel()
 
     def suspend_act(self, act_id: int) -> None:
         """Pause the operation of an action if it is pausable; or lend the resources of a plan to others."""
         if act_id in self._needs:
             self._needs[act_id].pause()
-        handle = self._pending.get(act_id)
-        if handle is not None:
-            handle.pause()
+        self._pending.get(act_id, ENDED).pause()
 
     def resume_act(self, act_id: int) -> None:
         """Resume the operation of an action; or claim the resources of a plan again."""
         if act_id in self._needs:
             self._needs[act_id].resume()
-        handle = self._pending.get(act_id)
-        if handle is not None:
-            handle.resume()
+        self._pending.get(act_id, ENDED).resume()
 
     def close(self) -> None:
         """Cancel all actions and stop focusing everything; the mind receives nothing more."""
-        self.presence.focused.fall_silent()
+        self.focused.fall_silent()
         for act_id in self.pending:
             self.cancel_act(act_id)
         self._needs.close()
-        self.presence.leave()
+        self.leave()
 
     # ---- resources of plans
 
     def _need(self, act: Act) -> None:
-        focused = self.presence.focused.in_order()
-        near = [each for workspace in self.presence.workspaces.joined() for each in workspace.artifacts()]
+        focused = self.focused.in_order()
+        near = [each for workspace in self.workspaces.joined() for each in workspace.artifacts()]
+        on_done, on_preempted = partial(self._need_ended, act.id), partial(self._on_preempted, act.id)
         try:
-            self._needs.ask(act, focused, near)
+            self._needs.ask(act, focused, near, on_done, on_preempted)
         except OperationFailed as failure:
-            self._finish(act.id, refused(failure, self._references))
+            self._finish(act.id, refused(failure, self.references))
 
-    def acquired(self, number: int) -> None:
-        """Report that a plan has its resources."""
-        self._finish(number, SUCCEEDED)
-
-    def unavailable(self, number: int, failure: OperationFailed) -> None:
-        """Report that a plan does not get its resources; one that has begun fails at its next claim."""
-        self._needs.forget(number)
-        self._finish(number, refused(failure, self._references))
-
-    def preempted(self, number: int, resource: str) -> None:
-        """Report that a plan has lost a resource."""
-        self._mind.preempted(number, resource)
-
-    def regained(self, number: int) -> None:
-        """Report that a plan has its resource again, or no longer waits for it."""
-        self._mind.regained(number)
+    def _need_ended(self, number: int, failure: OperationFailed | None) -> None:
+        """Report that a plan has its resources, or cannot have them; one that has begun fails at its next claim."""
+        if failure is None:
+            self._finish(number, SUCCEEDED)
+        else:
+            self._needs.forget(number)
+            self._finish(number, refused(failure, self.references))
 
     def _on_preempted(self, number: int, resource: str | None) -> None:
         if resource is None:
@@ -198,43 +146,41 @@ class AgentBody:
         else:
             self._mind.preempted(number, resource)
 
-    def _begin(self, call: Call) -> UnderWay | None:
+    def _begin(self, call: Call) -> UnderWay:
         action = ACTIONS.get((call.name, len(call.arguments)))
         if action is not None and call.direction.artifact is None:
             return self._by_itself(action, call)
         artifact = self._artifact_for(call)
-        if action is not None and self.presence.is_own(artifact) and self._offers(artifact, call):
-            at_home = artifact is self.presence.session
-            here = None if at_home else self._environment.workspace(artifact.workspace)
+        if action is not None and self.is_own(artifact) and self._offers(artifact, call):
+            at_home = artifact is self.session
+            here = None if at_home else self.environment.workspace(artifact.workspace)
             call.direction = Direction(None, here, call.direction.timeout)
             return self._by_itself(action, call)
         if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
             # Printed here and not by the console artifact, which would receive values, while users want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
-            return None
+            return ENDED
         return self._execute(call, artifact)
 
-    def _by_itself(self, action: Action, call: Call) -> UnderWay | None:
+    def _by_itself(self, action: Action, call: Call) -> UnderWay:
         finish = partial(self._finish, call.act.id)
         if call.direction.timeout is None:
-            return action(self.presence, call, finish)
-        deadline = Deadline(call, self._environment.clock, finish, self._references)
+            return action(self, call, finish) or ENDED
+        deadline = Deadline(call, self.environment.clock, finish, self.references)
         try:
-            return deadline.watch(action(self.presence, call, deadline.ended))
+            return deadline.watch(action(self, call, deadline.ended) or ENDED)
         except OperationFailed:
             deadline.cancel()
             raise
 
     def _offers(self, artifact: ArtifactId, call: Call) -> bool:
-        return call.key in self._environment.workspace(artifact.workspace).offers(artifact)
+        return call.key in self.environment.workspace(artifact.workspace).offers(artifact)
 
     def _artifact_for(self, call: Call) -> ArtifactId:
         direction, intention = call.direction, call.act.intention
         try:
-            return self.presence.artifact_for(
-                call.name, len(call.arguments), direction, intention, call.namespace
-            )
+            return self.artifact_for(call.name, len(call.arguments), direction, intention, call.namespace)
         except UnknownArtifact:
             raise
         except OperationFailed as failure:
@@ -253,23 +199,21 @@ class AgentBody:
             raise _too_deep(artifact, call.key) from None
         done = partial(self._done, act.id, outputs)
         timeout = call.direction.timeout
-        tracer, why = self._environment.tracer, act.cause
+        tracer, why = self.environment.tracer, act.cause
         if tracer is not None:
-            why = tracer.link("act", f"{self.presence.name} {call.key}", why, (self.presence.name, act))
-        request = OperationRequest(
-            artifact, call.name, tuple(arguments), self.presence.name, why, done, timeout
-        )
+            why = tracer.link("act", f"{self.name} {call.key}", why, (self.name, act))
+        request = OperationRequest(artifact, call.name, tuple(arguments), self.name, why, done, timeout)
         request.urgency, request.yields = act.urgency, act.yields
         if act.within:
             request.within = self._needs.claims(act.within)
         request.on_preempted = partial(self._on_preempted, act.id)
-        return self._environment.execute(request)
+        return self.environment.execute(request)
 
     def _done(self, act_id: int, outputs: Outputs, outcome: OperationOutcome) -> None:
         if outcome.ok and not outputs:
             self._finish(act_id, SUCCEEDED)
         else:
-            self._finish(act_id, of_operation(outcome, outputs, self._references))
+            self._finish(act_id, of_operation(outcome, outputs, self.references))
 
     def _finish(self, act_id: int, completion: Completion) -> None:
         if act_id in self._pending:

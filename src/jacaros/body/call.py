@@ -16,11 +16,15 @@ from jacaros.suggestions import aside
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, Functor, Reference, String, Term, Var, atom, bare, deref, functor
 
-_BY_ARTIFACT = {"artifact_id": "artifact", "aid": "artifact", "artifact_name": "artifact", "art": "artifact"}
-_BY_WORKSPACE = {"wid": "workspace", "wsp": "workspace"}
+_ARTIFACT = ("artifact", ArtifactId, "an artifact (from makeArtifact or lookupArtifact)")
+_WORKSPACE = ("workspace", Workspace, "a workspace (from joinWorkspace)")
+_TARGETS: dict[str, tuple[str, type, str]] = {
+    **dict.fromkeys(("artifact_id", "aid", "artifact_name", "art"), _ARTIFACT),
+    **dict.fromkeys(("wid", "wsp"), _WORKSPACE),
+}
+"""Annotations that direct an action: the part of `Direction` that they give, its class, and words for it."""
 _TIMEOUT = "timeout"
-_DIRECTIONS = (*_BY_ARTIFACT, *_BY_WORKSPACE, _TIMEOUT)
-_DIRECTING = ", ".join(_DIRECTIONS)
+_DIRECTIONS = (*_TARGETS, _TIMEOUT)
 
 
 @dataclass(slots=True)
@@ -72,19 +76,11 @@ def _direction(act: Act) -> Direction:
         if len(annotation) == 2 and name == _TIMEOUT:
             direction.timeout = _seconds(act, annotation)
             continue
-        if len(annotation) != 2 or (name not in _BY_ARTIFACT and name not in _BY_WORKSPACE):
+        if len(annotation) != 2 or name not in _TARGETS:
             message = f"unknown annotation `{text(annotation)}` of action `{act.functor}`"
-            help = aside(name, _DIRECTIONS)
-            raise unknown_annotation(
-                act, annotation, f"{message}{help or f'; the annotations of actions are {_DIRECTING}'}"
-            )
-        try:
-            if name in _BY_ARTIFACT:
-                direction.artifact = artifact_argument(annotation[1], name)
-            else:
-                direction.workspace = workspace_argument(annotation[1], name)
-        except OperationFailed as failure:
-            raise undelivered(act, failure) from None
+            help = aside(name, _DIRECTIONS) or f"; the annotations of actions are {', '.join(_DIRECTIONS)}"
+            raise unknown_annotation(act, annotation, message + help)
+        setattr(direction, _TARGETS[name][0], _target(act, annotation[1], name))
     return direction
 
 
@@ -101,33 +97,21 @@ def _name(annotation: Term) -> str:
     return annotation[0].name if annotation.__class__ is tuple else ""
 
 
-def artifact_argument(term: Term, where: str) -> ArtifactId | str:
-    """Return the artifact, or its name, in a term.
+def _target(act: Act, term: Term, annotation: str) -> object:
+    """Return the artifact or workspace in an annotation, or its name.
 
     Raises:
-        OperationFailed: it is neither.
+        Undelivered: it is neither.
     """
+    _, kind, what = _TARGETS[annotation]
     term = bare(term)
-    if term.__class__ is Reference and isinstance(term.value, ArtifactId):
+    if term.__class__ is Reference and isinstance(term.value, kind):
         return term.value
     name = name_of(term)
     if name is None:
-        raise _not_a("n artifact (from makeArtifact or lookupArtifact)", term, where)
-    return name
-
-
-def workspace_argument(term: Term, where: str) -> Workspace | str:
-    """Return the workspace, or its name or path, in a term.
-
-    Raises:
-        OperationFailed: it is neither.
-    """
-    term = bare(term)
-    if term.__class__ is Reference and isinstance(term.value, Workspace):
-        return term.value
-    name = name_of(term)
-    if name is None:
-        raise _not_a(" workspace (from joinWorkspace)", term, where)
+        message = f"{annotation}: expected {what} or its name, found {text(term)}"
+        reason = Structure("wrong_op_arguments", (annotation,))
+        raise undelivered(act, OperationFailed(message, reason))
     return name
 
 
@@ -136,13 +120,6 @@ def name_of(term: Term) -> str | None:
     if term.__class__ is String:
         return str(term)
     return symbol_name(term) if term.__class__ is Functor else None
-
-
-def _not_a(what: str, term: Term, where: str) -> OperationFailed:
-    return OperationFailed(
-        f"{where}: expected a{what} or its name, found {text(term)}",
-        Structure("wrong_op_arguments", (where,)),
-    )
 
 
 _ENV_FAILURE = functor("env_failure", 1)

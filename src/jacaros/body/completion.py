@@ -11,7 +11,7 @@ from jacaros.body.values import Outputs, References, to_term
 from jacaros.clock import Clock
 from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import UnderWay
+from jacaros.env.ports import ENDED, UnderWay
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.values import String, Term, functor
 
@@ -78,7 +78,7 @@ class Deadline:
 
     def __init__(self, call: Call, clock: Clock, finish: Finish, references: References) -> None:
         self._call, self._finish, self._references = call, finish, references
-        self._under_way: UnderWay | None = None
+        self._under_way: UnderWay = ENDED
         self._timer = clock.call_later(call.direction.timeout or 0.0, self._late)
 
     def ended(self, completion: Completion) -> None:
@@ -86,14 +86,13 @@ class Deadline:
         self._timer.cancel()
         self._finish(completion)
 
-    def watch(self, under_way: UnderWay | None) -> UnderWay:
+    def watch(self, under_way: UnderWay) -> UnderWay:
         """Set the handle to cancel; the returned one replaces it."""
         self._under_way = under_way
         return self
 
     def _late(self) -> None:
-        if self._under_way is not None:
-            self._under_way.cancel()
+        self._under_way.cancel()
         milliseconds = round((self._call.direction.timeout or 0.0) * 1000, 3)
         message = f"{self._call.key} did not end within {milliseconds:g} ms"
         reason = Structure("operation_timeout", (self._call.key, milliseconds))
@@ -102,15 +101,12 @@ class Deadline:
     def cancel(self) -> None:
         """Cancel the action without reporting its end."""
         self._timer.cancel()
-        if self._under_way is not None:
-            self._under_way.cancel()
+        self._under_way.cancel()
 
     def pause(self) -> None:
         """Pause the action, if possible; its time continues."""
-        if self._under_way is not None:
-            self._under_way.pause()
+        self._under_way.pause()
 
     def resume(self) -> None:
         """Resume the action."""
-        if self._under_way is not None:
-            self._under_way.resume()
+        self._under_way.resume()

@@ -1,11 +1,12 @@
 """The focused artifacts of an agent, whose properties and signals it perceives."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 from jacaros.bdi.state.act import Percept
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
-from jacaros.body.values import References, atom_of
+from jacaros.body.values import atom_of
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.ports import Workspace
@@ -33,29 +34,27 @@ class PerceivingMind(Protocol):
         """Return whether percepts about properties called *name* are still unprocessed."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FocusObserver:
     """Perceives for an agent, in one namespace of its program.
 
     Attributes:
         agent: name of the agent.
+        namespace: namespace of its program.
+        writer: writes its percepts.
         notice: receives its percepts.
         has_untaken: returns whether the mind still has unprocessed percepts about properties of a name.
     """
 
-    __slots__ = ("_namespace", "_writer", "agent", "has_untaken", "notice")
-
-    def __init__(
-        self, agent: str, namespace: str | None, writer: PerceptWriter, notice: Notice, untaken: Untaken
-    ) -> None:
-        self.agent = agent
-        self.has_untaken = untaken
-        self.notice = notice
-        self._namespace = namespace
-        self._writer = writer
+    agent: str
+    namespace: str | None
+    writer: PerceptWriter
+    notice: Notice
+    has_untaken: Untaken
 
     def observe(self, observation: Observation) -> None:
         """Pass an observation to the mind."""
-        writer, namespace = self._writer, self._namespace
+        writer, namespace = self.writer, self.namespace
         # The percepts just written for another observer are the same.
         if observation is writer.newest and namespace is writer.namespace:
             self.notice(writer.written)
@@ -69,13 +68,10 @@ class FocusedArtifacts(Focused):
     For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``.
     """
 
-    def __init__(
-        self, agent: str, writer: PerceptWriter, references: References, mind: PerceivingMind
-    ) -> None:
+    def __init__(self, agent: str, writer: PerceptWriter, mind: PerceivingMind) -> None:
         super().__init__()
         self._agent = agent
         self._writer = writer
-        self._references = references
         self._notice: Notice = mind.perceive
         self._untaken = mind.has_untaken
         self._observers: dict[str | None, FocusObserver] = {}
@@ -129,11 +125,12 @@ class FocusedArtifacts(Focused):
             watcher(artifact, kind is ADD)
 
     def _focusing(self, kind: str, workspace: Workspace, artifact: ArtifactId) -> Percept:
+        references = self._writer.references
         arguments: tuple[Term, ...] = (
-            self._references.of(artifact),
+            references.of(artifact),
             atom_of(artifact.name),
             String(artifact.type_name),
-            self._references.of(workspace),
+            references.of(workspace),
             atom_of(workspace.name),
             String(workspace.path),
         )

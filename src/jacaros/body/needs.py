@@ -1,8 +1,7 @@
 """Resources that plans of an agent need: claimed, lost, regained and released."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Protocol
 
 from jacaros.bdi.state.act import Act
 from jacaros.env.environment import Environment
@@ -14,35 +13,23 @@ from jacaros.env.resources.resource import Use, local_name, read_uses, together
 from jacaros.env.values import Atom, Structure
 from jacaros.terms.values import functor_of, list_items
 
-
-class NeedListener(Protocol):
-    """Receives the events of needed resources."""
-
-    def acquired(self, number: int) -> None:
-        """The plan has all its resources for the first time."""
-
-    def unavailable(self, number: int, failure: OperationFailed) -> None:
-        """The plan cannot have its resources."""
-
-    def preempted(self, number: int, resource: str) -> None:
-        """The plan has lost a resource."""
-
-    def regained(self, number: int) -> None:
-        """The plan has its resource again, or no longer waits for it."""
+OnNeed = Callable[[OperationFailed | None], None]
+OnPreempted = Callable[[str | None], None]
 
 
 class HeldNeed:
     """The resources of one plan or goal; a claimant of the arbiter.
 
     Args:
-        number: number of the requesting act.
         arbiter: arbiter of the environment.
-        listener: receives the events.
         yields: whether they may be pre-empted.
+        on_done: called when the plan has all its resources for the first time, or with the reason why it cannot have them.
+        on_preempted: called with the resource that the plan has lost, and with None when it has it again or no longer
+            waits for it.
     """
 
-    def __init__(self, number: int, arbiter: Arbiter, listener: NeedListener, yields: bool) -> None:
-        self._number, self._arbiter, self._listener = number, arbiter, listener
+    def __init__(self, arbiter: Arbiter, yields: bool, on_done: OnNeed, on_preempted: OnPreempted) -> None:
+        self._arbiter, self._on_done, self._on_preempted = arbiter, on_done, on_preempted
         self.can_yield = yields
         self._begun = self._lost = False
         self.claim: Claim
@@ -56,7 +43,7 @@ class HeldNeed:
         """Begin or continue the plan."""
         if not self._begun:
             self._begun = True
-            self._listener.acquired(self._number)
+            self._on_done(None)
         self._found()
 
     def preempted(self, claim: Claim, resource: str) -> None:
@@ -67,7 +54,7 @@ class HeldNeed:
     def refused(self, claim: Claim, reason: Structure | Atom) -> None:
         """Fail the plan, also if its claim was granted before."""
         name = reason.arguments[0] if isinstance(reason, Structure) else ""
-        self._listener.unavailable(self._number, OperationFailed(f"{claim.who} cannot have {name}", reason))
+        self._on_done(OperationFailed(f"{claim.who} cannot have {name}", reason))
 
     def pause(self) -> None:
         """Release the resources while the program suspends the intention."""
@@ -86,12 +73,12 @@ class HeldNeed:
     def _lose(self, resource: str) -> None:
         if not self._lost:
             self._lost = True
-            self._listener.preempted(self._number, local_name(resource))
+            self._on_preempted(local_name(resource))
 
     def _found(self) -> None:
         if self._lost:
             self._lost = False
-            self._listener.regained(self._number)
+            self._on_preempted(None)
 
 
 class Needs:
@@ -100,11 +87,10 @@ class Needs:
     Args:
         agent: name of the agent.
         environment: environment with the resources.
-        listener: receives the events.
     """
 
-    def __init__(self, agent: str, environment: Environment, listener: NeedListener) -> None:
-        self._agent, self._environment, self._listener = agent, environment, listener
+    def __init__(self, agent: str, environment: Environment) -> None:
+        self._agent, self._environment = agent, environment
         self._held: dict[int, HeldNeed] = {}
 
     def __contains__(self, number: object) -> bool:
@@ -117,13 +103,22 @@ class Needs:
         """Return the claims of the enclosing acts."""
         return tuple(self._held[number].claim for number in numbers if number in self._held)
 
-    def ask(self, act: Act, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> None:
+    def ask(
+        self,
+        act: Act,
+        focused: Iterable[ArtifactId],
+        near: Iterable[ArtifactId],
+        on_done: OnNeed,
+        on_preempted: OnPreempted,
+    ) -> None:
         """Claim the resources of an act.
 
         Args:
             act: names resources, a policy and a goal.
             focused: artifacts whose resources take precedence.
             near: artifacts in the workspaces that the agent has joined.
+            on_done: see `HeldNeed`.
+            on_preempted: see `HeldNeed`.
 
         Raises:
             OperationFailed: ``wrong_resource(Name)`` or ``ambiguous_resource(Name)``.
@@ -132,7 +127,7 @@ class Needs:
         uses = together(
             self._resolved(use, focused, near) for use in _read(str(each) for each in list_items(names))
         )
-        need = HeldNeed(act.id, self._environment.arbiter, self._listener, act.yields)
+        need = HeldNeed(self._environment.arbiter, act.yields, on_done, on_preempted)
         self._held[act.id] = need
         who = f"[{self._agent}] {goal}"
         blocks = "" if act.yields else self._agent

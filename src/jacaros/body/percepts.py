@@ -45,7 +45,7 @@ class PerceptWriter:
         self, references: References, workspace: Callable[[str], object], cartago_2: bool = False
     ) -> None:
         self._cartago_2 = cartago_2
-        self._references = references
+        self.references = references
         self._workspace = workspace
         self.newest: Observation | None = None
         self.namespace: str | None = None
@@ -93,7 +93,7 @@ class PerceptWriter:
         first: Percept | None = each.written
         if first is None:
             if each.annotations:
-                own = tuple(to_term(a, self._references) for a in each.annotations)
+                own = tuple(to_term(a, self.references) for a in each.annotations)
                 about = annotation_set((*about, *own))
             first = each.written = Percept(kind, self._literal(each.name, each.values, None), about, cause)
             if not namespace:
@@ -124,8 +124,8 @@ class PerceptWriter:
         """Return the annotations of properties and of signals of an artifact."""
         known = self._annotations.get(artifact)
         if known is None:
-            workspace = self._references.of(self._workspace(artifact.workspace))
-            identity = (_ARTIFACT_ID, self._references.of(artifact))
+            workspace = self.references.of(self._workspace(artifact.workspace))
+            identity = (_ARTIFACT_ID, self.references.of(artifact))
             name = (_ARTIFACT_NAME, atom_of(artifact.name))
             place = (_WORKSPACE, String(artifact.workspace), workspace)
             if self._cartago_2:
@@ -140,11 +140,11 @@ class PerceptWriter:
 
     def _with_older(self, artifact: ArtifactId, shared: Annotations) -> tuple[Annotations, Annotations]:
         """Return the annotations together with those of CArtAgO 2.0, whose ``workspace/2`` replaces ours."""
-        identity, workspace = self._references.of(artifact), self._workspace(artifact.workspace)
+        identity, workspace = self.references.of(artifact), self._workspace(artifact.workspace)
         older = (
             (functor("artifact_name", 2), identity, String(artifact.name)),
             (functor("artifact_type", 2), identity, String(artifact.type_name)),
-            (_WORKSPACE, self._references.of(workspace), String(artifact.workspace.rpartition("/")[2])),
+            (_WORKSPACE, self.references.of(workspace), String(artifact.workspace.rpartition("/")[2])),
         )
         made = [
             annotation_set((*shared, *older, kind, (_PERCEPT_TYPE, String(kind[1].name))))
@@ -165,7 +165,7 @@ class PerceptWriter:
             elif kind is int:
                 written.append(number(value))  # type: ignore[arg-type]
             else:
-                written.append(to_term(_complete(value), self._references))
+                written.append(to_term(_complete(value), self.references))
         return tuple(written)
 
 

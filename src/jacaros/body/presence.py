@@ -4,7 +4,7 @@ from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.body.focus import FocusedArtifacts, PerceivingMind
 from jacaros.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.body.personal import AgentBodyArtifact, AgentSessionArtifact
-from jacaros.body.values import References, atom_of
+from jacaros.body.values import atom_of
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
 from jacaros.env.ids import ArtifactId
@@ -23,9 +23,7 @@ class AgentPresence(Presence):
         agent: name of the agent.
         mind: its mind.
         environment: its environment.
-        references: opaque references, shared by all agents of a run.
-        writer: writes percepts, also shared.
-        home: full path of the agent's home workspace.
+        writer: writes percepts, shared by all agents of a run.
         own_actions: the body's own actions, such as ``focus/1``.
     """
 
@@ -36,15 +34,13 @@ class AgentPresence(Presence):
         agent: str,
         mind: PerceivingMind,
         environment: Environment,
-        references: References,
         writer: PerceptWriter,
-        home: str,
         own_actions: tuple[str, ...],
     ) -> None:
-        focused = FocusedArtifacts(agent, writer, references, mind)
-        super().__init__(environment, agent, home, focused, own_actions)
-        self.references = references
-        self._mind, self._writer = mind, writer
+        focused = FocusedArtifacts(agent, writer, mind)
+        super().__init__(environment, agent, "/main", focused, own_actions)
+        self.references = writer.references
+        self._perceive, self._writer = mind.perceive, writer
         self._entered = False
         self._session: ArtifactId | None = None
 
@@ -59,9 +55,9 @@ class AgentPresence(Presence):
         if self._session is None:
             return
         for workspace in self.workspaces.joined():
-            self.focused.end_all(workspace)
             self._withdraw(workspace, self.focused.body_in(workspace))
         self._withdraw(self.workspaces.home, self._session)
+        super().leave()
 
     def changed(self, workspace: Workspace, joined: bool) -> None:
         """Add or remove the belief about a workspace, and the artifact that stands for the agent there."""
@@ -70,7 +66,7 @@ class AgentPresence(Presence):
             made_of = (self.name, self.focused, workspace)
             self.focused.inhabit(workspace, self._offer("body", workspace, AgentBodyArtifact, *made_of))
         about = self.references.of(workspace), atom_of(workspace.name), String(workspace.path)
-        self._mind.perceive([self._writer.own(ADD if joined else REMOVE, session, "joinedWsp", *about)])
+        self._perceive([self._writer.own(ADD if joined else REMOVE, session, "joinedWsp", *about)])
         if not joined:
             self._withdraw(workspace, self.focused.body_in(workspace))
 

@@ -1,6 +1,6 @@
 """Artifacts: the class that authors of environments derive from."""
 
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar, overload
 
 from jacaros.clock import Clock
@@ -25,6 +25,7 @@ from jacaros.env.operation import (
     marks_of,
     operation,
 )
+from jacaros.env.ports import UnderWay, Workspace
 from jacaros.env.property import ObservableProperty, PropertySnapshot, plain_annotations
 from jacaros.env.values import Atom, Out, Structure, plain
 from jacaros.trace import Cause
@@ -34,37 +35,13 @@ __all__ = ["Artifact", "Host", "Out", "initializer", "internal_operation", "link
 T = TypeVar("T")
 
 
-class Host(Protocol):
+class Host(Workspace, Protocol):
     """The workspace of an artifact, as far as the artifact may use it."""
-
-    @property
-    def path(self) -> str:
-        """Full path, such as ``/main``."""
-
-    @property
-    def name(self) -> str:
-        """Last part of the path."""
-
-    async def make_artifact(
-        self,
-        name: str,
-        type_name: "str | type[Artifact]",
-        args: Sequence[object] = (),
-        creator: str | None = None,
-    ) -> ArtifactId:
-        """Create an artifact."""
-
-    def lookup(self, name: str) -> ArtifactId: ...
-
-    def dispose_artifact(self, artifact_id: ArtifactId) -> None: ...
-
-    def link(self, from_id: ArtifactId, port: str | None, to_id: ArtifactId) -> None:
-        """Link the out port of an artifact to another artifact. None means its first port."""
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """Return the artifacts that are linked to an out port."""
 
-    def execute_linked(self, request: OperationRequest) -> OperationExecution:
+    def execute_linked(self, request: OperationRequest) -> UnderWay:
         """Run a linked operation."""
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
@@ -376,7 +353,7 @@ class Artifact:
     def commit(self) -> None:
         """Publish the changes of the step so far. They can no longer be rolled back."""
         holder = self._steps.current("a commit")
-        if holder.declared is None or not holder.declared.threaded:
+        if not holder.declared.threaded:
             self._steps.commit()
 
     @step_boundary
@@ -469,8 +446,7 @@ class Artifact:
 
     def _fail_call(self, message: str) -> NoReturn:
         # CArtAgO's reason: there, every failed call is an error of the operation.
-        request = self.current.request
-        self.fail(message, "operation_error", f"{request.operation}/{len(request.arguments)}")
+        self.fail(message, "operation_error", self.current.request.key)
 
     def external_session(self, cause: Cause | None = None) -> ExternalSession:
         """Get exclusive access to the artifact from elsewhere: ``with`` in another thread, ``async with`` in another task.

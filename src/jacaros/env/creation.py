@@ -6,12 +6,12 @@ from jacaros.env.artifact import Artifact, Host
 from jacaros.env.errors import InvalidArtifact, OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.changed_copies import changed_copies
-from jacaros.env.kernel.declaration import DeclaredOperation, declare_method
+from jacaros.env.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.env.kernel.faults import error_text, is_interruption
 from jacaros.env.kernel.interface import interface_of
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.steps import Steps
-from jacaros.env.operation import INIT, Mark, OperationRequest
+from jacaros.env.operation import OperationRequest
 from jacaros.env.values import Structure
 from jacaros.errors import InternalError
 
@@ -114,13 +114,6 @@ def init_of(artifact_type: type[Artifact], request: OperationRequest) -> Declare
     if found is not None:
         return found
     if not count:
-        return NO_INIT
+        return NOTHING
     taken = " or ".join(f"({each.signature})" for each in inits) or "()"
     raise init_failed(request.artifact, f"expected {taken} as arguments of init, found {count} arguments")
-
-
-def _nothing(_: Artifact) -> None:
-    """Replace the ``init`` of an artifact that is created without one."""
-
-
-NO_INIT = declare_method(Mark(INIT), "init", _nothing, Artifact, 0)

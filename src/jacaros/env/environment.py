@@ -10,16 +10,13 @@ from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel.registry import Registry
 from jacaros.env.kernel.setting import Setting, log_to_stderr
-from jacaros.env.listener import EnvironmentListener
 from jacaros.env.operation import OPERATION, OperationRequest
 from jacaros.env.ports import UnderWay
-from jacaros.env.resources.arbiter import Arbiter
 from jacaros.env.resources.resource import Use
 from jacaros.env.standard_artifacts import add_standard_artifacts
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import Structure
 from jacaros.env.workspace import Workspace
-from jacaros.trace import Tracer
 
 
 def knows_no_type(type_name: str) -> type[Artifact]:
@@ -31,7 +28,7 @@ def knows_no_type(type_name: str) -> type[Artifact]:
     raise UnknownArtifactType(type_name)
 
 
-class Environment:
+class Environment(Setting, WorkspaceTree):
     """All workspaces of a process. ``/main`` always exists.
 
     Args:
@@ -50,27 +47,12 @@ class Environment:
         log: Callable[[str], None] = log_to_stderr,
         on_internal_error: Callable[[BaseException], None] | None = None,
     ) -> None:
-        self._setting = Setting(clock, resources or {}, log, None, on_internal_error)
+        Setting.__init__(self, clock, resources or {}, log, None, on_internal_error)
         self._find_type = find_type
         self._registry = Registry()
         self._own: list[Workspace] = []
-        self._tree = WorkspaceTree(self._make)
-        self._tree.create("/main")
-
-    @property
-    def clock(self) -> Clock:
-        """Clock of the run."""
-        return self._setting.clock
-
-    @property
-    def resources(self) -> Mapping[str, object]:
-        """Services of the host for artifacts, by name."""
-        return self._setting.resources
-
-    @property
-    def arbiter(self) -> Arbiter:
-        """Assigns resources to operations and plans."""
-        return self._setting.arbiter
+        WorkspaceTree.__init__(self, self._make)
+        self.create_workspace("/main")
 
     def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
         """Return the resources that the operations of an artifact use, with the name of its robot.
@@ -79,25 +61,6 @@ class Environment:
         """
         steps = self._registry.made(artifact_id)
         return () if steps is None else steps.used()
-
-    @property
-    def tracer(self) -> Tracer | None:
-        """Receives every cause. None if no tracer is set."""
-        return self._setting.tracer
-
-    @tracer.setter
-    def tracer(self, tracer: Tracer | None) -> None:
-        self._setting.tracer = tracer
-
-    @property
-    def listener(self) -> EnvironmentListener | None:
-        """Receives what happens in the artifacts of this process. None if no listener is set."""
-        listener: EnvironmentListener | None = self._setting.listener
-        return listener
-
-    @listener.setter
-    def listener(self, listener: EnvironmentListener | None) -> None:
-        self._setting.listener = listener
 
     def artifact(self, artifact_id: ArtifactId) -> object | None:
         """Return the artifact object behind an id, or None if it does not exist yet, is gone or is remote."""
@@ -108,71 +71,21 @@ class Environment:
         """Call *callback* with the id of every disposed artifact, after its observers have been notified."""
         self._registry.when_disposed.append(callback)
 
-    def workspaces(self) -> tuple[ports.Workspace, ...]:
-        """Return all workspaces, the oldest first."""
-        return self._tree.all()
-
-    def workspace(self, path: str) -> ports.Workspace:
-        """Return the workspace with this full path, which may contain names of links.
-
-        Raises:
-            UnknownWorkspace: the workspace does not exist.
-        """
-        return self._tree.find(path)
-
-    def create_workspace(self, path: str) -> ports.Workspace:
-        """Create a workspace with its standard artifacts.
-
-        Args:
-            path: full path. Its parent workspace must exist.
-
-        Raises:
-            OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the parent workspace does not exist.
-        """
-        return self._tree.create(path)
-
-    def link_workspace(self, path: str, target: str) -> None:
-        """Make an unused full path lead to another workspace.
-
-        Raises:
-            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
-        """
-        self._tree.link(path, target)
-
     def _make(self, path: str, above: ports.Workspace | None) -> Workspace:
         if above is not None and above not in self._own:
             message = f"workspace {above.path} is remote: create {path} in the process that serves it"
             raise OperationFailed(message, Structure("not_supported", ("createWorkspace",)))
-        workspace = Workspace(path, self._registry, self._setting, self._find_type)
-        add_standard_artifacts(workspace, self._tree)
+        workspace = Workspace(path, self._registry, self, self._find_type)
+        add_standard_artifacts(workspace, self)
         self._own.append(workspace)
         return workspace
-
-    def mount(self, workspace: ports.Workspace) -> Callable[[], None]:
-        """Add a remote workspace under its `path`. Return a function that removes it.
-
-        Raises:
-            OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
-            UnknownWorkspace: the parent workspace does not exist.
-        """
-        return self._tree.mount(workspace)
 
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent, wherever the artifact is. See `Workspace.execute`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
-            return self._tree.at(request.artifact.workspace, self._own[0]).execute(request)
+            return self.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)
-
-    def log(self, text: str) -> None:
-        """Log a line."""
-        self._setting.log(text)
-
-    def log_error(self, who: str, what: str, error: BaseException) -> None:
-        """Log that *what* failed in the code of *who*."""
-        self._setting.log_error(who, what, error)
 
     async def close(self) -> None:
         """Dispose all artifacts, those of the newest workspaces first. Remote workspaces do not change."""

@@ -1,18 +1,24 @@
-"""The execution of one operation: waiting, running, paused, cancelled or ended."""
+"""The execution of one operation: waiting, running, paused, cancelled or ended, and the resources that it holds."""
 
 import asyncio
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from jacaros.clock import Clock, Timer
-from jacaros.env.kernel.declaration import DeclaredOperation
+from jacaros.env.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.env.kernel.faults import is_interruption
-from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.unawaited import AskedFor
-from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.resources.claim import Claim
-from jacaros.env.resources.resource import Use
+from jacaros.env.operation import OperationOutcome, OperationRequest, WhenPreempted
+from jacaros.env.ports import UnderWay
+from jacaros.env.resources.arbiter import Arbiter
+from jacaros.env.resources.claim import Claim, State
+from jacaros.env.resources.resource import Use, local_name
+from jacaros.env.values import Atom, Structure
 from jacaros.trace import Cause
+
+Stop = Callable[[Structure | Atom], None]
+"""Fails the operation with a reason."""
 
 
 class Turns(Protocol):
@@ -29,16 +35,18 @@ class Turns(Protocol):
     def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that does not fail an operation."""
 
-    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> Holding:
+    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> "Holding":
         """Return a claim of an operation, which the operation enters and leaves."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class OperationExecution:
     """The execution of one operation: the handle of its caller, and `Artifact.current` of its code.
 
     Attributes:
+        turns: the operations of its artifact.
         request: the request of the caller.
-        declared: the operation that serves it. None if it was refused.
+        declared: the operation that serves it.
         arguments: the converted arguments.
         asked_for: step boundaries that may not have been awaited.
         cause: what led to it.
@@ -56,47 +64,24 @@ class OperationExecution:
         linked: executions in other artifacts that it is waiting for.
     """
 
-    __slots__ = (
-        "_pause",
-        "_turns",
-        "arguments",
-        "asked_for",
-        "begun",
-        "cancelled",
-        "cause",
-        "declared",
-        "ended",
-        "holding",
-        "limit",
-        "linked",
-        "request",
-        "suspended",
-        "task",
-        "thread",
-        "told",
-        "verdict",
-    )
-
-    def __init__(
-        self,
-        turns: Turns | None,
-        request: OperationRequest,
-        declared: DeclaredOperation | None = None,
-        arguments: tuple[object, ...] = (),
-        cause: Cause | None = None,
-    ) -> None:
-        self._turns = turns
-        self.request, self.declared, self.arguments, self.cause = request, declared, arguments, cause
-        self.begun = self.cancelled = self.told = self.suspended = False
-        self.holding: Holding | None = None
-        self.asked_for: Sequence[AskedFor] = ()
-        self.ended = declared is None
-        self.verdict: OperationOutcome | None = None
-        self.limit: Timer | None = None
-        self.thread: int | None = None
-        self.task: asyncio.Task[None] | None = None
-        self.linked: list[OperationExecution] = []
-        self._pause: Pause | None = None
+    turns: Turns
+    request: OperationRequest
+    declared: DeclaredOperation = NOTHING
+    arguments: tuple[object, ...] = ()
+    cause: Cause | None = None
+    asked_for: Sequence[AskedFor] = field(default=(), init=False)
+    begun: bool = field(default=False, init=False)
+    cancelled: bool = field(default=False, init=False)
+    verdict: OperationOutcome | None = field(default=None, init=False)
+    told: bool = field(default=False, init=False)
+    limit: Timer | None = field(default=None, init=False)
+    thread: int | None = field(default=None, init=False)
+    ended: bool = field(default=False, init=False)
+    holding: "Holding | None" = field(default=None, init=False)
+    suspended: bool = field(default=False, init=False)
+    task: "asyncio.Task[None] | None" = field(default=None, init=False)
+    linked: Sequence[UnderWay] = field(default=(), init=False)
+    _pause: "Pause | None" = field(default=None, init=False)
 
     @property
     def stopped(self) -> bool:
@@ -109,8 +94,7 @@ class OperationExecution:
         The outcome is not reported. Changes of the step in progress are rolled back; changes in ``finally`` are
         published. An operation in a thread runs to its end.
         """
-        if self._turns is not None:
-            self._turns.cancel(self)
+        self.turns.cancel(self)
 
     def pause(self) -> None:
         """Ask it to pause. Pausable operations obey, and linked operations get the request, too.
@@ -129,26 +113,24 @@ class OperationExecution:
 
     def adapt(self) -> None:
         """Pause or continue, depending on its caller and the resources it uses."""
-        if self._turns is None:
-            return
         barred = self.suspended or (self.holding is not None and self.holding.barred)
         if barred and not self.paused and not self.ended:
-            pause = self._pauses(self._turns)
-            pause.since = self._turns.clock.elapsed
-            self._call(pause.callbacks, self._turns)
-            self._turns.reconsider()
+            pause = self._pauses()
+            pause.since = self.turns.clock.elapsed
+            self._call(pause.callbacks)
+            self.turns.reconsider()
         elif not barred and self._pause is not None and self._pause.end():
-            self._call(self._pause.resumers, self._turns)
-            self._turns.reconsider()
+            self._call(self._pause.resumers)
+            self.turns.reconsider()
 
-    def _call(self, callbacks: list[Callable[[], None]], turns: Turns) -> None:
+    def _call(self, callbacks: list[Callable[[], None]]) -> None:
         for callback in list(callbacks):
             try:
                 callback()
             except BaseException as error:
                 if is_interruption(error):
                     raise
-                turns.complain(f"a pause callback of {self.request.operation} failed", error)
+                self.turns.complain(f"a pause callback of {self.request.operation} failed", error)
 
     def resume(self) -> None:
         """Let it continue after `pause`."""
@@ -166,12 +148,10 @@ class OperationExecution:
         """Whether its code has begun, or its task exists."""
         return self.begun or self.task is not None
 
-    def hold(self, uses: tuple[Use, ...]) -> Holding:
+    def hold(self, uses: tuple[Use, ...]) -> "Holding":
         """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
-            assert self._turns is not None
-            self._turns.hold(self, uses)
-        assert self.holding is not None
+            self.holding = self.turns.hold(self, uses)
         return self.holding
 
     @property
@@ -182,14 +162,9 @@ class OperationExecution:
         return (*self.request.within, self.holding.claim)
 
     @property
-    def waits_for_others(self) -> bool:
-        """Whether it is waiting for linked operations."""
-        return bool(self.linked)
-
-    @property
     def pausable(self) -> bool:
         """Whether it obeys `pause`."""
-        return self.declared is not None and self.declared.pausable
+        return self.declared.pausable
 
     @property
     def paused(self) -> bool:
@@ -202,9 +177,7 @@ class OperationExecution:
         The callback runs outside of the artifact's steps: it may stop a motor, but must not change properties. Without
         a call of the returned function, it is called until the operation ends.
         """
-        if self._turns is None:
-            return lambda: None
-        callbacks = self._pauses(self._turns).callbacks
+        callbacks = self._pauses().callbacks
         callbacks.append(callback)
         if self.paused:
             callback()
@@ -212,8 +185,7 @@ class OperationExecution:
 
     def on_resume(self, callback: Callable[[], None]) -> None:
         """Call *callback* at the end of every pause. As with `on_pause`, it must not change properties."""
-        if self._turns is not None:
-            self._pauses(self._turns).resumers.append(callback)
+        self._pauses().resumers.append(callback)
 
     async def resumed(self) -> None:
         """Wait until it is not paused. Await it through `Artifact.pause_point` or `Artifact.step`."""
@@ -237,36 +209,35 @@ class OperationExecution:
         """Return the seconds that it has been paused since the last call."""
         return self._pause.take() if self._pause is not None else 0.0
 
-    def _pauses(self, turns: Turns) -> "Pause":
+    def _pauses(self) -> "Pause":
         if self._pause is None:
-            self._pause = Pause(turns.clock)
+            self._pause = Pause(self.turns.clock)
         return self._pause
 
 
+@dataclass(slots=True)
 class Pause:
     """The pauses of one execution.
 
     Attributes:
+        clock: clock of the run.
         since: begin of the current pause, or None.
         callbacks: called when a pause begins.
         resumers: called when a pause ends.
     """
 
-    __slots__ = ("_clock", "_spent", "_waiting", "callbacks", "resumers", "since")
-
-    def __init__(self, clock: Clock) -> None:
-        self._clock = clock
-        self.since: float | None = None
-        self.callbacks: list[Callable[[], None]] = []
-        self.resumers: list[Callable[[], None]] = []
-        self._spent = 0.0
-        self._waiting: list[asyncio.Future[None]] = []
+    clock: Clock
+    since: float | None = None
+    callbacks: list[Callable[[], None]] = field(default_factory=list)
+    resumers: list[Callable[[], None]] = field(default_factory=list)
+    _spent: float = 0.0
+    _waiting: list[asyncio.Future[None]] = field(default_factory=list)
 
     def end(self) -> bool:
         """End the current pause and wake the waiting tasks. Return False without a pause."""
         if self.since is None:
             return False
-        self._spent += self._clock.elapsed - self.since
+        self._spent += self.clock.elapsed - self.since
         self.since = None
         waiting, self._waiting = self._waiting, []
         for future in waiting:
@@ -284,3 +255,144 @@ class Pause:
         """Return the seconds of pause that have not been taken before."""
         spent, self._spent = self._spent, 0.0
         return spent
+
+
+class Holding:
+    """The claim of one operation.
+
+    It may be entered and left several times. While it is entered and not granted, the operation is paused.
+
+    Args:
+        operation: the operation that uses resources.
+        arbiter: arbiter of its environment.
+        uses: the resources.
+        when_preempted: what it does when a more urgent claim takes them away.
+        stop: fails the operation.
+
+    Attributes:
+        claim: the claim at the arbiter.
+        entered: whether the claim has been made and not released.
+        resting: whether the operation waits for the end of its pause, so that nothing moves.
+    """
+
+    def __init__(
+        self,
+        operation: OperationExecution,
+        arbiter: Arbiter,
+        uses: tuple[Use, ...],
+        when_preempted: WhenPreempted,
+        stop: Stop,
+    ) -> None:
+        request = operation.request
+        self._operation, self._arbiter, self._stop = operation, arbiter, stop
+        self._when_preempted = when_preempted
+        agent = f"[{request.agent}] " if request.agent is not None else ""
+        who = f"{agent}{request.operation}"
+        blocks = request.agent if request.agent is not None and not request.yields else ""
+        self.claim = Claim(uses, who, self, request.urgency, request.policy, request.within, blocks=blocks)
+        self.entered = self.resting = self._entering = False
+        self._told = False
+        self._watchers: list[Callable[[], None]] = []
+
+    @property
+    def barred(self) -> bool:
+        """Whether the operation has claimed its resources, and must not continue without them."""
+        return self.entered and self.claim.state is not State.HELD
+
+    @property
+    def holds(self) -> bool:
+        """Whether no other claim can have the resources. Also true while the operation yields."""
+        return self.claim.holds
+
+    def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call *callback* whenever the claim is granted or preempted, or the caller pauses or resumes the operation.
+
+        Return a function that ends this.
+        """
+        self._watchers.append(callback)
+        return lambda: self._watchers.remove(callback)
+
+    def enter(self) -> None:
+        """Claim the resources, unless they are claimed."""
+        if self.entered:
+            return
+        self.entered = self._entering = True
+        if not self._operation.suspended:
+            self._arbiter.enter(self.claim)
+        self._entering = False
+        self._operation.adapt()
+
+    def leave(self) -> None:
+        """Release the resources, or the place in the queue."""
+        self.entered = False
+        self._arbiter.leave(self.claim)
+        self._tell(None)
+        self._operation.adapt()
+
+    # ---- the caller pauses and resumes the operation
+
+    def suspended(self) -> None:
+        """The caller has paused the operation: others may have its turn, as soon as nothing moves."""
+        if self.entered and (self.resting or self.claim.state is State.WAITING or not self._operation.active):
+            self._arbiter.leave(self.claim)
+        self._tell(None)
+        self._changed()
+
+    def resumed(self) -> None:
+        """The caller has resumed the operation: it claims again what it has released."""
+        if self.entered and self.claim.state is State.OUT:
+            self._arbiter.enter(self.claim)
+        self._changed()
+
+    def rest(self) -> None:
+        """Nothing moves: the operation yields."""
+        if self._operation.suspended:
+            self._arbiter.leave(self.claim)
+        else:
+            self._arbiter.gave_way(self.claim)
+
+    # ---- the claimant of the arbiter
+
+    @property
+    def can_yield(self) -> bool:
+        """Whether it may be preempted now."""
+        if not self._operation.active:
+            return True
+        return self._when_preempted != "finish" and self._operation.request.yields
+
+    def granted(self, claim: Claim) -> None:
+        """Continue, or begin."""
+        self._operation.adapt()
+        self._tell(None)
+        if not self._entering:
+            self._changed()
+
+    def preempted(self, claim: Claim, resource: str) -> None:
+        """Yield: immediately before the operation has begun, after braking while it runs."""
+        if not self._operation.active:
+            self._operation.adapt()
+            self._arbiter.gave_way(claim)
+        elif self._when_preempted == "cancel":
+            self._stop(Structure("preempted", (Atom(local_name(resource)),)))
+        else:
+            if not self._operation.suspended:
+                self._tell(local_name(resource))
+            self._operation.adapt()
+            if self.resting or self._operation.linked:
+                self.rest()
+        self._changed()
+
+    def refused(self, claim: Claim, reason: Structure | Atom) -> None:
+        """Fail."""
+        self.entered = False
+        self._stop(reason)
+
+    def _tell(self, resource: str | None) -> None:
+        """Report to the caller that the operation is preempted, or no longer."""
+        if self._told is not (resource is not None):
+            self._told = resource is not None
+            self._operation.request.on_preempted(resource)
+
+    def _changed(self) -> None:
+        for callback in list(self._watchers):
+            callback()

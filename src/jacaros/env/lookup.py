@@ -4,6 +4,7 @@ If several artifacts offer an operation, CArtAgO's rule decides, for agents and 
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 
 from jacaros.env.errors import UnknownArtifact
 from jacaros.env.ids import ArtifactId
@@ -74,14 +75,12 @@ class Providers(tuple[ArtifactId, ...]):
     operation_index: OperationIndex
 
 
+@dataclass(slots=True, eq=False)
 class _ByAge:
     """Artifacts by age, also by creator."""
 
-    __slots__ = ("artifacts", "by_creator")
-
-    def __init__(self) -> None:
-        self.artifacts: dict[ArtifactId, None] = {}
-        self.by_creator: dict[str | None, dict[ArtifactId, None]] = {}
+    artifacts: dict[ArtifactId, None] = field(default_factory=dict)
+    by_creator: dict[str | None, dict[ArtifactId, None]] = field(default_factory=dict)
 
     def add(self, artifact: ArtifactId) -> None:
         self.artifacts[artifact] = None

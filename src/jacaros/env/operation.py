@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar, overload
+from functools import partial
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
+from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.resources.claim import Claim, Policy
 from jacaros.env.resources.resource import Use
@@ -37,6 +39,16 @@ class OperationOutcome:
     ok: bool
     message: str | None = None
     reason: Structure | Atom | None = None
+
+    @classmethod
+    def of(cls, failure: OperationFailed) -> "OperationOutcome":
+        """Return the outcome of an operation that ends with *failure*."""
+        return cls(False, failure.message, failure.reason)
+
+    @property
+    def failure(self) -> OperationFailed:
+        """The exception for a failed outcome."""
+        return OperationFailed(self.message or "", self.reason)
 
 
 SUCCEEDED = OperationOutcome(True)
@@ -84,6 +96,11 @@ class OperationRequest:
     within: tuple[Claim, ...] = ()
     on_preempted: Callable[[str | None], None] = ignore_preemption
 
+    @property
+    def key(self) -> str:
+        """Name and number of arguments, such as ``inc/1``."""
+        return f"{self.operation}/{len(self.arguments)}"
+
 
 @dataclass(frozen=True, slots=True)
 class Mark:
@@ -108,122 +125,91 @@ def marks_of(function: object) -> tuple[Mark, ...]:
     return marks
 
 
-def _marked(function: F | None, mark: Mark) -> F | Callable[[F], F]:
-    def decorate(target: F) -> F:
-        setattr(target, _MARKS, (*marks_of(target), mark))
-        return target
+class StartedOptions(TypedDict, total=False):
+    """The options of `internal_operation`. See `operation`."""
 
-    return decorate if function is None else decorate(function)
+    name: str | None
+    guard: str | None
+    threaded: bool
+
+
+class OperationOptions(StartedOptions, total=False):
+    """The options of `operation` and `link`. See `operation`."""
+
+    pausable: bool
+    uses: Uses
+    when_preempted: WhenPreempted | None
+
+
+def _marked(function: F, mark: Mark) -> F:
+    setattr(function, _MARKS, (*marks_of(function), mark))
+    return function
+
+
+def _decorated(function: F | None, mark: Mark) -> F | Callable[[F], F]:
+    """Mark a function, or return a decorator that does."""
+    return partial(_marked, mark=mark) if function is None else _marked(function, mark)
 
 
 @overload
 def operation(function: F, /) -> F: ...
 @overload
-def operation(
-    *,
-    name: str | None = None,
-    guard: str | None = None,
-    pausable: bool = False,
-    threaded: bool = False,
-    uses: Uses = (),
-    when_preempted: WhenPreempted | None = None,
-) -> Callable[[F], F]: ...
-def operation(
-    function: F | None = None,
-    /,
-    *,
-    name: str | None = None,
-    guard: str | None = None,
-    pausable: bool = False,
-    threaded: bool = False,
-    uses: Uses = (),
-    when_preempted: WhenPreempted | None = None,
-) -> F | Callable[[F], F]:
+def operation(**options: Unpack[OperationOptions]) -> Callable[[F], F]: ...
+def operation(function: F | None = None, /, **options: Unpack[OperationOptions]) -> F | Callable[[F], F]:
     """Declare a method as an operation for agents.
 
     Args:
         function: the method, a ``def`` (one step) or ``async def`` (one step up to each step boundary).
-        name: its name for agents. Default: the method's name. Several methods may share a name if they take different
-            numbers of arguments.
-        guard: name of a method with the same parameters. The operation waits until it returns true.
-        pausable: whether the operation stops its work while paused (see `Artifact.pause_point`).
-        threaded: whether the method blocks, and so runs in a worker thread: a plain ``def`` whose changes and signals are
-            published together at its end.
-        uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several names;
-            ``"lift(2)"`` for two units; ``"map(shared)"`` for shared (read) access. In an artifact with a `robot_prefix`
-            they belong to this robot, otherwise to the run.
-        when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the default if
-            it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the default
-            otherwise).
+        options: name: its name for agents. Default: the method's name. Several methods may share a name if they take
+                different numbers of arguments.
+            guard: name of a method with the same parameters. The operation waits until it returns true.
+            pausable: whether the operation stops its work while paused (see `Artifact.pause_point`).
+            threaded: whether the method blocks, and so runs in a worker thread: a plain ``def`` whose changes and signals
+                are published together at its end.
+            uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several names;
+                ``"lift(2)"`` for two units; ``"map(shared)"`` for shared (read) access. In an artifact with a
+                `robot_prefix` they belong to this robot, otherwise to the run.
+            when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the
+                default if it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the
+                default otherwise).
 
     Raises:
         InvalidArtifact: (when the class is created) the declaration is invalid.
     """
-    return _marked(function, Mark(OPERATION, name, guard, pausable, threaded, False, uses, when_preempted))
+    return _decorated(function, Mark(OPERATION, **options))
 
 
 def initializer(function: F, /) -> F:
     """Declare a method as a further ``init``. The one that takes the given number of arguments is called."""
-    setattr(function, _MARKS, (*marks_of(function), Mark(INIT, "init")))
-    return function
+    return _marked(function, Mark(INIT, "init"))
 
 
 def common_operation(name: str) -> Callable[[F], F]:
     """Declare a method of `Artifact` itself as an operation called *name* of every artifact."""
-
-    def decorate(function: F) -> F:
-        setattr(function, _MARKS, (Mark(OPERATION, name, common=True),))
-        return function
-
-    return decorate
+    return lambda function: _marked(function, Mark(OPERATION, name, common=True))
 
 
 @overload
 def link(function: F, /) -> F: ...
 @overload
-def link(
-    *,
-    name: str | None = None,
-    guard: str | None = None,
-    pausable: bool = False,
-    threaded: bool = False,
-    uses: Uses = (),
-    when_preempted: WhenPreempted | None = None,
-) -> Callable[[F], F]: ...
-def link(
-    function: F | None = None,
-    /,
-    *,
-    name: str | None = None,
-    guard: str | None = None,
-    pausable: bool = False,
-    threaded: bool = False,
-    uses: Uses = (),
-    when_preempted: WhenPreempted | None = None,
-) -> F | Callable[[F], F]:
+def link(**options: Unpack[OperationOptions]) -> Callable[[F], F]: ...
+def link(function: F | None = None, /, **options: Unpack[OperationOptions]) -> F | Callable[[F], F]:
     """Declare a method as a linked operation: other artifacts call it through their ports, agents cannot.
 
-    The arguments are those of `operation`. A method may be both.
+    The options are those of `operation`. A method may be both.
     """
-    return _marked(function, Mark(LINK, name, guard, pausable, threaded, False, uses, when_preempted))
+    return _decorated(function, Mark(LINK, **options))
 
 
 @overload
 def internal_operation(function: F, /) -> F: ...
 @overload
+def internal_operation(**options: Unpack[StartedOptions]) -> Callable[[F], F]: ...
 def internal_operation(
-    *, name: str | None = None, guard: str | None = None, threaded: bool = False
-) -> Callable[[F], F]: ...
-def internal_operation(
-    function: F | None = None,
-    /,
-    *,
-    name: str | None = None,
-    guard: str | None = None,
-    threaded: bool = False,
+    function: F | None = None, /, **options: Unpack[StartedOptions]
 ) -> F | Callable[[F], F]:
     """Declare a method as a process that the artifact starts itself, with `Artifact.start`.
 
-    The arguments are those of `operation`.
+    The options are those of `operation`, without ``pausable``, ``uses`` and ``when_preempted``.
     """
-    return _marked(function, Mark(INTERNAL, name, guard, False, threaded))
+    return _decorated(function, Mark(INTERNAL, **options))

@@ -11,10 +11,8 @@ after a cancel.
 import asyncio
 from collections.abc import Callable, Collection, Sequence
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
-from jacaros.env.artifact import Artifact
-from jacaros.env.errors import OperationFailed
 from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observer
 from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
@@ -44,7 +42,24 @@ class UnderWay(Protocol):
         """Let it continue."""
 
 
-async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
+class Waiting:
+    """A request that only waits, so that there is nothing to pause. Cancelling calls *stop*."""
+
+    def __init__(self, stop: Callable[[], None]) -> None:
+        self.cancel = stop
+
+    def pause(self) -> None:
+        """Do nothing."""
+
+    def resume(self) -> None:
+        """Do nothing."""
+
+
+ENDED: Final = Waiting(lambda: None)
+"""The handle of a request that has ended."""
+
+
+async def awaited(begin: Callable[[OnMade], UnderWay]) -> ArtifactId:
     """Begin a request for an artifact, and wait for it. Cancelling the wait cancels the request.
 
     Raises:
@@ -58,14 +73,13 @@ async def awaited(begin: Callable[[OnMade], UnderWay | None]) -> ArtifactId:
         if artifact_id is not None:
             found.set_result(artifact_id)
         else:
-            found.set_exception(OperationFailed(outcome.message or "", outcome.reason))
+            found.set_exception(outcome.failure)
 
     under_way = begin(on_done)
     try:
         return await found
     except asyncio.CancelledError:
-        if under_way is not None:
-            under_way.cancel()
+        under_way.cancel()
         raise
 
 
@@ -111,7 +125,7 @@ class Workspace(Protocol):
     async def make_artifact(
         self,
         name: str,
-        type_name: str | type[Artifact],
+        type_name: str | type[Any],
         args: Sequence[object] = (),
         creator: str | None = None,
     ) -> ArtifactId:
@@ -133,7 +147,7 @@ class Workspace(Protocol):
     def create(
         self,
         name: str,
-        type_name: str | type[Artifact],
+        type_name: str | type[Any],
         args: Sequence[object] = (),
         creator: str | None = None,
         on_done: OnMade = ignore_made,
@@ -145,7 +159,7 @@ class Workspace(Protocol):
         """Dispose an artifact. Raises `UnknownArtifact` if it is known to be gone."""
 
     def offer(
-        self, name: str, artifact_type: type[Artifact], args: Sequence[object] = (), personal: bool = False
+        self, name: str, artifact_type: type[Any], args: Sequence[object] = (), personal: bool = False
     ) -> ArtifactId:
         """Add an artifact of JaCaROS itself, such as the body of an agent. It may be created at its first use.
 

@@ -228,13 +228,13 @@ class PropertyStore:
             UnknownProperty: no property matches.
         """
         for found in self._like(name, template):
-            if not template or _fits(template, found.values):
+            if not template or fits(template, found.values):
                 return found
         raise self._unknown(name, template)
 
     def all(self, name: str, template: tuple[object, ...] = ()) -> tuple[ObservableProperty, ...]:
         """Return the properties called *name* whose values match *template* (see `first`), the oldest first."""
-        return tuple(p for p in self._like(name, template) if not template or _fits(template, p.values))
+        return tuple(p for p in self._like(name, template) if not template or fits(template, p.values))
 
     def _unknown(self, name: str, template: tuple[object, ...] = ()) -> UnknownProperty:
         properties = self._by_name.get(name)
@@ -257,9 +257,7 @@ class PropertyStore:
 
     def has(self, name: str, template: tuple[object, ...] = ()) -> bool:
         """Return whether a property called *name* has values that match *template*."""
-        if not template:
-            return bool(self._by_name.get(name))
-        return any(_fits(template, p.values) for p in self._like(name, template))
+        return any(not template or fits(template, p.values) for p in self._like(name, template))
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """Return the properties as observers know them, in the order of their definition."""
@@ -345,7 +343,8 @@ def _first(each: ObservableProperty) -> object:
     return each.values[0] if each.values and type(each.values[0]) in _INDEXED else _OTHERS
 
 
-def _fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:
+def fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:
+    """Return whether values match a template: as many, each equal, or None in the template."""
     return len(template) == len(values) and all(
         wanted is None or equal(plain(wanted), value) for wanted, value in zip(template, values, strict=True)
     )

@@ -1,14 +1,12 @@
 """The standard artifacts of every workspace: blackboard, console, system, and manuals of types."""
 
-from typing import NoReturn
-
 from jacaros.env.artifact import Artifact, Out, operation
 from jacaros.env.ids import ArtifactId
 from jacaros.env.manual import Manual, describe, manual_term
 from jacaros.env.tree import WorkspaceTree
 from jacaros.env.values import equal, plain, text
 from jacaros.env.workspace import Workspace
-from jacaros.env.workspace_artifact import WorkspaceArtifact
+from jacaros.env.workspace_artifact import WorkspaceArtifact, refuse
 
 Entry = tuple[object, ...]
 
@@ -123,22 +121,18 @@ class SystemArtifact(Artifact):
         """End the run, as ``.stopMAS`` does."""
         stop = self.resources.get("stop")
         if not callable(stop):
-            self.fail("the host does not support ending the run", "not_supported", "shutdownNode/0")
+            refuse(self, "the host does not support ending the run")
         stop()
 
     @operation
     def crash(self) -> None:
         """Kill the process. Not supported."""
-        self._refuse("a run cannot be killed; use shutdownNode or .stopMAS to end it")
+        refuse(self, "a run cannot be killed; use shutdownNode or .stopMAS to end it")
 
     @operation(name="spawnNode")
     def spawn(self, *arguments: object) -> None:
         """Start another process. Not supported yet."""
-        self._refuse("starting other processes is not supported yet")
-
-    def _refuse(self, message: str) -> NoReturn:
-        request = self.current.request
-        self.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
+        refuse(self, "starting other processes is not supported yet")
 
 
 class ManualRepository(Artifact):
@@ -180,7 +174,7 @@ class ManualRepository(Artifact):
 
     def _manual(self, what: ArtifactId | str) -> Manual:
         if isinstance(what, ArtifactId):
-            workspace = self._tree.find(what.workspace)
+            workspace = self._tree.workspace(what.workspace)
             if isinstance(workspace, Workspace):
                 return workspace.manual(what)
             what = what.type_name

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from jacaros.env.errors import OperationFailed, UnknownWorkspace
+from jacaros.env.ids import resolve_path
 from jacaros.env.ports import Workspace
 from jacaros.env.values import Structure
 from jacaros.suggestions import aside
@@ -24,7 +25,7 @@ class WorkspaceTree:
         self._links: dict[str, str] = {}
         self._watchers: dict[str, list[Callable[[], None]]] = {}
 
-    def all(self) -> tuple[Workspace, ...]:
+    def workspaces(self) -> tuple[Workspace, ...]:
         """Return all workspaces, the oldest first."""
         return tuple(self._workspaces.values())
 
@@ -32,8 +33,8 @@ class WorkspaceTree:
         """Return the workspace with this full path, without following links."""
         return self._workspaces.get(path, otherwise)
 
-    def find(self, path: str) -> Workspace:
-        """Return the workspace at a full path, which may contain names of links.
+    def workspace(self, path: str) -> Workspace:
+        """Return the workspace with this full path, which may contain names of links.
 
         Raises:
             UnknownWorkspace: the workspace does not exist.
@@ -45,6 +46,17 @@ class WorkspaceTree:
             raise UnknownWorkspace(f"unknown workspace `{path}`{help}", reason)
         return found
 
+    def place(self, here: Workspace, path: str) -> tuple[Workspace, str]:
+        """Return the workspace and the plain name of an artifact, given its name, or its path relative to *here*.
+
+        Raises:
+            UnknownWorkspace: the workspace does not exist.
+        """
+        if "/" not in path:
+            return here, path
+        above, _, name = resolve_path(here.path, path).rpartition("/")
+        return self.workspace(above), name
+
     def _without_links(self, path: str) -> str:
         for _ in range(_LINKS_ON_ONE_PATH):
             link = next((p for p in _beginnings(path) if p in self._links), None)
@@ -53,8 +65,8 @@ class WorkspaceTree:
             path = self._links[link] + path[len(link) :]
         return path
 
-    def create(self, path: str) -> Workspace:
-        """Create a workspace at a full path. Its parent workspace must exist.
+    def create_workspace(self, path: str) -> Workspace:
+        """Create a workspace with its standard artifacts at a full path. Its parent workspace must exist.
 
         Raises:
             OperationFailed: it already exists; reason ``workspace_already_present(Path)``.
@@ -62,7 +74,7 @@ class WorkspaceTree:
         """
         path = self._free(path)
         above = path.rpartition("/")[0]
-        workspace = self._workspaces[path] = self._make(path, self.find(above) if above else None)
+        workspace = self._workspaces[path] = self._make(path, self.workspace(above) if above else None)
         self._tell(path)
         return workspace
 
@@ -84,14 +96,14 @@ class WorkspaceTree:
 
         return unmount
 
-    def link(self, path: str, target: str) -> None:
+    def link_workspace(self, path: str, target: str) -> None:
         """Make an unused full path lead to the workspace at another path.
 
         Raises:
             OperationFailed: the path is in use; reason ``workspace_already_present(Path)``.
             UnknownWorkspace: the target, or the parent workspace of the path, does not exist.
         """
-        to = self.find(target)
+        to = self.workspace(target)
         path = self._free(path)
         self._links[path] = to.path
         self._tell(path)
@@ -99,7 +111,7 @@ class WorkspaceTree:
     def _free(self, path: str) -> str:
         """Return an unused path, with its links resolved."""
         above, _, name = str.__str__(path).rpartition("/")
-        path = f"{self.find(above).path}/{name}" if above else path
+        path = f"{self.workspace(above).path}/{name}" if above else path
         if not name or path in self._workspaces or path in self._links:
             reason = Structure("workspace_already_present", (str.__str__(path),))
             raise OperationFailed(f"workspace `{path}` already exists", reason)

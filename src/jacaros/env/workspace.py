@@ -1,6 +1,5 @@
 """Workspaces: create, find, focus, link, use and dispose artifacts."""
 
-import asyncio
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 
@@ -27,7 +26,7 @@ from jacaros.env.operation import (
     ignore_outcome,
     marks_of,
 )
-from jacaros.env.ports import OnMade, OnOutcome, ignore_made
+from jacaros.env.ports import ENDED, OnMade, OnOutcome, UnderWay, ignore_made
 from jacaros.env.property import ObservableProperty
 from jacaros.env.values import Structure
 from jacaros.suggestions import aside
@@ -55,7 +54,6 @@ class Workspace(ports.Workspace):
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
         self._indexes: dict[tuple[str, int], OperationIndex] = {}
-        self._offers: dict[ArtifactId, dict[str, None]] = {}
         self._watchers: dict[object, Watcher] = {}
         self._watchers_of_all: dict[object, Watcher] = {}
         self._telling: tuple[Iterator[Watcher], ArtifactId, bool] | None = None
@@ -109,7 +107,7 @@ class Workspace(ports.Workspace):
         creator: str | None = None,
         on_done: OnMade = ignore_made,
         cause: Cause | None = None,
-    ) -> OperationExecution:
+    ) -> UnderWay:
         """Create an artifact like `make_artifact`, and report to *on_done*.
 
         An ``init`` that is a plain ``def`` has ended when this returns. Cancelling the returned execution abandons the
@@ -123,8 +121,8 @@ class Workspace(ports.Workspace):
             artifact_type, steps = self._prepare(request.artifact, type_name)
             declared = init_of(artifact_type, request)
         except OperationFailed as failure:
-            on_done(None, OperationOutcome(False, failure.message, failure.reason))
-            return OperationExecution(None, request)
+            on_done(None, OperationOutcome.of(failure))
+            return ENDED
         self._making[name] = steps
         self._registry.add(steps, self._forget)
         steps.abandon = partial(self._registry.dispose, steps)
@@ -155,7 +153,7 @@ class Workspace(ports.Workspace):
         if not outcome.ok or steps.disposed:
             self._registry.dispose(steps)
             failure = init_failed(steps.id, outcome.message or "its init disposed it")
-            on_done(None, OperationOutcome(False, failure.message, failure.reason))
+            on_done(None, OperationOutcome.of(failure))
             return
         steps.initialised = True
         self._artifacts[name] = steps.id
@@ -215,22 +213,6 @@ class Workspace(ports.Workspace):
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
 
-    async def available(self, name: str) -> ArtifactId:
-        """Wait until an artifact of this name exists, and return it."""
-        if name not in self._artifacts:
-            found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-
-            def look(artifact_id: ArtifactId, present: bool) -> None:
-                if present and artifact_id.name == name and not found.done():
-                    found.set_result(None)
-
-            stop = self.watch(look)
-            try:
-                await found
-            finally:
-                stop()
-        return self.lookup(name)
-
     def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
         """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.
 
@@ -264,10 +246,7 @@ class Workspace(ports.Workspace):
         Raises:
             UnknownArtifact: it is gone.
         """
-        found = self._offers.get(artifact_id)
-        if found is None:
-            found = self._offers[artifact_id] = dict.fromkeys(self.interface(artifact_id).operations.keys())
-        return found
+        return self.interface(artifact_id).operations.keys()
 
     def artifact_type(self, type_name: str) -> type[Artifact]:
         """Return the class that `make_artifact` would use.
@@ -284,11 +263,10 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         steps = self._steps_of(artifact_id)
-        return describe(steps.artifact_type, steps.interface, steps.publication.committed())
+        return describe(type(steps.artifact), steps.interface, steps.publication.committed())
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
         """Update the indexes after an artifact has changed its operations."""
-        self._offers.pop(artifact_id, None)
         if self._artifacts.get(artifact_id.name) is artifact_id:
             self._indexes.clear()
 
@@ -306,7 +284,7 @@ class Workspace(ports.Workspace):
         Raises:
             UnknownArtifact: it is gone.
         """
-        method = vars(self._steps_of(artifact_id).artifact_type).get(name)
+        method = vars(type(self._steps_of(artifact_id).artifact)).get(name)
         if name.startswith("_") or not callable(method):
             return False
         # `Artifact.remove_operation` has removed a method that is marked but not offered.
@@ -338,7 +316,7 @@ class Workspace(ports.Workspace):
 
     # ---- artifacts are used
 
-    def execute(self, request: OperationRequest) -> OperationExecution:
+    def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent.
 
         A plain ``def`` of a free artifact has ended when this returns: its changes are committed, observers have
@@ -349,17 +327,16 @@ class Workspace(ports.Workspace):
             return self._gone(request)
         return steps.execute(request, OPERATION)
 
-    def execute_linked(self, request: OperationRequest) -> OperationExecution:
+    def execute_linked(self, request: OperationRequest) -> UnderWay:
         """Run a linked operation for another artifact. See `Artifact.call_linked`."""
         steps = self._registry.find(request.artifact)
         if steps is None:
             return self._gone(request)
         return steps.execute(request, LINK)
 
-    def _gone(self, request: OperationRequest) -> OperationExecution:
-        refused_execution = OperationExecution(None, request)
+    def _gone(self, request: OperationRequest) -> UnderWay:
         request.on_done(faults.not_available(request.artifact))
-        return refused_execution
+        return ENDED
 
     def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: OnOutcome = ignore_outcome) -> None:
         """Let *observer* receive what an artifact publishes, beginning with all its properties.
@@ -419,7 +396,6 @@ class Workspace(ports.Workspace):
                 self._offer_of(artifact_id, operation, arity, index)
             else:
                 index.remove(artifact_id)
-        self._offers.pop(artifact_id, None)
         if self._setting.listener is not None:
             self._setting.listener.artifact(artifact_id, present)
         self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)

@@ -2,7 +2,6 @@
 
 from typing import NoReturn
 
-from jacaros.env import ports
 from jacaros.env.artifact import Artifact, Out, internal_operation, operation
 from jacaros.env.errors import UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
@@ -65,14 +64,14 @@ class WorkspaceArtifact(Artifact):
         artifact.set(await self._make(name, type_name, parameters))
 
     async def _make(self, name: str, type_name: str, parameters: list[object]) -> ArtifactId:
-        workspace, plain_name = self._place(name)
+        workspace, plain_name = self._tree.place(self._here, name)
         making = workspace.make_artifact(plain_name, type_name, parameters, self.caller)
         return await self.step(making)
 
     @operation(name="lookupArtifact")
     def look_up(self, name: str, artifact: Out) -> None:
         """Return the artifact with this name or path."""
-        workspace, plain_name = self._place(name)
+        workspace, plain_name = self._tree.place(self._here, name)
         artifact.set(workspace.lookup(plain_name))
 
     @operation(name="lookupArtifactByType")
@@ -96,67 +95,62 @@ class WorkspaceArtifact(Artifact):
     @operation(name="disposeArtifact")
     def dispose_it(self, artifact: ArtifactId) -> None:
         """Dispose an artifact."""
-        self._tree.find(artifact.workspace).dispose_artifact(artifact)
+        self._tree.workspace(artifact.workspace).dispose_artifact(artifact)
 
     @operation(name="linkArtifacts")
     def link_them(self, source: ArtifactId, port: str, target: ArtifactId) -> None:
         """Link an out port of an artifact to another artifact."""
-        self._tree.find(source.workspace).link(source, port, target)
+        self._tree.workspace(source.workspace).link(source, port, target)
 
     # ---- workspaces
 
     @operation(name="createWorkspace")
     def create(self, path: str) -> None:
         """Create a workspace."""
-        self._tree.create(resolve_path(self._here.path, path))
+        self._tree.create_workspace(resolve_path(self._here.path, path))
 
     @operation(name="createWorkspace")
     def create_elsewhere(self, path: str, address: str) -> None:
         """Create a workspace on another computer. Not supported yet."""
-        self._refuse(f"cannot create workspace {path} at {address}: remote workspaces are not supported yet")
+        refuse(self, f"cannot create workspace {path} at {address}: remote workspaces are not supported yet")
 
     @operation(name="createWorkspaceWithTopology")
     def create_with_topology(self, path: str, topology: object) -> None:
         """Create a workspace in which agents and artifacts have positions. Not supported."""
-        self._refuse(f"cannot create workspace {path} with a topology; use createWorkspace")
+        refuse(self, f"cannot create workspace {path} with a topology; use createWorkspace")
 
     @operation(name="linkWorkspace")
     def link_workspace(self, path: str, local_name: str) -> None:
         """Make a name in this workspace lead to another workspace."""
         here = self._here.path
-        self._tree.link(resolve_path(here, local_name), resolve_path(here, path))
+        self._tree.link_workspace(resolve_path(here, local_name), resolve_path(here, path))
 
     @operation(name="linkWorkspaces")
     def link_workspaces(self, source: str, target: str, local_name: str) -> None:
         """Make a name in one workspace lead to another one."""
         here = self._here.path
-        above = self._tree.find(resolve_path(here, source)).path
-        self._tree.link(resolve_path(above, local_name), resolve_path(here, target))
+        above = self._tree.workspace(resolve_path(here, source)).path
+        self._tree.link_workspace(resolve_path(above, local_name), resolve_path(here, target))
 
     @operation(name="linkRemoteWorkspace")
     def link_remote_workspace(self, *arguments: object) -> None:
         """Link a workspace of another system. Not supported yet."""
-        self._refuse(
-            "linking remote workspaces is not supported yet; use linkWorkspace for one of this process"
+        refuse(
+            self, "linking remote workspaces is not supported yet; use linkWorkspace for one of this process"
         )
 
     @operation(name="mountWorkspace")
     def mount_workspace(self, mas_url: str, remote_path: str, local_path: str) -> None:
         """Mount a workspace of another system. Not supported yet."""
-        self._refuse(
-            f"cannot mount {mas_url}{remote_path} at {local_path}: remote workspaces are not supported yet"
+        refuse(
+            self,
+            f"cannot mount {mas_url}{remote_path} at {local_path}: remote workspaces are not supported yet",
         )
 
-    def _refuse(self, message: str) -> NoReturn:
-        request = self.current.request
-        self.fail(message, "not_supported", f"{request.operation}/{len(request.arguments)}")
 
-    def _place(self, path: str) -> tuple[ports.Workspace, str]:
-        """Return the workspace and plain name that the name or path of an artifact means."""
-        if "/" not in path:
-            return self._here, path
-        above, _, name = resolve_path(self._here.path, path).rpartition("/")
-        return self._tree.find(above), name
+def refuse(artifact: Artifact, message: str) -> NoReturn:
+    """Fail the operation in progress, which is not supported."""
+    artifact.fail(message, "not_supported", artifact.current.request.key)
 
 
 def is_called(wanted: str, type_name: str) -> bool:

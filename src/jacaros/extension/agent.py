@@ -1,6 +1,6 @@
 """Agents as Python code sees them, and the base class for your own."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from random import Random
 from typing import Any
 
@@ -163,11 +163,3 @@ def give_face(mind: Mind, face: Agent) -> None:
     """Make *face* the `Agent` of a mind."""
     face._mind = mind
     mind.face = face
-
-
-def overridden(face: Agent, name: str) -> Callable[..., object] | None:
-    """Return the method of a subclass that overrides the one of `Agent`, or None."""
-    if getattr(type(face), name) is getattr(Agent, name):
-        return None
-    method: Callable[..., object] = getattr(face, name)
-    return method

@@ -15,6 +15,7 @@ from jacaros.bdi.state.waiting import CoroutineWait, Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations
+from jacaros.env.kernel.faults import error_text
 from jacaros.env.values import Atom, Out, Structure
 from jacaros.errors import InternalError
 from jacaros.extension.agent import Agent, agent_of
@@ -273,10 +274,8 @@ def _signature(function: Callable[..., object], skip_first: bool) -> operations.
 
 def _hints(function: Callable[..., object]) -> dict[str, object]:
     """Return the annotations; those that cannot be resolved stay as text."""
-    try:
-        return typing.get_type_hints(function)
-    except Exception:
-        return operations.written_annotations(function)
+    known, unknown = operations.annotations_of(function)
+    return {**known, **unknown}
 
 
 def _wants_agent(function: Callable[..., object]) -> bool:
@@ -337,8 +336,7 @@ def _annotation(value: Term) -> Term:
 
 def crash_text(name: str, function: Callable[..., object], error: BaseException) -> str:
     """Describe an exception for the log: the action, the exception, and where it was raised."""
-    what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    return f"{name}: {what} ({_place(function, error)})"
+    return f"{name}: {error_text(error)} ({_place(function, error)})"
 
 
 def _place(function: Callable[..., object], error: BaseException) -> str:

@@ -3,8 +3,8 @@
 The mind does not know of this: its selection functions are replaced by ones that call the methods.
 """
 
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+from collections.abc import Callable
+from typing import TypeVar, cast
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.selections import options
@@ -13,9 +13,9 @@ from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal
-from jacaros.extension.agent import Agent, agent_of, give_face, overridden
+from jacaros.extension.agent import Agent, agent_of, give_face
 from jacaros.extension.calling import FAULTS, crash_text
-from jacaros.extension.views import Message, Option
+from jacaros.extension.views import Message, Option, overridden
 from jacaros.terms.unifier import bind, undo
 from jacaros.terms.values import Term, Var
 
@@ -28,11 +28,11 @@ class CustomMind(Mind):
     __slots__ = ()
 
     def accepts(self, message: SpeechAct) -> bool:
-        accepts = overridden(agent_of(self), "soc_acc")
+        accepts = overridden(agent_of(self), Agent, "soc_acc")
         return accepts is None or ask(self, accepts, bool, True, Message(message))
 
     def accept_kill(self, killer: str) -> bool:
-        accepts = overridden(agent_of(self), "kill_acc")
+        accepts = overridden(agent_of(self), Agent, "kill_acc")
         return accepts is None or ask(self, accepts, bool, True, killer)
 
 
@@ -61,8 +61,14 @@ class Chosen(Urgent):
         undo(trail, 0)
         if not found:
             return None
-        candidates: list[Option | None] = [*found, None]
-        chosen = ask(self._mind, self._choose, _one_of(candidates), candidates[0], tuple(found))
+
+        def check(chosen: object) -> Option | None:
+            if chosen is None or any(chosen is each for each in found):
+                return cast("Option | None", chosen)
+            raise ValueError(f"it returned {chosen!r}, which is not one of the choices")
+
+        default: Option | None = found[0]
+        chosen = ask(self._mind, self._choose, check, default, tuple(found))
         for option, (frame, bindings) in zip(found, held, strict=True):
             if option is chosen:
                 for variable, value in bindings:
@@ -74,7 +80,7 @@ class Chosen(Urgent):
 def begin_as(mind: Mind, face: Agent) -> None:
     """Connect an object of the project's class, before the mind has any beliefs."""
     give_face(mind, face)
-    select_option = overridden(face, "select_option")
+    select_option = overridden(face, Agent, "select_option")
     if select_option is not None:
         mind.selections = Chosen(mind, select_option)
 
@@ -93,13 +99,3 @@ def ask(
         name = getattr(method, "__qualname__", repr(method))
         owner.architecture.log("error", crash_text(name, method, error))
         return default
-
-
-def _one_of(items: Sequence[Result]) -> Callable[[object], Result]:
-    def check(chosen: object) -> Result:
-        for item in items:
-            if item is chosen:
-                return item
-        raise ValueError(f"it returned {chosen!r}, which is not one of the choices")
-
-    return check

@@ -1,6 +1,6 @@
 """Beliefs and goals as Python code sees them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from jacaros.asl.loader import parse_literal
 from jacaros.asl.lowering import fresh_names, lower
@@ -54,10 +54,6 @@ class Literal:
             for annotation in self.annotations
             if isinstance(annotation, Structure) and annotation.functor == "source" and annotation.arguments
         )
-
-    def with_annotations(self, *annotations: object) -> "Literal":
-        """Return the literal with additional annotations."""
-        return replace(self, annotations=(*self.annotations, *annotations))
 
     def __str__(self) -> str:
         return text(term_of(self))

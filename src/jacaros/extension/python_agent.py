@@ -4,19 +4,18 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Mappi
 from functools import wraps
 from inspect import iscoroutinefunction
 from random import Random
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar, Unpack
 
 from jacaros.bdi.architecture import AgentSystem
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
-from jacaros.env.ids import ArtifactId
 from jacaros.env.session.observed import PropertyChange
-from jacaros.env.session.session import Session
+from jacaros.env.session.session import ActOptions, Session
 from jacaros.env.session.signal_stream import ReceivedSignal
 from jacaros.env.values import text
 from jacaros.errors import JacarosError
 from jacaros.extension.literal import Literal
-from jacaros.extension.views import ReceivedMessage, content_of, heard
+from jacaros.extension.views import ReceivedMessage, content_of, heard, overridden
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import Term
 
@@ -197,23 +196,13 @@ class PythonAgent:
     properties = _of("session", Session.properties)
     signals = _of("session", Session.signals)
 
-    async def act(
-        self,
-        operation: str,
-        *arguments: object,
-        artifact: ArtifactId | str | None = None,
-        workspace: str | None = None,
-        timeout: float | None = None,
-        urgency: int = 0,
-    ) -> Any:
+    async def act(self, operation: str, *arguments: object, **options: Unpack[ActOptions]) -> Any:
         """Run an operation, wait for its end, and return the values of its `Out` arguments; see `Session.act`.
 
         Raises:
             OperationFailed: with the message and the reason.
         """
-        result = await self.begin(
-            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
-        )
+        result = await self.begin(operation, *arguments, **options)
         # An operation may end immediately: let other agents run even if this one does nothing else.
         await self._host.turn()
         return result
@@ -291,7 +280,7 @@ class PythonAgent:
 
     @property
     def _unread(self) -> Mail:
-        if overridden(self, "on_message") is not None:
+        if overridden(self, PythonAgent, "on_message") is not None:
             raise JacarosError(
                 f"{type(self).__name__} has on_message, which receives all messages, so none can be awaited"
             )
@@ -345,14 +334,6 @@ class PythonAgent:
                     f"{type(self).__name__} has not started yet: do this in run, not in __init__"
                 )
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}", name=name, obj=self)
-
-
-def overridden(agent: PythonAgent, name: str) -> Callable[..., object] | None:
-    """Return the handler that a subclass defines, or None."""
-    if getattr(type(agent), name) is getattr(PythonAgent, name):
-        return None
-    method: Callable[..., object] = getattr(agent, name)
-    return method
 
 
 class _Messages:

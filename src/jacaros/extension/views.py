@@ -136,6 +136,14 @@ class ReceivedMessage(Message):
             self._answer(self.raw, performative, content_of(content, self.performative))
 
 
+def overridden(face: object, base: type, name: str) -> Callable[..., object] | None:
+    """Return the method of an object whose class overrides that of *base*, or None."""
+    if getattr(type(face), name) is getattr(base, name):
+        return None
+    method: Callable[..., object] = getattr(face, name)
+    return method
+
+
 def content_of(value: object, performative: str = "tell") -> Term:
     """Convert a Python value to the content of a message; texts are parsed as AgentSpeak, except texts of plans.
 

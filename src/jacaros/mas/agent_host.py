@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 from jacaros.asl.nodes import Literal
 from jacaros.bdi.architecture import Timer
-from jacaros.bdi.state.act import NEEDS, Act, Completion, Percept
+from jacaros.bdi.state.act import NEEDS, Act, Completion
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
@@ -49,20 +49,8 @@ class HostedMind(Protocol):
     def accept_kill(self, killer: str) -> bool:
         """Return whether another agent may kill this one."""
 
-    def perceive(self, percepts: list[Percept]) -> None:
-        """Receive percepts."""
-
-    def has_untaken(self, name: str) -> bool:
-        """Return whether percepts of properties called *name* have not been processed yet (backpressure)."""
-
     def complete(self, act_id: int, completion: Completion) -> None:
         """Receive the outcome of an action."""
-
-    def preempted(self, act_id: int, resource: str) -> None:
-        """An action, or a plan that needs it, has lost a resource."""
-
-    def regained(self, act_id: int) -> None:
-        """It has the resource again, or no longer waits for it."""
 
     def shut_down_in(self, milliseconds: float) -> None:
         """Receive the announcement that the run ends after this time."""

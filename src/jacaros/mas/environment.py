@@ -8,15 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.asl.diagnostics import Diagnostic
+from jacaros.bdi.mind import Mind
 from jacaros.body.body import AgentBody
 from jacaros.body.percepts import PerceptWriter
 from jacaros.body.values import References
 from jacaros.clock import Clock
 from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifact, UnknownArtifactType
+from jacaros.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.env.kernel.kinds import Unsuitable
 from jacaros.env.kernel.signature import Parameter
-from jacaros.env.ports import Workspace
+from jacaros.env.ports import Workspace, ignore_made
+from jacaros.env.presence.presence import Presence
 from jacaros.env.values import Atom
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
@@ -127,59 +129,44 @@ class RunEnvironment:
         self.environment = Environment(clock, resources, self.types, console.log, on_internal_error)
         self._console = console
         self._activity = activity
-        self._references = References()
+        references = References()
         older = deployment.environment == CARTAGO_2
-        self._writer = PerceptWriter(self._references, self.environment.workspace, older)
+        self._writer = PerceptWriter(references, self.environment.workspace, older)
         # A run may create and dispose millions of artifacts.
-        self.environment.when_disposed(self._references.forget)
+        self.environment.when_disposed(references.forget)
         self.environment.when_disposed(self._writer.forget)
 
     def make_body(self, host: AgentHost) -> AgentBody:
         """Return a body for an agent, in ``/main``."""
-        return AgentBody(
-            host.name, host.mind, self.environment, self._references, self._writer, host.print, self._activity
-        )
+        mind = host.mind
+        assert isinstance(mind, Mind)
+        return AgentBody(host.name, mind, self.environment, self._writer, host.print, self._activity)
 
-    def situated_body(self, host: AgentHost, spec: AgentSpec) -> AgentBody:
-        """Return a body that has joined and focused what the project declares.
+    def situate(self, presence: Presence, spec: AgentSpec) -> None:
+        """Let an agent join and focus what the project declares.
 
         An artifact that does not exist is focused as soon as it is created. Other errors are logged.
         """
-        body = self.make_body(host)
-        body.presence.enter()
-        for workspace in spec.join:
-            self._try(spec, partial(self._join, body, workspace))
-        for focus in spec.focus:
-            self._try(spec, partial(self._focus, host, body, focus))
-        return body
+        steps = [partial(self._join, presence, workspace) for workspace in spec.join]
+        steps += [partial(self._focus, presence, wanted) for wanted in spec.focus]
+        for step in steps:
+            try:
+                step()
+            except OperationFailed as failure:
+                self._console.log(f"[{spec.name}] error: {failure.message}", "error")
 
-    def _try(self, spec: AgentSpec, do: Callable[[], None]) -> None:
-        try:
-            do()
-        except OperationFailed as failure:
-            self._console.log(f"[{spec.name}] error: {failure.message}", "error")
+    def _join(self, presence: Presence, workspace: str) -> None:
+        presence.join(self.environment.workspace(path_of(self.environment, workspace)))
 
-    def _join(self, body: AgentBody, workspace: str) -> None:
-        body.join(path_of(self.environment, workspace))
-
-    def _focus(self, host: AgentHost, body: AgentBody, wanted: FocusSpec) -> None:
-        try:
-            body.focus(artifact_of(self.environment, wanted), wanted.namespace)
-        except UnknownArtifact:
-            if wanted.workspace is None:
-                raise
-            self._focus_later(host, body, wanted, path_of(self.environment, wanted.workspace))
-
-    def _focus_later(self, host: AgentHost, body: AgentBody, wanted: FocusSpec, path: str) -> None:
-        """Focus an artifact as soon as one with this name exists."""
-
-        def look(artifact: "ArtifactId", present: bool) -> None:
-            if present and artifact.name == wanted.artifact:
-                stop()
-                if not host.mind.stopped:
-                    body.focus(artifact, wanted.namespace)
-
-        stop = self.environment.workspace(path).watch(look)
+    def _focus(self, presence: Presence, wanted: FocusSpec) -> None:
+        if wanted.workspace is None:
+            path = artifact_of(self.environment, wanted).workspace
+        else:
+            path = path_of(self.environment, wanted.workspace)
+        if not presence.workspaces.has_joined(path):
+            presence.join(self.environment.workspace(path))
+        here = presence.workspaces.at(path)
+        presence.focus_when_available(here, wanted.artifact, ignore_made, wanted.namespace)
 
     async def set_up(self, deployment: Deployment) -> None:
         """Create the workspaces and artifacts that the project declares.
@@ -188,11 +175,6 @@ class RunEnvironment:
             ProjectError: one cannot be created.
         """
         await set_up_workspaces(self.environment, deployment.workspaces, self.types)
-
-
-if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
-    from jacaros.env.ids import ArtifactId
 
 
 async def set_up_workspaces(

@@ -200,7 +200,6 @@ def _current_workspaces(ctx: Context, result: Term) -> bool:
     body = getattr(ctx.architecture, "situated", lambda: None)()
     if not isinstance(body, AgentBody):
         raise ActionError("the project has no environment")
-    presence = body.presence
-    presence.enter()
-    ids = [presence.references.of(workspace) for workspace in presence.workspaces.joined()]
+    body.enter()
+    ids = [body.references.of(workspace) for workspace in body.workspaces.joined()]
     return ctx.unify(result, make_list(ids))

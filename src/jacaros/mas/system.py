@@ -345,12 +345,14 @@ class System:
                     situate,  # here: most projects have no such agent
                 )
 
-                situate(host, spec, self.run_environment().environment)
+                situate(host, spec, self.run_environment())
             return
         if self._has_environment:
             host.make_body = lambda: self.run_environment().make_body(host)
         if self._run_environment is not None:
-            host.body = self._run_environment.situated_body(host, spec)
+            host.body = body = self._run_environment.make_body(host)
+            body.enter()
+            self._run_environment.situate(body, spec)
 
     def _make_directory_agent(self) -> Mind:
         """Create the agent of the directory facilitator. An agent of the project with its name replaces it."""

@@ -115,7 +115,7 @@ class Robot:
         self.lines: list[str] = []
         self.activity = Activity()
         writer = PerceptWriter(references, environment.workspace)
-        self.body = AgentBody(name, self, environment, references, writer, self.lines.append, self.activity)
+        self.body = AgentBody(name, self, environment, writer, self.lines.append, self.activity)
         self._acts = 0
 
     @property

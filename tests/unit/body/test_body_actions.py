@@ -246,7 +246,7 @@ async def test_an_agent_enters_its_home_with_the_first_action(
     assert one.log == []
     one.do("println")
     assert one.log[0].endswith('main,"/main")')
-    one.body.presence.enter()
+    one.body.enter()
     assert len(one.log) == 2
 
 
@@ -254,6 +254,24 @@ async def test_an_agent_enters_its_home_with_the_first_action(
 async def test_a_project_can_let_agents_join_and_focus(one: Robot, two: Robot, clock: VirtualClock) -> None:
     one.do("createWorkspace", "lab")
     made = one.make("lab/c", "Counter", 5)
-    two.body.focus(made.value, "ns")
+    presence = two.body
+    lab = presence.environment.workspace("/main/lab")
+    presence.enter()
+    presence.join(lab)
+    presence.focused.begin(lab, made.value, "ns")
     assert two.beliefs == ["ns::count(5)"]
-    assert [w.path for w in two.body.presence.workspaces.joined()] == ["/main", "/main/lab"]
+    assert [w.path for w in two.body.workspaces.joined()] == ["/main", "/main/lab"]
+
+
+@among_artifacts
+async def test_an_agent_that_has_ended_waits_for_no_artifact(
+    one: Robot, two: Robot, clock: VirtualClock
+) -> None:
+    presence = two.body
+    presence.enter()
+    told: list[object] = []
+    presence.focus_when_available(presence.workspaces.home, "c", lambda *about: told.append(about))
+    two.body.close()
+    one.make("c", "Counter", 5)
+    assert (two.beliefs, presence.focused.in_order()) == ([], ())
+    assert len(told) == 1

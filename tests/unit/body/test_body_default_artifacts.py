@@ -169,7 +169,7 @@ async def test_workspaces_are_found_through_links(one: Robot, two: Robot, clock:
         assert one.do("createWorkspace", path).success
     assert one.do("linkWorkspaces", "/main/b", "../main/a", "near").success
     assert one.do("joinWorkspace", "b/near/deep").success
-    assert [w.path for w in one.body.presence.workspaces.joined()] == ["/main", "/main/a/deep"]
+    assert [w.path for w in one.body.workspaces.joined()] == ["/main", "/main/a/deep"]
     made = one.make("/main/b/near/c", "Counter")
     assert one.ask("lookupArtifact", "/main/a/c") is made
     assert one.do("createWorkspace", "/main/b/near/new").success

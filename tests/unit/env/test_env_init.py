@@ -12,6 +12,7 @@ from jacaros.env import (
     internal_operation,
     operation,
 )
+from jacaros.env.ports import ENDED
 from jacaros.trace import Cause
 
 
@@ -26,7 +27,7 @@ def test_create_reports_a_plain_init_immediately(play):
         assert nothing is None
         assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
         assert stage.main.create("d", Counter).ended
-        assert stage.main.create("d", Counter).ended, "a failure without a waiting caller"
+        assert stage.main.create("d", Counter) is ENDED, "a failure without a waiting caller"
 
     play(scene)
 

@@ -327,7 +327,7 @@ def test_many_properties_are_found_as_few_are():
         for first in FIRST_VALUES:
             for template in ((first,), (first, 1), (None, first)):
                 held = store._by_name.get("cell", {}).values()
-                wanted = [each for each in held if properties._fits(template, each.values)]
+                wanted = [each for each in held if properties.fits(template, each.values)]
                 assert list(map(id, store.all("cell", template))) == list(map(id, wanted))
                 assert store.has("cell", template) == bool(wanted)
     assert len(store.all("cell")) > 20
@@ -336,9 +336,9 @@ def test_many_properties_are_found_as_few_are():
 def test_one_of_many_properties_is_found_without_a_search(monkeypatch):
     store = store_of(*(("cell", number, 0) for number in range(1000)))
     looks = []
-    fits = properties._fits
+    fits = properties.fits
     monkeypatch.setattr(
-        properties, "_fits", lambda template, values: looks.append(values) or fits(template, values)
+        properties, "fits", lambda template, values: looks.append(values) or fits(template, values)
     )
     for number in range(1000):
         store.update("cell", (number, 1), None, where=(number, 0))

@@ -274,3 +274,33 @@ def test_operations_of_a_session_have_an_urgency() -> None:
         assert lab.lines[2:] == ["1.6 flee begins", "2.6 flee ends", "2.6 tour continues", "3.5 tour ends"]
 
     in_lab(body)
+
+
+class Clumsy(Artifact):
+    """Starts an operation that needs more of a resource than there is."""
+
+    def init(self) -> None:
+        self.carried = 0
+
+    @operation(uses=("arm", "arm"))
+    def carry(self) -> None:
+        """Carry something with two arms."""
+        self.carried += 1
+
+    @operation
+    def ask_for_it(self) -> None:
+        """Start the operation from within another one."""
+        self.start(self.carry)
+
+
+def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources() -> None:
+    async def main() -> None:
+        logged: list[str] = []
+        environment = Environment(VirtualClock(), log=logged.append)
+        clumsy = await environment.workspace("/main").make_artifact("clumsy", Clumsy)
+        artifact: Any = environment.artifact(clumsy)
+        artifact.start("carry")
+        environment.execute(OperationRequest(clumsy, "ask_for_it"))
+        assert artifact.carried == 0
+
+    asyncio.run(main())

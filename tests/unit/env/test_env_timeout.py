@@ -119,7 +119,7 @@ def test_a_thread_continues_after_its_time_limit_but_its_caller_does_not_wait(pl
         )  # virtual time does not advance while threads run
         assert call.reason == Structure("operation_timeout", ("block/0", 0))
         assert not call.execution.ended
-        stage.main._registry.find(it)._artifact.gate.set()
+        stage.main._registry.find(it).artifact.gate.set()
         assert (await stage.call(it, "quick").wait()).ok
         assert call.execution.ended
 

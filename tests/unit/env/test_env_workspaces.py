@@ -1,7 +1,5 @@
 """The tree of workspaces, their standard artifacts, and the lookup of artifacts."""
 
-import asyncio
-
 import pytest
 
 from jacaros.env import Artifact, OperationFailed, Structure, UnknownArtifact, UnknownWorkspace, operation
@@ -117,36 +115,6 @@ def test_providers_of_an_operation_are_found_in_the_order_of_creation(play):
         assert stage.main.providers("inc", 1) == ()
         stage.main.dispose_artifact(first)
         assert stage.main.providers("inc", 0) == (second,)
-
-    play(scene)
-
-
-def test_available_waits_until_an_artifact_exists(play):
-    async def scene(stage):
-        console = await stage.main.available("console")
-        assert console is stage.main.lookup("console")
-        waiting = asyncio.ensure_future(stage.main.available("it"))
-        await stage.clock.sleep(1.0)
-        await stage.make(Counter, name="other")
-        assert not waiting.done()
-        counter = await stage.make(Counter)
-        assert await waiting is counter
-        dropped = asyncio.ensure_future(stage.main.available("never"))
-        await stage.clock.sleep(1.0)
-        dropped.cancel()
-        await stage.clock.sleep(1.0)
-        assert dropped.cancelled()
-
-    play(scene)
-
-
-def test_an_artifact_disposed_before_the_waiting_task_runs_is_unknown(play):
-    async def scene(stage):
-        waiting = asyncio.ensure_future(stage.main.available("it"))
-        await stage.clock.sleep(1.0)
-        stage.main.dispose_artifact(await stage.make(Counter))
-        with pytest.raises(UnknownArtifact):
-            await waiting
 
     play(scene)
 

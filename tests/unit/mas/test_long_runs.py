@@ -62,7 +62,7 @@ def kept(folder: Path, program: str, count: int) -> tuple[dict[str, int], dict[s
         host = system.directory.find("agent")
         surroundings = system.run_environment()
         entries = {
-            "references": len(surroundings._references._kept),
+            "references": len(surroundings._writer.references._kept),
             "annotations": len(surroundings._writer._annotations),
             "held percepts": len(host.mind.beliefs.held_percepts),
             "beliefs": sum(map(len, host.mind.beliefs.values())),

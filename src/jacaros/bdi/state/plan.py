@@ -1,6 +1,6 @@
 """A plan: its syntax, its label, the places of its variables in a frame, and the ways in which its steps may end."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -206,6 +206,13 @@ def with_subplans(plan: Plan, number: int) -> Plan:
         inner.scope, inner.nested = plan, True
         plan.subplans.append(with_subplans(inner, number))
     return plan
+
+
+def every_plan(plans: Iterable[Plan]) -> Iterator[Plan]:
+    """Yield plans and their sub-plans, in a fixed order."""
+    for plan in plans:
+        yield plan
+        yield from every_plan(plan.subplans)
 
 
 def label_of(node: nodes.Plan, number: int) -> Term:

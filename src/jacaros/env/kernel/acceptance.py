@@ -9,16 +9,15 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.env.kernel import kinds
-from jacaros.env.kernel.kinds import ANYTHING, Kind, Unsuitable, alternatives, got, instance_of
+from jacaros.env.kernel.kinds import ANYTHING, Kind, Unsuitable, accept_part, alternatives, instance_of
 from jacaros.env.values import Atom, Out, Structure, equal, text
 
 
 def kind_of(annotation: Any) -> Kind:
     """Return the kind of values that a parameter with *annotation* accepts. An unknown annotation accepts any input."""
-    simple = _SIMPLE.get(annotation) if _hashable(annotation) else None
-    if simple is not None:
-        return simple
     annotation = _unwrapped(annotation)
+    if _hashable(annotation) and annotation in _SIMPLE:
+        return _SIMPLE[annotation]
     origin, members = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in (typing.Union, types.UnionType):
         return alternatives([kind_of(member) for member in members])
@@ -53,7 +52,7 @@ def _unwrapped(annotation: Any) -> Any:
         elif _is_alias(typing.get_origin(annotation)):
             annotation = _alias_of(annotation)
         else:
-            return _SAME.get(annotation, annotation) if _hashable(annotation) else annotation
+            return annotation
 
 
 def _is_alias(annotation: Any) -> bool:
@@ -71,9 +70,6 @@ def _alias_of(annotation: Any) -> Any:
 
 
 def _kind_of_class(kind: type) -> Kind:
-    simple = _SIMPLE.get(kind)
-    if simple is not None:
-        return simple
     if issubclass(kind, enum.Enum):
         return _member(kind)
     fields = kinds.fields_of(kind)
@@ -146,19 +142,14 @@ def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]
             if not isinstance(argument, list):
                 raise Unsuitable
             return make(
-                argument if each is None else [_element(each, i, item) for i, item in enumerate(argument)]
+                argument
+                if each is None
+                else [accept_part(each, item, "element", n) for n, item in enumerate(argument, 1)]
             )
 
         return Kind("a list" if each is None or each is ANYTHING else f"a list, each {each.expected}", accept)
 
     return kind
-
-
-def _element(kind: Kind, index: int, item: object) -> object:
-    try:
-        return kind.accept(item)
-    except Unsuitable as unsuitable:
-        raise Unsuitable(f"element {index + 1} {got(item, unsuitable)}") from None
 
 
 def _tuple(members: tuple[Any, ...]) -> Kind:
@@ -172,9 +163,8 @@ def _tuple(members: tuple[Any, ...]) -> Kind:
             raise Unsuitable
         if len(argument) != len(kinds):
             raise Unsuitable(f"it has {len(argument)} elements")
-        return tuple(
-            _element(kind, i, item) for i, (kind, item) in enumerate(zip(kinds, argument, strict=True))
-        )
+        pairs = zip(kinds, argument, strict=True)
+        return tuple(accept_part(kind, item, "element", n) for n, (kind, item) in enumerate(pairs, 1))
 
     return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
 
@@ -198,21 +188,13 @@ def _mapping(members: tuple[Any, ...]) -> Kind:
         if keys is None or values is None:
             return argument
         return {
-            _part("key", keys, key, key): _part("the value", values, item, key)
+            accept_part(keys, key, "key"): accept_part(values, item, "the value of", key)
             for key, item in argument.items()
         }
 
     if keys is None or values is None:
         return Kind("a map", accept)
     return Kind(f"a map from {keys.expected} to {values.expected}", accept)
-
-
-def _part(what: str, kind: Kind, item: object, key: object) -> Any:
-    try:
-        return kind.accept(item)
-    except Unsuitable as unsuitable:
-        where = what if what == "key" else f"{what} of {text(key, quoted=True)}"
-        raise Unsuitable(f"{where} {got(item, unsuitable)}") from None
 
 
 def _of_numpy(kind: Any, name: str) -> bool:
@@ -268,8 +250,6 @@ _SIMPLE: dict[Any, Kind] = {
     Structure: instance_of(Structure, "a structure"),
     Out: instance_of(Out, "an unbound variable (it is an output)"),
 }
-
-_SAME: dict[Any, Any] = {typing.List: list, typing.Dict: dict, typing.Tuple: tuple, typing.Set: set}  # noqa: UP006
 
 _LIST = _list_like(lambda items: items)
 _CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {

@@ -4,11 +4,11 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel.signature import Signature, signature_of
-from jacaros.env.operation import Mark, WhenPreempted
+from jacaros.env.operation import INTERNAL, Mark, WhenPreempted
 from jacaros.env.resources.resource import Use, read_uses
 from jacaros.suggestions import aside
 
@@ -49,6 +49,16 @@ class DeclaredOperation:
     common: bool = False
     uses: tuple[Use, ...] = ()
     when_preempted: WhenPreempted = "finish"
+
+
+def _nothing(_: object) -> None:
+    """Do nothing."""
+
+
+NOTHING: Final = DeclaredOperation(
+    "nothing", INTERNAL, _nothing, _nothing, Signature((), None), None, False, False, False, 0
+)
+"""Stands for the operation of requests that have none: refused ones, sensor messages, an ``init`` that does not exist."""
 
 
 def declare_method(

@@ -2,10 +2,12 @@
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from jacaros.env.kernel.faults import is_interruption
 
 
+@dataclass(slots=True)
 class Ending:
     """The callbacks for the end of one artifact, called once.
 
@@ -15,11 +17,10 @@ class Ending:
         over: whether all have been called.
     """
 
-    def __init__(self) -> None:
-        self.hook: Callable[[], object] | None = None
-        self.cleanups: list[Callable[[], object]] = []
-        self.over = False
-        self._over: asyncio.Future[None] | None = None
+    hook: Callable[[], object] | None = None
+    cleanups: list[Callable[[], object]] = field(default_factory=list)
+    over: bool = False
+    _over: "asyncio.Future[None] | None" = None
 
     def run(self, initialised: bool, complain: Callable[[str, BaseException], None]) -> None:
         """Call all callbacks. *complain* gets the exceptions they raise."""

@@ -3,16 +3,16 @@
 import asyncio
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from types import TracebackType
 from typing import Any
 
 from jacaros.clock import standing_still
-from jacaros.env.errors import InvalidArtifact, OperationFailed
+from jacaros.env.errors import InvalidArtifact
 from jacaros.env.execution import OperationExecution
 from jacaros.env.kernel import faults
-from jacaros.env.kernel.declaration import DeclaredOperation
-from jacaros.env.kernel.signature import Signature
+from jacaros.env.kernel.declaration import NOTHING
 from jacaros.env.kernel.steps import Steps
 from jacaros.env.operation import EXTERNAL, OperationOutcome, OperationRequest
 from jacaros.trace import Cause
@@ -35,9 +35,7 @@ class ExternalSession:
     def _new_execution(self, function: Callable[..., Any], threaded: bool) -> OperationExecution:
         steps = self._steps
         request = OperationRequest(steps.id, EXTERNAL, (), None, self._cause, self._told)
-        declared = DeclaredOperation(
-            EXTERNAL, EXTERNAL, function, function, Signature((), None), None, False, threaded, True, 0
-        )
+        declared = replace(NOTHING, kind=EXTERNAL, function=function, threaded=threaded, coroutine=True)
         return OperationExecution(steps, request, declared, (), self._cause)
 
     # ---- a task of the loop
@@ -46,7 +44,7 @@ class ExternalSession:
         if self._steps.inside():
             raise InvalidArtifact(f"artifact {self._steps.id.name}: this is within an operation already")
         if self._steps.disposed:
-            raise _failure(faults.not_available(self._steps.id))
+            raise faults.not_available(self._steps.id).failure
         self._execution = self._new_execution(self._hold, threaded=False)
         await self._steps.enter_task(self._execution)
 
@@ -54,7 +52,7 @@ class ExternalSession:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         assert self._execution is not None
-        self._steps.leave_task(self._execution, error)
+        self._steps.end(self._execution, error)
 
     # ---- another thread
 
@@ -69,7 +67,7 @@ class ExternalSession:
         self._thread = threading.get_ident()
         self._wait(self._entered, self._steps.setting.call_on_loop(self._arrive))
         if self._refusal is not None:
-            raise _failure(self._refusal)
+            raise self._refusal.failure
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -81,7 +79,7 @@ class ExternalSession:
         while alive and not event.wait(PATIENCE):
             alive = loop is not None and not loop.is_closed()
         if not event.is_set():
-            raise _failure(faults.not_available(self._steps.id))
+            raise faults.not_available(self._steps.id).failure
 
     def _arrive(self) -> None:
         if self._steps.disposed:
@@ -111,7 +109,3 @@ class ExternalSession:
             self._refusal = outcome
             self._entered.set()
         self._ended.set()
-
-
-def _failure(outcome: OperationOutcome) -> OperationFailed:
-    return OperationFailed(outcome.message or "", outcome.reason)

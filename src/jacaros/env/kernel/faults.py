@@ -59,11 +59,6 @@ def error_text(error: BaseException) -> str:
 _CALLERS = {OPERATION: "agents", LINK: "other artifacts only", INTERNAL: "the artifact itself only"}
 
 
-def key(request: OperationRequest) -> str:
-    """Return name and arity, such as ``inc/1``."""
-    return f"{request.operation}/{len(request.arguments)}"
-
-
 def unknown_operation(request: OperationRequest, kind: str, interface: Interface) -> OperationOutcome:
     """Return the failure for an unknown operation, number of arguments, or kind of caller."""
     name, arity, artifact = request.operation, len(request.arguments), request.artifact
@@ -73,14 +68,14 @@ def unknown_operation(request: OperationRequest, kind: str, interface: Interface
             break
     else:
         help = interface.table(kind).explain(name)
-    message = f"unknown {kind} `{key(request)}` of artifact {artifact.name} ({artifact.type_name}){help}"
+    message = f"unknown {kind} `{request.key}` of artifact {artifact.name} ({artifact.type_name}){help}"
     return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
 
 
 def wrong_arguments(request: OperationRequest, wrong: WrongArguments) -> OperationOutcome:
     """Return the failure for an argument of the wrong kind."""
-    message = f"operation {key(request)} of artifact {request.artifact.name}: {wrong}"
-    return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, key(request))))
+    message = f"operation {request.key} of artifact {request.artifact.name}: {wrong}"
+    return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, request.key)))
 
 
 def not_available(artifact: ArtifactId) -> OperationOutcome:
@@ -91,7 +86,7 @@ def not_available(artifact: ArtifactId) -> OperationOutcome:
 
 def disposed(request: OperationRequest) -> OperationOutcome:
     """Return the failure of an operation whose artifact was disposed while it waited or ran."""
-    message = f"artifact {request.artifact.path} was disposed before {key(request)} ended"
+    message = f"artifact {request.artifact.path} was disposed before {request.key} ended"
     return OperationOutcome(False, message, Structure("artifact_disposed", (request.artifact.name,)))
 
 
@@ -99,8 +94,8 @@ def timed_out(request: OperationRequest, seconds: float) -> OperationOutcome:
     """Return the failure of an operation that exceeded its time limit."""
     milliseconds = round(seconds * 1000, 3)
     shown = f"{milliseconds:g} ms" if milliseconds < 1000 else f"{seconds:g} s"
-    message = f"operation {key(request)} of artifact {request.artifact.name} did not end within {shown}"
-    return OperationOutcome(False, message, Structure("operation_timeout", (key(request), milliseconds)))
+    message = f"operation {request.key} of artifact {request.artifact.name} did not end within {shown}"
+    return OperationOutcome(False, message, Structure("operation_timeout", (request.key, milliseconds)))
 
 
 def without_resource(request: OperationRequest, reason: Structure | Atom) -> str:
@@ -114,7 +109,7 @@ def without_resource(request: OperationRequest, reason: Structure | Atom) -> str
     functor = reason.functor if isinstance(reason, Structure) else str(reason)
     name = reason.arguments[0] if isinstance(reason, Structure) else ""
     why = said.get(functor, "{}").format(name)
-    return f"operation {key(request)} of artifact {request.artifact.name}: {why}"
+    return f"operation {request.key} of artifact {request.artifact.name}: {why}"
 
 
 def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
@@ -126,11 +121,11 @@ def failed(request: OperationRequest, error: BaseException) -> OperationOutcome:
         return OperationOutcome(False, message if isinstance(message, str) else text_of(error), reason)
     functor = "internal_error" if isinstance(error, InternalError) else "operation_error"
     message = error_text_in(error, request)
-    return OperationOutcome(False, message, Structure(functor, (key(request),)))
+    return OperationOutcome(False, message, Structure(functor, (request.key,)))
 
 
 def error_text_in(error: BaseException, request: OperationRequest) -> str:
     """Return the class and text of an exception, and the operation that raised it."""
-    where = f"in operation {key(request)} of {request.artifact.name}"
+    where = f"in operation {request.key} of {request.artifact.name}"
     said = text_of(error)
     return f"{type(error).__name__} {where}: {said}" if said else f"{type(error).__name__} {where}"

@@ -1,7 +1,7 @@
 """The operations of an artifact type by kind, computed once when the class is created."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
@@ -11,14 +11,12 @@ from jacaros.env.operation import INIT, LINK, OPERATION, Mark, marks_of
 from jacaros.suggestions import aside
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class OperationTable:
     """Operations of one kind, by name and number of arguments."""
 
-    __slots__ = ("_exact", "_variable")
-
-    def __init__(self) -> None:
-        self._exact: dict[tuple[str, int], DeclaredOperation] = {}
-        self._variable: dict[str, DeclaredOperation] = {}
+    _exact: dict[tuple[str, int], DeclaredOperation] = field(default_factory=dict)
+    _variable: dict[str, DeclaredOperation] = field(default_factory=dict)
 
     def add(self, declared: DeclaredOperation) -> None:
         """Add an operation. One that is declared deeper in the class hierarchy overrides those it overlaps.
@@ -50,10 +48,7 @@ class OperationTable:
 
     def copy(self) -> "OperationTable":
         """Return a table that can be changed independently."""
-        other = OperationTable()
-        other._exact.update(self._exact)
-        other._variable.update(self._variable)
-        return other
+        return OperationTable(dict(self._exact), dict(self._variable))
 
     def __iter__(self) -> Iterator[DeclaredOperation]:
         listed = (*self._exact.values(), *self._variable.values())
@@ -93,18 +88,14 @@ class Interface:
         inits: the methods ``init``, of which one is called at creation.
     """
 
-    operations: OperationTable
-    links: OperationTable
-    internals: OperationTable
-    inits: OperationTable
+    operations: OperationTable = field(default_factory=OperationTable)
+    links: OperationTable = field(default_factory=OperationTable)
+    internals: OperationTable = field(default_factory=OperationTable)
+    inits: OperationTable = field(default_factory=OperationTable)
 
     def table(self, kind: str) -> OperationTable:
         """Return the table of operations of one kind."""
-        if kind == INIT:
-            return self.inits
-        if kind == OPERATION:
-            return self.operations
-        return self.links if kind == LINK else self.internals
+        return {OPERATION: self.operations, LINK: self.links, INIT: self.inits}.get(kind, self.internals)
 
     def own(self, operation: str | Callable[..., object], arity: int) -> DeclaredOperation | None:
         """Return the operation that an artifact starts itself, by name or by method."""
@@ -147,7 +138,7 @@ def interface_of(artifact_type: type) -> Interface:
             if attribute == "init":
                 others = tuple(mark for mark in marks_of(member) if mark.kind != INIT)
                 marks[attribute] = (depth, (*others, Mark(INIT)))
-    interface = Interface(OperationTable(), OperationTable(), OperationTable(), OperationTable())
+    interface = Interface()
     for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
         function = _unwatched(getattr(artifact_type, attribute))
         for mark in declared if callable(function) else ():

@@ -4,6 +4,7 @@ For a parameter that is a dataclass or a named tuple, agents pass a structure, s
 """
 
 import dataclasses
+import inspect
 import typing
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -81,10 +82,18 @@ def shown(argument: object) -> str:
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
 
 
-def got(item: object, unsuitable: Unsuitable) -> str:
-    """Return what a part is, or which part of it is wrong."""
-    deeper = str(unsuitable)
-    return f"is {shown(item)}" + (f": {deeper}" if deeper else "")
+def accept_part(kind: Kind, item: object, part: str, which: object = None) -> Any:
+    """Accept a part of an argument, such as its ``element`` 3.
+
+    Raises:
+        Unsuitable: it is not of its kind; the text says which part it is, and which part of it is wrong.
+    """
+    try:
+        return kind.accept(item)
+    except Unsuitable as unsuitable:
+        where = part if which is None else f"{part} {text(which, quoted=True)}"
+        deeper = f": {unsuitable}" if str(unsuitable) else ""
+        raise Unsuitable(f"{where} is {shown(item)}{deeper}") from None
 
 
 class Field(NamedTuple):
@@ -106,25 +115,14 @@ def fields_of(kind: type) -> list[Field] | None:
 
     A class with ``__record__ = False`` has more state than its fields, so no structure can represent it.
     """
-    if getattr(kind, "__record__", True) is False:
+    is_named_tuple = issubclass(kind, tuple) and hasattr(kind, "_fields")
+    if getattr(kind, "__record__", True) is False or not (dataclasses.is_dataclass(kind) or is_named_tuple):
         return None
-    if dataclasses.is_dataclass(kind):
-        hints = _hints(kind)
-        missing = dataclasses.MISSING
-        return [
-            Field(
-                f.name,
-                hints.get(f.name, object),
-                f.default is not missing or f.default_factory is not missing,
-            )
-            for f in dataclasses.fields(kind)
-            if f.init
-        ]
-    names: tuple[str, ...] | None = getattr(kind, "_fields", None)
-    if names is not None and issubclass(kind, tuple):
-        hints, defaults = _hints(kind), getattr(kind, "_field_defaults", {})
-        return [Field(name, hints.get(name, object), name in defaults) for name in names]
-    return None
+    hints = _hints(kind)
+    parameters = inspect.signature(kind).parameters.values()
+    return [
+        Field(each.name, hints.get(each.name, object), each.default is not each.empty) for each in parameters
+    ]
 
 
 def _hints(kind: type) -> dict[str, Any]:
@@ -147,7 +145,7 @@ def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> K
         if not fewest <= len(given) <= len(kinds):
             raise Unsuitable(f"it has {len(given)} arguments")
         values = {
-            field.name: _field(field, wanted, item)
+            field.name: accept_part(wanted, item, field.name)
             for (field, wanted), item in zip(kinds, given, strict=False)
         }
         try:
@@ -165,10 +163,3 @@ def _arguments(argument: object, functor: str) -> tuple[object, ...]:
     if isinstance(argument, Atom) and argument == functor:
         return ()
     raise Unsuitable
-
-
-def _field(field: Field, kind: Kind, item: object) -> object:
-    try:
-        return kind.accept(item)
-    except Unsuitable as unsuitable:
-        raise Unsuitable(f"{field.name} {got(item, unsuitable)}") from None

@@ -1,15 +1,15 @@
 """Call the linked operations behind an out port, and wait for all of them."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 
-from jacaros.env.errors import OperationFailed
 from jacaros.env.execution import OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.operation import OperationOutcome, OperationRequest
+from jacaros.env.ports import UnderWay
 
-Execute = Callable[[OperationRequest], OperationExecution]
+Execute = Callable[[OperationRequest], UnderWay]
 
 
 async def call_all(
@@ -36,26 +36,23 @@ async def call_all(
             all_done.set_result(None)
 
     agent, cause = execution.request.agent, execution.cause
+    calls: list[UnderWay] = []
     for index, target in enumerate(listed):
         request = OperationRequest(target, operation, arguments, agent, cause, partial(done, index))
         request.urgency, request.on_preempted = execution.request.urgency, execution.request.on_preempted
         request.within, request.yields = execution.claims, execution.request.yields
-        linked = execute(request)
-        execution.linked.append(linked)
+        calls.append(execute(request))
+        execution.linked = (*execution.linked, calls[-1])
         if execution.paused:
-            linked.pause()
-    await _until(all_done, execution)
-    for outcome in outcomes:
-        if outcome is not None and not outcome.ok:
-            raise OperationFailed(outcome.message or "a linked operation failed", outcome.reason)
-
-
-async def _until(all_done: Awaitable[None], execution: OperationExecution) -> None:
+            calls[-1].pause()
     try:
         await all_done
     except asyncio.CancelledError:
-        for linked in execution.linked:
-            linked.cancel()
+        for call in calls:
+            call.cancel()
         raise
     finally:
-        execution.linked.clear()
+        execution.linked = tuple(each for each in execution.linked if each not in calls)
+    for outcome in outcomes:
+        if outcome is not None and not outcome.ok:
+            raise outcome.failure

@@ -1,6 +1,7 @@
 """What observers see of one artifact: committed properties and signals."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.env.ids import ArtifactId
@@ -15,34 +16,26 @@ _NOTHING: Any = None
 _NOBODY: _Telling = iter(()), None, _NOTHING, _NOTHING
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Publication:
     """The observable side of one artifact.
 
     Attributes:
+        artifact: the artifact.
+        setting: what it shares with other artifacts.
         properties: the properties, including changes of the step in progress.
         observers: the observers that focus the artifact, in the order of focusing.
         coming: names of properties whose new values wait for the artifact's turn.
     """
 
-    __slots__ = (
-        "_artifact",
-        "_frozen",
-        "_observers",
-        "_setting",
-        "_telling",
-        "_untaken",
-        "coming",
-        "properties",
-    )
-
-    def __init__(self, artifact: ArtifactId, setting: Setting) -> None:
-        self._artifact, self._setting = artifact, setting
-        self.properties = PropertyStore()
-        self._observers: dict[Observer, None] = {}
-        self.coming: set[str] = set()
-        self._untaken: tuple[Callable[[str], bool], ...] = ()
-        self._frozen: tuple[ObservableProperty, ...] | None = None
-        self._telling: _Telling = _NOBODY
+    artifact: ArtifactId
+    setting: Setting
+    properties: PropertyStore = field(default_factory=PropertyStore, init=False)
+    coming: set[str] = field(default_factory=set, init=False)
+    _observers: dict[Observer, None] = field(default_factory=dict, init=False)
+    _untaken: tuple[Callable[[str], bool], ...] = field(default=(), init=False)
+    _frozen: tuple[ObservableProperty, ...] | None = field(default=None, init=False)
+    _telling: _Telling = field(default=_NOBODY, init=False)
 
     @property
     def observers(self) -> tuple[Observer, ...]:
@@ -79,8 +72,8 @@ class Publication:
             self._show(observer, removed=self.committed())
 
     def _tell_focus(self, observer: Observer, on: bool) -> None:
-        if self._setting.listener is not None:
-            self._setting.listener.focused(self._artifact, observer.agent, on)
+        if self.setting.listener is not None:
+            self.setting.listener.focused(self.artifact, observer.agent, on)
 
     def has_untaken(self, name: str) -> bool:
         """Return whether properties called *name* will change, or an observer has not processed an earlier change."""
@@ -107,7 +100,7 @@ class Publication:
         removed: tuple[ObservableProperty, ...] = (),
     ) -> None:
         if added or removed:
-            self._deliver(observer, Observation(self._artifact, (), (), added, removed))
+            self._deliver(observer, Observation(self.artifact, (), (), added, removed))
 
     def publish(
         self, parent: Cause | None, signals: tuple[Signal, ...] = (), addressee: str | None = None
@@ -122,13 +115,13 @@ class Publication:
         changes = self.properties.commit()
         if not (signals or changes.changed or changes.added or changes.removed):
             return
-        listener = self._setting.listener
-        if not self._observers and self._setting.tracer is None and listener is None:
+        listener = self.setting.listener
+        if not self._observers and self.setting.tracer is None and listener is None:
             return
-        cause = parent if self._setting.tracer is None else self._trace(parent, signals, changes)
-        complete = others = Observation(self._artifact, signals, *changes, cause)
+        cause = parent if self.setting.tracer is None else self._trace(parent, signals, changes)
+        complete = others = Observation(self.artifact, signals, *changes, cause)
         if addressee is not None:
-            others = Observation(self._artifact, (), *changes, cause)
+            others = Observation(self.artifact, (), *changes, cause)
         if listener is not None:
             listener.published(complete)
         if self._telling is not _NOBODY:
@@ -148,7 +141,7 @@ class Publication:
                 try:
                     observer.observe(complete)
                 except Exception as error:
-                    self._setting.report(error)
+                    self.setting.report(error)
         else:
             for observer in untold:
                 if observer.agent == addressee:
@@ -163,11 +156,11 @@ class Publication:
         names = [signal.name for signal in signals] + [new.name for _, new in changes.changed]
         names += [each.name for each in (*changes.added, *changes.removed)]
         kind = "property" if changes.changed or changes.added or changes.removed else "signal"
-        about = self._artifact, signals, changes
-        return self._setting.trace(kind, f"{self._artifact.path} {' '.join(names)}", parent, about)
+        about = self.artifact, signals, changes
+        return self.setting.trace(kind, f"{self.artifact.path} {' '.join(names)}", parent, about)
 
     def _deliver(self, observer: Observer, observation: Observation) -> None:
         try:
             observer.observe(observation)
         except Exception as error:
-            self._setting.report(error)
+            self.setting.report(error)

@@ -33,7 +33,6 @@ class Registry:
         self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
         self._ending: list[Steps] = []
         self._links: dict[OutPort, dict[ArtifactId, None]] = {}
-        self._linked: dict[ArtifactId, dict[OutPort, None]] = {}
         self._last_number = 0
         self._limit: threading.Timer | None = None
         self._threads_left = False
@@ -82,7 +81,7 @@ class Registry:
         if steps.id in self._steps:
             self._remove(steps.id)
         steps.dispose()
-        self._ending = [each for each in (*self._ending, steps) if not each.over]
+        self._ending = [each for each in (*self._ending, steps) if not each.ending.over]
         for callback in self.when_disposed:
             callback(steps.id)
 
@@ -106,33 +105,15 @@ class Registry:
 
     def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
-        for port in tuple(self._linked.get(artifact_id, ())):
-            targets = (artifact_id,) if port[0] is not artifact_id else tuple(self._links[port])
-            for target in targets:
-                self._unlink(port, target)
+        for port, behind in tuple(self._links.items()):
+            behind.pop(artifact_id, None)
+            if not behind or port[0] is artifact_id:
+                del self._links[port]
         self._forget.pop(artifact_id)(artifact_id)
-
-    def _unlink(self, port: OutPort, target: ArtifactId) -> None:
-        behind = self._links[port]
-        del behind[target]
-        if not behind:
-            del self._links[port]
-            self._let_go(port[0], port)
-        if target is not port[0]:
-            self._let_go(target, port)
-
-    def _let_go(self, artifact_id: ArtifactId, port: OutPort) -> None:
-        ports = self._linked[artifact_id]
-        del ports[port]
-        if not ports:
-            del self._linked[artifact_id]
 
     def link(self, from_id: ArtifactId, port: str, to_id: ArtifactId) -> None:
         """Link *port* of *from_id* to *to_id*, after the present links. Linking again has no effect."""
-        out = (from_id, port)
-        self._links.setdefault(out, {})[to_id] = None
-        for end in (from_id, to_id):
-            self._linked.setdefault(end, {})[out] = None
+        self._links.setdefault((from_id, port), {})[to_id] = None
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind *port* of *from_id*, in the order of linking."""

@@ -7,9 +7,9 @@ import traceback
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
 
 from jacaros.clock import Clock
+from jacaros.env.listener import EnvironmentListener
 from jacaros.env.resources.arbiter import Arbiter
 from jacaros.errors import InternalError
 from jacaros.trace import Cause, Tracer
@@ -20,7 +20,7 @@ def log_to_stderr(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Setting:
     """What the artifacts of one environment share.
 
@@ -29,7 +29,7 @@ class Setting:
         resources: services of the host for artifacts, such as ``ros`` and ``console``, by name.
         log: takes a line of the log, such as ``[lamp] on``.
         tracer: receives every cause. None if no tracer is set.
-        listener: a `jacaros.env.listener.EnvironmentListener`, or None.
+        listener: receives what happens in the artifacts. None if no listener is set.
         told: advice to authors that has been logged once.
         arbiter: assigns resources to operations and plans.
         loop: event loop of the operations. None before the first one.
@@ -41,7 +41,7 @@ class Setting:
     log: Callable[[str], None] = log_to_stderr
     tracer: Tracer | None = None
     on_internal_error: Callable[[BaseException], None] | None = None
-    listener: Any = None
+    listener: EnvironmentListener | None = None
     told: set[object] = field(default_factory=set, init=False)
     arbiter: Arbiter = field(init=False)
     loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)

@@ -135,7 +135,8 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
             raise InvalidArtifact(f"{function.__qualname__}: expected self as first parameter")
         if listed[0].kind is not inspect.Parameter.VAR_POSITIONAL:
             del listed[0]
-    kinds, unknown = _annotations(function)
+    kinds, unknown = annotations_of(function)
+    unknown.pop("return", None)
     parameters, rest = [], None
     for each in listed:
         if each.kind in (each.KEYWORD_ONLY, each.VAR_KEYWORD):
@@ -150,7 +151,7 @@ def signature_of(function: Callable[..., object], skip_first: bool) -> Signature
     return Signature(tuple(parameters), rest, unknown, not hasattr(function, "__signature__"))
 
 
-def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[str, str]]:
+def annotations_of(function: Callable[..., object]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return the annotations, resolved if they are strings; and those that cannot be resolved, which accept any value."""
     while isinstance(function, partial):
         function = function.func
@@ -161,15 +162,13 @@ def _annotations(function: Callable[..., object]) -> tuple[dict[str, Any], dict[
     except Exception:
         names = {**vars(typing), "Out": Out, "Atom": Atom, "Structure": Structure}
         names.update(getattr(function, "__globals__", {}))
-        written = written_annotations(function)
+        written = _written(function)
         found = {name: _resolved(kind, names) for name, kind in written.items()}
-        unknown = {
-            name: written[name] for name, kind in found.items() if kind is _NOTHING and name != "return"
-        }
+        unknown = {name: written[name] for name, kind in found.items() if kind is _NOTHING}
         return {name: object if kind is _NOTHING else kind for name, kind in found.items()}, unknown
 
 
-def written_annotations(function: Callable[..., object]) -> dict[str, Any]:
+def _written(function: Callable[..., object]) -> dict[str, Any]:
     """Return the annotations of a function as written. Those that cannot be resolved are strings."""
     try:
         return dict(function.__annotations__)

@@ -7,26 +7,26 @@ This module does not depend on what an artifact looks like to its author (`Artif
 
 import asyncio
 import inspect
-from collections.abc import Callable, Iterable
+import threading
+from collections.abc import Awaitable, Callable, Iterable
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from jacaros.clock import standing_still, start_thread
+from jacaros.clock import Clock, standing_still, start_thread
 from jacaros.env.errors import InvalidArtifact, OperationFailed
-from jacaros.env.execution import OperationExecution
+from jacaros.env.execution import Holding, OperationExecution
 from jacaros.env.ids import ArtifactId
 from jacaros.env.kernel import faults
 from jacaros.env.kernel.declaration import DeclaredOperation
 from jacaros.env.kernel.ending import Ending
 from jacaros.env.kernel.faults import is_interruption
-from jacaros.env.kernel.holding import Holding
 from jacaros.env.kernel.interface import Interface
+from jacaros.env.kernel.publication import Publication
 from jacaros.env.kernel.setting import Setting
 from jacaros.env.kernel.signature import WrongArguments
-from jacaros.env.kernel.step import StepInProgress
-from jacaros.env.kernel.threads import in_thread
-from jacaros.env.kernel.turns import Guard
+from jacaros.env.kernel.turns import Guard, TurnQueue
 from jacaros.env.kernel.unawaited import forgotten
+from jacaros.env.observation import Signal
 from jacaros.env.operation import (
     EXTERNAL,
     LINK,
@@ -35,11 +35,13 @@ from jacaros.env.operation import (
     OperationRequest,
     ignore_outcome,
 )
+from jacaros.env.property import check_name
 from jacaros.env.resources.resource import Use, read_uses, scoped
-from jacaros.env.values import Atom, Structure
+from jacaros.env.values import Atom, Structure, plain
 from jacaros.errors import InternalError
 from jacaros.trace import CURRENT, Cause
 
+T = TypeVar("T")
 V = TypeVar("V")
 TELLING = "tell"
 """Name of the operation in messages about invalid values from sensors."""
@@ -47,10 +49,17 @@ PATIENCE = 20.0
 """Seconds in which the operations of a disposed artifact must end, as in CArtAgO."""
 
 
-class Steps(StepInProgress):
+class Steps:
     """Runs the operations of one artifact.
 
     Attributes:
+        id: identity of the artifact.
+        artifact: the artifact itself.
+        setting: what it shares with other artifacts.
+        clock: clock of its operations.
+        publication: its observable side.
+        turns: the queue for its turn.
+        disposed: whether it accepts no more operations.
         interface: its operations. Its own copy once it has defined operations itself.
         ports: names of its out ports.
         initialised: whether ``init`` has succeeded.
@@ -61,13 +70,19 @@ class Steps(StepInProgress):
     def __init__(
         self,
         artifact_id: ArtifactId,
-        artifact: object,
+        artifact: Any,
         interface: Interface,
         ports: tuple[str, ...],
         setting: Setting,
     ) -> None:
-        super().__init__(artifact_id, setting)
-        self._artifact = artifact
+        self.id, self.setting = artifact_id, setting
+        self.clock: Clock = setting.clock
+        self.publication = Publication(artifact_id, setting)
+        self.turns = TurnQueue(self._begin)
+        self.disposed = False
+        self._started: list[OperationExecution] = []
+        self._delayed: list[tuple[Signal, str | None]] = []
+        self.artifact = artifact
         self.interface, self.ports = interface, ports
         self.initialised = False
         self.ending = Ending()
@@ -75,20 +90,131 @@ class Steps(StepInProgress):
         self._running: dict[OperationExecution, None] = {}
         self._teller = OperationExecution(self, OperationRequest(artifact_id, TELLING, (), None))
 
-    @property
-    def over(self) -> bool:
-        """Whether the last operation has ended and everything has been released."""
-        return self.ending.over
+    # ---- the step in progress
 
-    @property
-    def artifact(self) -> object:
-        """The artifact itself, for observers of the environment."""
-        return self._artifact
+    def inside(self) -> bool:
+        """Return whether the caller is the operation that has the turn, or its guard."""
+        holder = self.turns.holder
+        if holder is None or holder.task is None or self.turns.asking:
+            return holder is not None
+        if holder.thread is not None:
+            return holder.thread == threading.get_ident()
+        try:
+            return asyncio.current_task() is holder.task
+        except RuntimeError:
+            return False
 
-    @property
-    def artifact_type(self) -> type:
-        """The class of the artifact."""
-        return type(self._artifact)
+    def current(self, wanted: str, name: str = "", changes: bool = True) -> OperationExecution:
+        """Return the operation whose step is in progress.
+
+        Args:
+            wanted: what the caller is about to do, for messages.
+            name: the name it concerns.
+            changes: whether this changes anything, which a guard must not.
+
+        Raises:
+            InvalidArtifact: the caller is not within a step, for example in a callback, or is a guard.
+        """
+        if changes and self.turns.asking:
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: {wanted} {name} is not possible within a guard, which must not change anything"
+            )
+        holder = self.turns.holder
+        if holder is not None and self.inside():
+            return holder
+        raise InvalidArtifact(
+            f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
+            "another task or a thread, run an internal operation with self.start(...), or use self.external_session()"
+        )
+
+    def commit(self) -> None:
+        """Publish the changes of the step so far. Operations that it started may begin."""
+        if self._delayed:
+            self._publish_delayed()
+        if self.publication.properties.changing:
+            holder = self.turns.holder
+            self.publication.publish(holder.cause if holder is not None else None)
+        if self._started:
+            started, self._started = self._started, []
+            if not self.disposed:
+                for each in started:
+                    self._claim(each)
+                self.turns.line_up([each for each in started if not each.ended], self._guard)
+
+    def _publish_delayed(self) -> None:
+        delayed, self._delayed = self._delayed, []
+        holder = self.turns.holder
+        cause = holder.cause if holder is not None else None
+        self.publication.publish(cause, tuple(signal for signal, addressee in delayed if addressee is None))
+        for signal, addressee in delayed:
+            if addressee is not None:
+                self.publication.publish(cause, (signal,), addressee)
+
+    def _roll_back(self) -> None:
+        """Undo what the step has changed, signalled (in a thread) and started since the last commit."""
+        self.publication.properties.roll_back()
+        self._started.clear()
+        self._delayed.clear()
+
+    def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
+        """Send a signal, together with the changes of the step so far."""
+        holder = self.current("the signal", name)
+        check_name(name)
+        signal = Signal(name, tuple(map(plain, arguments)))
+        if holder.declared.threaded:
+            self._delayed.append((signal, addressee))
+            return
+        self.publication.publish(holder.cause, (signal,), addressee)
+        self.commit()
+
+    def boundary(self, wanted: str) -> OperationExecution:
+        """End the step of the calling coroutine, which still has the turn."""
+        execution = self.current(wanted)
+        if execution.task is None:
+            raise InvalidArtifact(f"artifact {self.id.name}: {wanted} is only possible in an async def")
+        self.commit()
+        return execution
+
+    async def leave(self, awaitable: Awaitable[T], wanted: str) -> T:
+        """Await something while others may have the turn: end one step and begin another."""
+        try:
+            execution = self.boundary(wanted)
+        except InvalidArtifact:
+            if inspect.iscoroutine(awaitable):
+                awaitable.close()
+            raise
+        self.turns.release()
+        try:
+            result = await awaitable
+        except GeneratorExit:
+            raise
+        except BaseException:
+            await self.turns.retake(execution)
+            raise
+        await self.turns.retake(execution)
+        return result
+
+    async def until(self, guard: Guard) -> None:
+        """Continue as soon as *guard* is true. It is evaluated now and after every step."""
+        execution = self.boundary("waiting for a condition")
+        if not callable(guard):
+            raise InvalidArtifact(
+                f"artifact {self.id.name}: expected a function in until, such as a method or lambda: ..., found {guard!r}"
+            )
+        if not self.turns.ask(guard):
+            if self.disposed:
+                # Nothing else can make it true: only the operation that disposed its own artifact continues.
+                raise faults.disposed(execution.request).failure
+            await self.turns.release_until(execution, guard)
+
+    async def pause_point(self, on_pause: Callable[[], None] | None) -> float:
+        """Wait while the operation is paused. Return the seconds that it has been paused since the last call."""
+        execution = self.current("a pause point")
+        while execution.paused:
+            if on_pause is not None:
+                on_pause()
+            await self.leave(execution.resumed(), "a pause")
+        return execution.take_paused_time()
 
     # ---- operations arrive
 
@@ -104,21 +230,19 @@ class Steps(StepInProgress):
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
-            what = f"{self.id.path} {faults.key(request)}"
+            what = f"{self.id.path} {request.key}"
             cause = self.setting.trace("operation", what, cause, request)
         execution = OperationExecution(self, request, declared, arguments, cause)
         if self.setting.listener is not None:
             self.setting.listener.began(execution)
-        self._claim(execution)
-        if not execution.ended:
-            self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
+        self._arrive(execution, declared)
         if request.timeout is not None and not execution.ended:
             execution.limit = self.clock.call_later(request.timeout, partial(self._time_is_up, execution))
         return execution
 
     def refuse(self, request: OperationRequest, outcome: OperationOutcome) -> OperationExecution:
         """Fail a request immediately."""
-        refused = OperationExecution(None, request)
+        refused = OperationExecution(self, request)
         self._tell(refused, outcome)
         return refused
 
@@ -140,9 +264,15 @@ class Steps(StepInProgress):
         elif self.disposed:
             return None
         else:
-            self._claim(execution)
-            self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
+            self._arrive(execution, declared)
         return execution
+
+    def _arrive(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
+        """Begin an operation when it has its resources and its turn, and its guard is true, possibly immediately."""
+        if declared.uses:
+            self._claim(execution)
+        if not execution.ended:
+            self.turns.enter(execution, None if declared.guard is None else self._guard(execution))
 
     def tell(
         self, show: Callable[[str, V], None], told: Iterable[tuple[str, V]], cause: Cause | None
@@ -203,15 +333,11 @@ class Steps(StepInProgress):
         try:
             await self.turns.retake(execution)
         except BaseException as error:
-            self.leave_task(execution, error)
+            self.end(execution, error)
             raise
         if execution.verdict is not None:
-            self.leave_task(execution, None)
-            raise OperationFailed(execution.verdict.message or "", execution.verdict.reason)
-
-    def leave_task(self, execution: OperationExecution, error: BaseException | None) -> None:
-        """End what `enter_task` began. With an *error*, it is rolled back."""
-        self._end(execution, error)
+            self.end(execution, None)
+            raise execution.verdict.failure
 
     # ---- resources of operations
 
@@ -219,24 +345,23 @@ class Steps(StepInProgress):
         """Return the resources that the operations of the artifact use, with the name of its robot."""
         tables = (self.interface.operations, self.interface.links)
         declared = [use for table in tables for each in table for use in each.uses]
-        declared += read_uses(getattr(self._artifact, "further_uses", ()))
+        declared += read_uses(getattr(self.artifact, "further_uses", ()))
         return self._of_robot(tuple(dict.fromkeys(declared)))
 
     def _of_robot(self, uses: tuple[Use, ...]) -> tuple[Use, ...]:
-        scope = getattr(self._artifact, "robot_prefix", "")
+        scope = getattr(self.artifact, "robot_prefix", "")
         return scoped(uses, scope if isinstance(scope, str) else "")
 
     def hold(self, execution: OperationExecution, uses: tuple[Use, ...]) -> Holding:
         """Return a claim that an operation enters and leaves itself."""
-        declared = execution.declared
-        mode = "finish" if declared is None else declared.when_preempted
+        mode = execution.declared.when_preempted
         stop = partial(self._lose, execution)
         execution.holding = Holding(execution, self.setting.arbiter, self._of_robot(uses), mode, stop)
         return execution.holding
 
     def _claim(self, execution: OperationExecution) -> None:
         """Claim the resources of an operation, which begins when they are granted."""
-        if execution.declared is not None and execution.declared.uses:
+        if execution.declared.uses:
             self.hold(execution, execution.declared.uses).enter()
 
     def _lose(self, execution: OperationExecution, reason: Structure | Atom) -> None:
@@ -250,23 +375,20 @@ class Steps(StepInProgress):
             self._tell(execution, outcome)
 
     def _guard(self, execution: OperationExecution) -> Guard | None:
-        declared = execution.declared
-        if declared is None or declared.guard is None:
-            return None
-        return partial(declared.guard, self._artifact, *execution.arguments)
+        guard = execution.declared.guard
+        return None if guard is None else partial(guard, self.artifact, *execution.arguments)
 
     # ---- operations begin and end
 
     def _begin(self, execution: OperationExecution, error: BaseException | None) -> None:
         declared = execution.declared
-        assert declared is not None
         execution.begun = not declared.coroutine
         if error is not None:
-            self._end(execution, error)
+            self.end(execution, error)
         elif not declared.coroutine:
             self._run(execution, declared)
         else:
-            name = f"{self.id.path} {faults.key(execution.request)}"
+            name = f"{self.id.path} {execution.request.key}"
             self.setting.know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
@@ -283,18 +405,18 @@ class Steps(StepInProgress):
 
     def _run_at_once(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
         try:
-            result = declared.function(self._artifact, *execution.arguments)
+            result = declared.function(self.artifact, *execution.arguments)
             if result is not None:
                 self._refuse_result(declared, result)
         except Exception as error:
-            self._end(execution, error)
+            self.end(execution, error)
         except BaseException as error:
             if is_interruption(error):
-                self._end(execution, OperationFailed("the process was interrupted"))
+                self.end(execution, OperationFailed("the process was interrupted"))
                 raise
-            self._end(execution, error)
+            self.end(execution, error)
         else:
-            self._end(execution, None)
+            self.end(execution, None)
 
     async def _drive(self, execution: OperationExecution) -> None:
         error: BaseException | None = None
@@ -316,21 +438,20 @@ class Steps(StepInProgress):
             error = raised
         except BaseException as raised:
             if is_interruption(raised):
-                self._end(execution, OperationFailed("the process was interrupted"))
+                self.end(execution, OperationFailed("the process was interrupted"))
                 raise
             error = raised
         if cancellation is not None and error is None and not execution.stopped:
             execution.cancelled = True
-            self._end(execution, None)
+            self.end(execution, None)
             raise cancellation
-        self._end(execution, error)
+        self.end(execution, error)
 
     async def _call(self, execution: OperationExecution) -> BaseException | None:
         """Run the code of a coroutine or of a thread. Return what a thread raised, instead of raising it."""
         declared = execution.declared
-        assert declared is not None
         if not declared.threaded:
-            result = await declared.function(self._artifact, *execution.arguments)
+            result = await declared.function(self.artifact, *execution.arguments)
             if result is not None:
                 self._refuse_result(declared, result)
             return None
@@ -340,7 +461,7 @@ class Steps(StepInProgress):
                 raised: BaseException | None = await declared.function(execution)
                 return raised
             work = partial(
-                in_thread, execution, partial(declared.function, self._artifact, *execution.arguments)
+                _in_thread, execution, partial(declared.function, self.artifact, *execution.arguments)
             )
             with standing_still(asyncio.get_running_loop()):
                 return await start_thread(work)
@@ -360,7 +481,7 @@ class Steps(StepInProgress):
                 "`def ask(self, answer: Out)` with `answer.set(3)`"
             )
 
-    def _end(self, execution: OperationExecution, error: BaseException | None) -> None:
+    def end(self, execution: OperationExecution, error: BaseException | None) -> None:
         """End the operation, and with it its last step."""
         if execution.asked_for:
             mistake = forgotten(execution)
@@ -409,7 +530,7 @@ class Steps(StepInProgress):
 
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
         """Log an error that is not reported elsewhere, or that its author must see."""
-        key = faults.key(execution.request)
+        key = execution.request.key
         if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
             return
         if not isinstance(error, OperationFailed):
@@ -439,17 +560,11 @@ class Steps(StepInProgress):
         if execution.task is not None:
             self._interrupt(execution)
         elif self.turns.withdraw(execution):
-            execution.ended = True
-            if execution.holding is not None:
-                execution.holding.leave()
-            if self.setting.listener is not None:
-                self.setting.listener.ended(execution, None)
-            if execution.limit is not None:
-                execution.limit.cancel()
+            self._tell(execution, SUCCEEDED)  # only a listener hears of it: it was cancelled
 
     def _interrupt(self, execution: OperationExecution) -> None:
         task, declared = execution.task, execution.declared
-        if task is None or declared is None or declared.threaded or not execution.begun:
+        if task is None or declared.threaded or not execution.begun:
             return
         if declared.kind == EXTERNAL:
             return  # the task is not an operation's
@@ -489,14 +604,14 @@ class Steps(StepInProgress):
         execution.verdict = outcome
         if self.turns.withdraw(execution):
             self._tell(execution, outcome)
-        elif execution.declared is not None and execution.declared.threaded:
+        elif execution.declared.threaded:
             self._inform(execution, outcome)
         else:
             self._interrupt(execution)
 
     async def closed(self) -> None:
         """Wait until the disposed artifact has released everything. Operations that do not end in time are abandoned."""
-        if self.over:
+        if self.ending.over:
             return
         limit = self.clock.call_later(PATIENCE, partial(self._leave_behind, self._running, PATIENCE))
         try:
@@ -507,7 +622,7 @@ class Steps(StepInProgress):
     @property
     def threads(self) -> list[OperationExecution]:
         """Return the operations that run in a thread."""
-        return [each for each in self._running if each.declared is not None and each.declared.threaded]
+        return [each for each in self._running if each.declared.threaded]
 
     def abandon_threads(self, seconds: float) -> None:
         """Stop waiting for threads of the disposed artifact, after *seconds*."""
@@ -516,17 +631,13 @@ class Steps(StepInProgress):
 
     def _leave_behind(self, executions: Iterable[OperationExecution], seconds: float) -> None:
         for execution in tuple(executions):
-            key = faults.key(execution.request)
+            key = execution.request.key
             told = (
                 f"operation {key} did not stop within {seconds:g} s of its artifact's disposal; abandoning it"
             )
             self.setting.log(f"[{self.id.name}] {told}")
             self._tell(execution, faults.disposed(execution.request))
-            if (
-                execution.task is not None
-                and execution.declared is not None
-                and execution.declared.kind != EXTERNAL
-            ):
+            if execution.task is not None and execution.declared.kind != EXTERNAL:
                 self._abandon_task(execution.task)
             self._running.pop(execution, None)
         if not self._running:
@@ -555,3 +666,23 @@ def _is_abandoned(execution: OperationExecution) -> bool:
         return asyncio.current_task() is not execution.task
     except RuntimeError:
         return True
+
+
+def _in_thread(execution: OperationExecution, work: Callable[[], object]) -> BaseException | None:
+    """Run *work* in this thread. Return what it raised, or None.
+
+    It is returned, because a future does not accept every exception (``StopIteration``).
+    """
+    execution.thread = threading.get_ident()
+    try:
+        result = work()
+        if inspect.iscoroutine(result):
+            result.close()
+            raise InvalidArtifact(
+                f"{execution.request.operation} returned a coroutine, which a thread cannot run"
+            )
+    except BaseException as error:
+        return error
+    finally:
+        execution.thread = None
+    return None

@@ -3,6 +3,7 @@
 import asyncio
 import inspect
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.execution import OperationExecution
@@ -12,6 +13,7 @@ from jacaros.env.operation import OperationOutcome
 Guard = Callable[[], object]
 
 
+@dataclass(slots=True, eq=False)
 class Place:
     """A place in the queue.
 
@@ -22,13 +24,10 @@ class Place:
         error: what the guard raised. The waiting operation handles it.
     """
 
-    __slots__ = ("error", "execution", "granted", "guard")
-
-    def __init__(
-        self, execution: OperationExecution, guard: Guard | None, granted: asyncio.Future[None] | None = None
-    ) -> None:
-        self.execution, self.guard, self.granted = execution, guard, granted
-        self.error: BaseException | None = None
+    execution: OperationExecution
+    guard: Guard | None
+    granted: "asyncio.Future[None] | None" = None
+    error: BaseException | None = None
 
 
 class TurnQueue:

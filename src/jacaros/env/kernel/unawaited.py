@@ -4,7 +4,7 @@ import inspect
 import sys
 from collections.abc import Callable, Coroutine, Sequence
 from functools import wraps
-from typing import Any, Protocol, TypeVar, cast
+from typing import Any, NamedTuple, Protocol, TypeVar, cast
 
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.operation import marks_of
@@ -12,7 +12,7 @@ from jacaros.env.operation import marks_of
 F = TypeVar("F", bound=Callable[..., Coroutine[Any, Any, Any]])
 
 
-class AskedFor:
+class AskedFor(NamedTuple):
     """A step boundary that an operation has called.
 
     Attributes:
@@ -21,10 +21,9 @@ class AskedFor:
         place: file and line of the call.
     """
 
-    __slots__ = ("coroutine", "name", "place")
-
-    def __init__(self, coroutine: Coroutine[Any, Any, Any], name: str, place: tuple[str, int]) -> None:
-        self.coroutine, self.name, self.place = coroutine, name, place
+    coroutine: Coroutine[Any, Any, Any]
+    name: str
+    place: tuple[str, int]
 
     @property
     def is_forgotten(self) -> bool:

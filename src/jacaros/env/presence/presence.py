@@ -5,7 +5,8 @@ the given workspace. With a namespace, the artifacts focused in that namespace c
 searched: the current one, home, then the others (see `jacaros.env.lookup` for several candidates in one).
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from jacaros.env.environment import Environment
@@ -13,7 +14,7 @@ from jacaros.env.errors import OperationFailed, UnknownArtifact
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named, chosen_artifact
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import OnMade, UnderWay, Workspace
+from jacaros.env.ports import ENDED, OnMade, UnderWay, Waiting, Workspace
 from jacaros.env.presence.filtering import Filter
 from jacaros.env.presence.focused import Focused
 from jacaros.env.presence.joined import JoinedWorkspaces
@@ -89,6 +90,12 @@ class Presence:
         self.workspaces.quit(workspace)
         self.changed(workspace, False)
 
+    def leave(self) -> None:
+        """End everything silently: waits for artifacts, too."""
+        for workspace in self.workspaces.joined():
+            self.focused.end_all(workspace)
+            self.workspaces.quit(workspace)
+
     def changed(self, workspace: Workspace, joined: bool) -> None:
         """Note that a workspace was joined (True) or quit (False)."""
 
@@ -107,17 +114,6 @@ class Presence:
         )
 
     # ---- artifacts
-
-    def place(self, here: Workspace, path: str) -> tuple[Workspace, str]:
-        """Return the workspace and the plain name of an artifact, given its name, or its path relative to *here*.
-
-        Raises:
-            UnknownWorkspace: the workspace does not exist.
-        """
-        if "/" not in path:
-            return here, path
-        above, _, name = resolve_path(here.path, path).rpartition("/")
-        return self.environment.workspace(above), name
 
     def artifact(self, wanted: ArtifactId | str, places: Sequence[Workspace]) -> ArtifactId:
         """Return the artifact *wanted*: an id, a name in one of the *places*, or a path relative to the first of them.
@@ -193,7 +189,7 @@ class Presence:
         on_done: OnMade,
         namespace: str | None = None,
         only: Filter | None = None,
-    ) -> UnderWay | None:
+    ) -> UnderWay:
         """Focus an artifact as soon as one with this name or path exists. See `Focused.begin`.
 
         Args:
@@ -204,12 +200,12 @@ class Presence:
             only: filter of what is perceived.
 
         Returns:
-            The handle of the wait; None if the artifact exists.
+            The handle of the wait.
 
         Raises:
             OperationFailed: its workspace does not exist, or is not joined.
         """
-        workspace, name = self.place(here, path)
+        workspace, name = self.environment.place(here, path)
         self.workspaces.at(workspace.path)
 
         def begin(artifact: ArtifactId) -> None:
@@ -227,14 +223,13 @@ class Presence:
             except UnknownArtifact:
                 return  # it was disposed immediately: wait for the next one
             except OperationFailed as failure:
-                on_done(None, OperationOutcome(False, failure.message, failure.reason))
+                on_done(None, OperationOutcome.of(failure))
             waiting.cancel()
 
-        for artifact in workspace.artifacts():
-            if artifact.name == name:
-                begin(artifact)
-                return None
-        waiting = _Waiting(workspace.watch(look))
+        with suppress(UnknownArtifact):
+            begin(workspace.lookup(name))
+            return ENDED
+        waiting = Waiting(workspace.watch(look))
         return waiting
 
     # ---- unknown operations
@@ -278,16 +273,3 @@ def _artifacts(places: Sequence[Workspace]) -> list[tuple[Workspace, ArtifactId]
 
 def _name(key: str) -> str:
     return key.rpartition("/")[0]
-
-
-class _Waiting:
-    """The wait for an artifact that does not exist yet."""
-
-    def __init__(self, stop: Callable[[], None]) -> None:
-        self.cancel = stop
-
-    def pause(self) -> None:
-        """Do nothing: waiting needs no pause."""
-
-    def resume(self) -> None:
-        """Do nothing."""

@@ -1,5 +1,6 @@
 """One claim of resources, from request to release."""
 
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal, Protocol
 
@@ -38,6 +39,7 @@ class Claimant(Protocol):
         """The claim failed and is removed."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Claim:
     """A claim of one plan or operation.
 
@@ -61,41 +63,21 @@ class Claim:
         warned: whether its long wait has been logged.
     """
 
-    __slots__ = (
-        "blocks",
-        "claimant",
-        "fresh",
-        "inherited",
-        "order",
-        "plan_of",
-        "policy",
-        "since",
-        "state",
-        "urgency",
-        "uses",
-        "waited",
-        "warned",
-        "who",
-        "within",
-    )
-
-    def __init__(
-        self,
-        uses: tuple[Use, ...],
-        who: str,
-        claimant: Claimant,
-        urgency: int = 0,
-        policy: Policy = "wait",
-        within: "tuple[Claim, ...]" = (),
-        plan_of: str = "",
-        blocks: str = "",
-    ) -> None:
-        self.uses, self.who, self.claimant = uses, who, claimant
-        self.urgency, self.policy, self.within = urgency, policy, within
-        self.plan_of, self.blocks = plan_of, blocks
-        self.state, self.fresh, self.warned = State.OUT, True, False
-        self.order = self.inherited = 0
-        self.waited = self.since = 0.0
+    uses: tuple[Use, ...]
+    who: str
+    claimant: Claimant
+    urgency: int = 0
+    policy: Policy = "wait"
+    within: "tuple[Claim, ...]" = ()
+    plan_of: str = ""
+    blocks: str = ""
+    state: State = field(default=State.OUT, init=False)
+    fresh: bool = field(default=True, init=False)
+    order: int = field(default=0, init=False)
+    inherited: int = field(default=0, init=False)
+    waited: float = field(default=0.0, init=False)
+    since: float = field(default=0.0, init=False)
+    warned: bool = field(default=False, init=False)
 
     @property
     def root(self) -> "Claim":

@@ -10,14 +10,18 @@ identifies it, and the reason of a failure as text.
 """
 
 
-class Account(Protocol):
-    """Counts what a session waits for, so that a run can detect idleness."""
+class Activity(Protocol):
+    """Counts what runs, so that a run can detect idleness."""
 
     def begin(self) -> None:
-        """An operation has begun."""
+        """Something with an end has begun."""
 
     def end(self) -> None:
-        """An operation has ended."""
+        """It has ended, or was cancelled."""
+
+
+class Account(Activity, Protocol):
+    """Counts also what a session waits for."""
 
     def waiting(self) -> AbstractContextManager[None]:
         """Context of a wait that something else must end, such as for a signal."""

@@ -8,8 +8,8 @@ from jacaros.env.ids import ArtifactId
 from jacaros.env.observation import Observation
 from jacaros.env.ports import Workspace
 from jacaros.env.presence.focused import Focused
-from jacaros.env.property import ObservableProperty
-from jacaros.env.values import equal, plain
+from jacaros.env.property import ObservableProperty, fits
+from jacaros.env.values import plain
 from jacaros.suggestions import aside
 
 
@@ -100,12 +100,11 @@ class Observed(Focused):
             template: as many values as the property has, None for any value. Empty matches every property.
             artifact: None for all focused artifacts.
         """
-        template = tuple(map(plain, template))
         for owner, held in self._properties.items():
             if artifact is not None and owner is not artifact:
                 continue
             for each in held.values():
-                if each.name == name and (not template or _fits(template, each.values)):
+                if each.name == name and (not template or fits(template, each.values)):
                     yield _observed(owner, each)
 
     def unknown(self, name: str, artifact: ArtifactId | None) -> UnknownProperty:
@@ -138,9 +137,3 @@ def _observed(artifact: ArtifactId, found: ObservableProperty) -> ObservedProper
 def _copy(values: tuple[object, ...]) -> tuple[object, ...]:
     """Return values that share no list or dictionary with those of the artifact."""
     return tuple(map(plain, values))
-
-
-def _fits(template: tuple[object, ...], values: tuple[object, ...]) -> bool:
-    return len(template) == len(values) and all(
-        wanted is None or equal(wanted, value) for wanted, value in zip(template, values, strict=True)
-    )

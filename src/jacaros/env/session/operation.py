@@ -4,9 +4,8 @@ import asyncio
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from jacaros.env.errors import OperationFailed
 from jacaros.env.operation import OperationOutcome
-from jacaros.env.ports import UnderWay
+from jacaros.env.ports import ENDED, UnderWay
 from jacaros.env.values import Atom, Out
 
 
@@ -33,7 +32,7 @@ class SessionOperation:
         self._complain = complain
         self.outcome: OperationOutcome | None = None
         self._outs = tuple(each for each in arguments if isinstance(each, Out))
-        self._execution: UnderWay | None = None
+        self._execution: UnderWay = ENDED
         self._on_end: list[Callable[[SessionOperation], object]] = []
         self._waiting: list[asyncio.Future[None]] = []
 
@@ -55,25 +54,24 @@ class SessionOperation:
         if self.outcome is None:
             raise asyncio.InvalidStateError(f"operation {self.operation} has not ended")
         if not self.outcome.ok:
-            raise OperationFailed(self.outcome.message or "", self.outcome.reason)
+            raise self.outcome.failure
         values = tuple(out.value if out.is_set else None for out in self._outs)
         return values if len(values) > 1 else values[0] if values else None
 
     def cancel(self) -> None:
         """End it with the reason ``cancelled``: its ``finally`` blocks run, a motion ends. No effect after its end."""
         if not self.done:
-            if self._execution is not None:
-                self._execution.cancel()
+            self._execution.cancel()
             self.end(OperationOutcome(False, f"operation {self.operation} was cancelled", Atom("cancelled")))
 
     def pause(self) -> None:
         """Pause it, if it is pausable."""
-        if self._execution is not None and not self.done:
+        if not self.done:
             self._execution.pause()
 
     def resume(self) -> None:
         """Let it continue after `pause`."""
-        if self._execution is not None and not self.done:
+        if not self.done:
             self._execution.resume()
 
     def on_end(self, callback: "Callable[[SessionOperation], object]") -> None:

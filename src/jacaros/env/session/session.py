@@ -1,25 +1,42 @@
 """Working sessions, for scripts, behaviour trees and Python agents."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from types import TracebackType
-from typing import Any
+from typing import Any, TypedDict, TypeVar, Unpack
+from weakref import ref
 
+from jacaros.clock import Clock
 from jacaros.env.artifact import Artifact
 from jacaros.env.environment import Environment
 from jacaros.env.errors import OperationFailed, WorkspaceError
 from jacaros.env.ids import ArtifactId, resolve_path
 from jacaros.env.lookup import artifact_named
+from jacaros.env.observation import Observation
 from jacaros.env.operation import OperationOutcome, OperationRequest
 from jacaros.env.ports import Workspace, awaited
 from jacaros.env.presence.presence import ANYWHERE, Direction, Presence
-from jacaros.env.session.account import Account, Observer
+from jacaros.env.session.account import Account, NoAccount, Observer
+from jacaros.env.session.condition import Conditions
+from jacaros.env.session.observed import Observed, ObservedProperty, PropertyChange, changes_of
 from jacaros.env.session.operation import SessionOperation
-from jacaros.env.session.perception import Perceiving
+from jacaros.env.session.signal_stream import ReceivedSignal, SignalStream
 from jacaros.env.values import Atom, Out, plain, text
 
+T = TypeVar("T")
+_REQUIRED: Any = object()
 
-class Session(Perceiving):
+
+class ActOptions(TypedDict, total=False):
+    """The options of `Session.act`. See `Session.begin`."""
+
+    artifact: ArtifactId | str | None
+    workspace: str | None
+    timeout: float | None
+    urgency: int
+
+
+class Session:
     """A working session in an environment (CArtAgO's term): it joins workspaces, focuses artifacts and acts.
 
     It must be used on the event loop of the environment, and takes plain values (see `jacaros.env.values`). An artifact
@@ -33,6 +50,7 @@ class Session(Perceiving):
         account: counts waits.
 
     Attributes:
+        presence: its joined workspaces and focused artifacts.
         observer: receives the operations that begin from now on, or None.
 
     Raises:
@@ -42,17 +60,30 @@ class Session(Perceiving):
     def __init__(
         self, environment: Environment, name: str, home: str = "/main", account: Account | None = None
     ) -> None:
-        super().__init__(environment, name, account)
-        self._presence = Presence(environment, name, home, self._observed)
+        self.environment, self.name = environment, name
+        self._account: Account = account if account is not None else NoAccount()
+        self._observed = Observed(name, self._tell)
+        # In the order of creation, so that a run is reproducible. A stream lives as long as its reader.
+        self._streams: list[ref[SignalStream]] = []
+        self._conditions = Conditions()
+        self._on_change: list[Callable[[PropertyChange], object]] = []
+        self._on_signal: list[Callable[[ReceivedSignal], object]] = []
+        self._closed = False
+        self.presence = Presence(environment, name, home, self._observed)
         self._under_way: dict[SessionOperation, None] = {}
         self.observer: Observer | None = None
+
+    @property
+    def clock(self) -> Clock:
+        """The clock of the environment."""
+        return self.environment.clock
 
     # ---- workspaces
 
     @property
     def joined(self) -> tuple[str, ...]:
         """Full paths of the joined workspaces, in the order of joining. The current one comes last."""
-        return tuple(workspace.path for workspace in self._presence.workspaces.joined())
+        return tuple(workspace.path for workspace in self.presence.workspaces.joined())
 
     def join(self, path: str) -> str:
         """Join a workspace and make it the current one. Joining again only makes it the current one.
@@ -67,8 +98,8 @@ class Session(Perceiving):
             UnknownWorkspace: the workspace does not exist.
         """
         self._check()
-        workspace = self._presence.workspaces.find(path)
-        self._presence.join(workspace)
+        workspace = self.presence.workspaces.find(path)
+        self.presence.join(workspace)
         return workspace.path
 
     def quit(self, workspace: str) -> None:
@@ -77,7 +108,7 @@ class Session(Perceiving):
         Raises:
             OperationFailed: it is not joined; reason ``workspace_not_joined(Name)``.
         """
-        self._presence.quit(self._presence.workspaces.named(workspace))
+        self.presence.quit(self.presence.workspaces.named(workspace))
 
     def create_workspace(self, path: str) -> str:
         """Create a workspace without joining it.
@@ -96,7 +127,7 @@ class Session(Perceiving):
 
     @property
     def _here(self) -> Workspace:
-        return self._presence.workspaces.current()
+        return self.presence.workspaces.current()
 
     # ---- artifacts
 
@@ -114,7 +145,7 @@ class Session(Perceiving):
             OperationFailed: see `Workspace.make_artifact`.
         """
         self._check()
-        workspace, plain_name = self._presence.place(self._here, name)
+        workspace, plain_name = self.environment.place(self._here, name)
         self._account.begin()
         try:
             return await workspace.make_artifact(
@@ -130,9 +161,9 @@ class Session(Perceiving):
             OperationFailed: it does not exist; reason ``artifact_not_available(Name)``.
         """
         if "/" in name:
-            workspace, name = self._presence.place(self._here, name)
+            workspace, name = self.environment.place(self._here, name)
             return workspace.lookup(name)
-        return artifact_named(self._presence.workspaces.in_order(), name)
+        return artifact_named(self.presence.workspaces.in_order(), name)
 
     def dispose_artifact(self, artifact: ArtifactId | str) -> None:
         """Dispose an artifact. See `Workspace.dispose_artifact`.
@@ -141,7 +172,7 @@ class Session(Perceiving):
             OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
-        self._presence.workspaces.at(found.workspace).dispose_artifact(found)
+        self.presence.workspaces.at(found.workspace).dispose_artifact(found)
 
     def link_artifacts(self, source: ArtifactId | str, port: str, target: ArtifactId | str) -> None:
         """Link an out port of *source* to *target*. See `Workspace.link`.
@@ -150,7 +181,7 @@ class Session(Perceiving):
             OperationFailed: an artifact or the port does not exist.
         """
         found = self._artifact(source)
-        self._presence.workspaces.at(found.workspace).link(found, port, self._artifact(target))
+        self.presence.workspaces.at(found.workspace).link(found, port, self._artifact(target))
 
     def _artifact(self, wanted: ArtifactId | str) -> ArtifactId:
         self._check()
@@ -167,7 +198,7 @@ class Session(Perceiving):
             OperationFailed: it does not exist, or its workspace is not joined.
         """
         found = self._artifact(artifact)
-        self._observed.begin(self._presence.workspaces.at(found.workspace), found)
+        self._observed.begin(self.presence.workspaces.at(found.workspace), found)
         return found
 
     async def focus_when_available(self, name: str) -> ArtifactId:
@@ -178,7 +209,7 @@ class Session(Perceiving):
         """
         self._check()
         with self._account.waiting():
-            return await awaited(partial(self._presence.focus_when_available, self._here, name))
+            return await awaited(partial(self.presence.focus_when_available, self._here, name))
 
     def stop_focus(self, artifact: ArtifactId | str) -> None:
         """Stop focusing an artifact. Without effect if it is not focused.
@@ -191,9 +222,165 @@ class Session(Perceiving):
             artifact = named[0] if named else self.lookup(artifact)
         self._observed.end(artifact)
 
+    # ---- perception
+
+    @property
+    def focused(self) -> tuple[ArtifactId, ...]:
+        """The focused artifacts, in the order of focusing."""
+        return self._observed.in_order()
+
+    def value(
+        self,
+        name: str,
+        index: int = 0,
+        artifact: ArtifactId | str | None = None,
+        default: Any = _REQUIRED,
+    ) -> Any:
+        """Return a value of the first property called *name* of the focused artifacts.
+
+        Args:
+            name: name of the property. Those of the artifact focused first come first, among them the oldest.
+            index: index of the value, from 0.
+            artifact: only properties of this artifact.
+            default: returned if there is no such property.
+
+        Raises:
+            UnknownProperty: there is no such property, and no default.
+        """
+        if default is not _REQUIRED and not self.has_property(name, artifact=artifact):
+            return default
+        return self.values(name, artifact)[index]
+
+    def values(self, name: str, artifact: ArtifactId | str | None = None) -> tuple[Any, ...]:
+        """Return all values of the first property called *name* of the focused artifacts. See `value`.
+
+        Raises:
+            UnknownProperty: there is no such property.
+        """
+        found = next(self._find(name, (), artifact), None)
+        if found is None:
+            raise self._observed.unknown(name, self._narrowed(artifact))
+        return found.values
+
+    def has_property(self, name: str, *values: object, artifact: ArtifactId | str | None = None) -> bool:
+        """Return whether a focused artifact has a property called *name*, with *values* (None for any) if given."""
+        return next(self._find(name, values, artifact), None) is not None
+
+    def properties(
+        self, name: str, *values: object, artifact: ArtifactId | str | None = None
+    ) -> tuple[ObservedProperty, ...]:
+        """Return all properties called *name* of the focused artifacts, with *values* (None for any) if given."""
+        return tuple(self._find(name, values, artifact))
+
+    def _find(
+        self, name: str, values: tuple[object, ...], artifact: ArtifactId | str | None
+    ) -> Iterator[ObservedProperty]:
+        return self._observed.find(name, values, self._narrowed(artifact))
+
+    def _narrowed(self, artifact: ArtifactId | str | None) -> ArtifactId | None:
+        if isinstance(artifact, str):
+            named = (each for each in self.focused if artifact in (each.name, each.path))
+            return next(named, None) or self.lookup(artifact)
+        return artifact
+
+    def signals(self, name: str | None = None, artifact: ArtifactId | str | None = None) -> SignalStream:
+        """Return a stream of the signals of the focused artifacts from now on, for ``async for``.
+
+        No signal is lost between two turns of the event loop. The stream ends when it, or the session, is closed.
+
+        Args:
+            name: only signals of this name.
+            artifact: only signals of this artifact.
+        """
+        self._check()
+        stream = SignalStream(name, self._narrowed(artifact), self._account.waiting)
+        self._streams.append(ref(stream, self._streams.remove))
+        return stream
+
+    def on_change(self, callback: Callable[[PropertyChange], object]) -> Callable[[], None]:
+        """Call *callback* with every change of a property of the focused artifacts. Return a function that ends this.
+
+        By then, the session shows everything that was published together. The callback runs within the step of the
+        artifact, so it should return soon.
+        """
+        return _enter(self._on_change, callback)
+
+    def on_signal(self, callback: Callable[[ReceivedSignal], object]) -> Callable[[], None]:
+        """Call *callback* with every signal of the focused artifacts. Return a function that ends this. See `on_change`."""
+        return _enter(self._on_signal, callback)
+
+    async def until(self, condition: Callable[[], T], timeout: float | None = None) -> T:
+        """Wait until *condition* is true.
+
+        It is evaluated now, and whenever a focused artifact publishes something, so a condition that holds for only one
+        step is not missed.
+
+        Args:
+            condition: a function without arguments. An exception in it is raised here.
+            timeout: time limit in seconds.
+
+        Returns:
+            The value of the condition.
+
+        Raises:
+            TimeoutError: the time limit has passed.
+            WorkspaceError: the session was closed.
+        """
+        self._check()
+        value = condition()
+        if value:
+            return value
+        if timeout is None:
+            with self._account.waiting():
+                return await self._conditions.wait(condition)
+        self._account.begin()
+        try:
+            return await self._conditions.wait(condition, self.clock, timeout)
+        finally:
+            self._account.end()
+
+    def _tell(self, observation: Observation) -> None:
+        for name, arguments in observation.signals:
+            signal = ReceivedSignal(name, tuple(map(plain, arguments)), observation.artifact)
+            for stream in self._read_streams():
+                stream.put(signal)
+            for on_signal in tuple(self._on_signal):
+                self._call(on_signal, signal, "an on_signal callback raised:")
+        if self._on_change:
+            for change in changes_of(observation):
+                for on_change in tuple(self._on_change):
+                    self._call(on_change, change, "an on_change callback raised:")
+        self._conditions.evaluate()
+
+    def _read_streams(self) -> list[SignalStream]:
+        return [stream for each in self._streams if (stream := each()) is not None]
+
+    def _call(self, callback: Callable[[T], object], told: T, what: str) -> None:
+        try:
+            callback(told)
+        except Exception as error:
+            self._complain(what, error)
+
+    def _complain(self, what: str, error: Exception) -> None:
+        """Log that the session's own code failed, where no caller can receive the exception."""
+        self.environment.log_error(self.name, what, error)
+
     # ---- operations
 
-    async def act(
+    async def act(self, operation: str, *arguments: object, **options: Unpack[ActOptions]) -> Any:
+        """Run an operation, and wait for its end. The arguments are those of `begin`.
+
+        Cancelling the waiting task cancels the operation.
+
+        Returns:
+            The values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
+
+        Raises:
+            OperationFailed: with message and reason.
+        """
+        return await self.begin(operation, *arguments, **options)
+
+    def begin(
         self,
         operation: str,
         *arguments: object,
@@ -201,10 +388,8 @@ class Session(Perceiving):
         workspace: str | None = None,
         timeout: float | None = None,
         urgency: int = 0,
-    ) -> Any:
-        """Run an operation, and wait for its end.
-
-        Cancelling the waiting task cancels the operation.
+    ) -> SessionOperation:
+        """Begin an operation.
 
         Args:
             operation: name of the operation.
@@ -216,27 +401,6 @@ class Session(Perceiving):
             timeout: time limit in seconds. Afterwards the operation fails with
                 ``operation_timeout(Operation,Milliseconds)``.
             urgency: decides who gets the resources that it uses, such as the wheels of a robot. The greater one wins.
-
-        Returns:
-            The values of the `Out` arguments: None without any, the value of a single one, a tuple of several.
-
-        Raises:
-            OperationFailed: with message and reason.
-        """
-        return await self.begin(
-            operation, *arguments, artifact=artifact, workspace=workspace, timeout=timeout, urgency=urgency
-        )
-
-    def begin(
-        self,
-        operation: str,
-        *arguments: object,
-        artifact: ArtifactId | str | None = None,
-        workspace: str | None = None,
-        timeout: float | None = None,
-        urgency: int = 0,
-    ) -> SessionOperation:
-        """Begin an operation. The arguments are those of `act`.
 
         Returns:
             Its handle. An operation that cannot begin, for example because no artifact offers it, has failed already.
@@ -256,9 +420,9 @@ class Session(Perceiving):
         try:
             directed = artifact is not None or workspace is not None
             direction = Direction(artifact, workspace) if directed else ANYWHERE
-            target = self._presence.artifact_for(operation, len(given), direction)
+            target = self.presence.artifact_for(operation, len(given), direction)
         except OperationFailed as failure:
-            handle.end(OperationOutcome(False, failure.message, failure.reason))
+            handle.end(OperationOutcome.of(failure))
             return handle
         request = OperationRequest(target, operation, given, self.name, None, handle.end, timeout)
         request.urgency = urgency
@@ -303,9 +467,19 @@ class Session(Perceiving):
             return
         self._closed = True
         self.cancel_operations()
-        self._end_perceiving()
-        for workspace in self._presence.workspaces.joined():
-            self._observed.end_all(workspace)
+        self._on_change.clear()
+        self._on_signal.clear()
+        for stream in self._read_streams():
+            stream.close()
+        self._conditions.close(self._is_closed())
+        self.presence.leave()
+
+    def _check(self) -> None:
+        if self._closed:
+            raise self._is_closed()
+
+    def _is_closed(self) -> WorkspaceError:
+        return WorkspaceError(f"session {self.name} has been closed")
 
     def __enter__(self) -> "Session":
         return self
@@ -317,3 +491,8 @@ class Session(Perceiving):
 
     def __repr__(self) -> str:
         return f"<session {self.name} in {', '.join(self.joined[-1:]) or 'no workspace'}>"
+
+
+def _enter(callbacks: list[T], callback: T) -> Callable[[], None]:
+    callbacks.append(callback)
+    return lambda: callbacks.remove(callback) if callback in callbacks else None

@@ -5,10 +5,11 @@ from collections import deque
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
+from jacaros.env.kernel.faults import error_text
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.embedding.errors import RunEnded
 from jacaros.mas.embedding.waits import Waits
-from jacaros.mas.python_agents.faults import place_of_fault, said
+from jacaros.mas.python_agents.faults import place_of_fault
 
 T = TypeVar("T")
 
@@ -131,7 +132,7 @@ class PrintedConsole:
                 callback(agent, text)
             except Exception as error:
                 self.log(
-                    f"error: an on_print callback raised {said(error)}{place_of_fault(error)}",
+                    f"error: an on_print callback raised {error_text(error)}{place_of_fault(error)}",
                     "error",
                 )
 
@@ -142,7 +143,7 @@ class PrintedConsole:
         except Exception as error:
             self._standard.log(text, level)
             self._standard.log(
-                f"error: an on_log callback raised {said(error)}{place_of_fault(error)}", "error"
+                f"error: an on_log callback raised {error_text(error)}{place_of_fault(error)}", "error"
             )
 
     def close(self) -> None:

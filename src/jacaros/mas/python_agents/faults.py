@@ -3,6 +3,8 @@
 import sysconfig
 from pathlib import Path
 
+from jacaros.env.kernel.faults import error_text
+
 _OURS = str(Path(__file__).parents[2])
 _STANDARD = sysconfig.get_path("stdlib")
 
@@ -12,16 +14,11 @@ def fault_lines(error: BaseException) -> list[str]:
     if isinstance(error.__cause__, SystemExit):
         error = error.__cause__
     places = _places(error)
-    lines = [f"error: the agent was ended by {said(error)}{place_of_fault(error)}"]
+    lines = [f"error: the agent was ended by {error_text(error)}{place_of_fault(error)}"]
     lines += [f"  called from {place}" for place in reversed(places[:-1])]
     for each in error.exceptions if isinstance(error, BaseExceptionGroup) else ():
-        lines.append(f"  {said(each)}{place_of_fault(each)}")
+        lines.append(f"  {error_text(each)}{place_of_fault(each)}")
     return lines
-
-
-def said(error: BaseException) -> str:
-    """Return the class and text of an exception."""
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
 def place_of_fault(error: BaseException) -> str:

@@ -7,8 +7,8 @@ from inspect import isawaitable
 from typing import Any
 
 from jacaros.env.session.session import Session
-from jacaros.extension.python_agent import PythonAgent, overridden
-from jacaros.extension.views import ReceivedMessage
+from jacaros.extension.python_agent import PythonAgent
+from jacaros.extension.views import ReceivedMessage, overridden
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
 
@@ -31,9 +31,9 @@ class Handlers:
         start: Callable[[Coroutine[Any, Any, Any]], object],
     ) -> None:
         self._mail, self._task_activity, self._start = mail, task_activity, start
-        self._on_message = overridden(agent, "on_message")
-        self._on_signal = overridden(agent, "on_signal")
-        self._on_property = overridden(agent, "on_property")
+        self._on_message = overridden(agent, PythonAgent, "on_message")
+        self._on_signal = overridden(agent, PythonAgent, "on_signal")
+        self._on_property = overridden(agent, PythonAgent, "on_property")
         self._waiting: asyncio.Queue[Callable[[], Any]] = asyncio.Queue()
 
     @property

@@ -1,24 +1,29 @@
 """The host of a Python agent: its tasks, messages and session."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Iterable, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from jacaros.asl.loader import parse_literals
+from jacaros.asl.lowering import lower_value
 from jacaros.asl.nodes import Literal as LiteralNode
-from jacaros.bdi.state.act import Completion, Percept
+from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.options import Options
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.clock import Clock
 from jacaros.env.errors import WorkspaceError
+from jacaros.env.kernel.faults import error_text
 from jacaros.env.session.account import Observer
 from jacaros.env.session.session import Session
 from jacaros.errors import JacarosError
-from jacaros.extension.literal import Literal
+from jacaros.extension.literal import Literal, literal_of
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.agent_options import mind_options
 from jacaros.mas.coroutines import without_exit
-from jacaros.mas.python_agents.faults import fault_lines, place_of_fault, said
+from jacaros.mas.deployment import AgentSpec
+from jacaros.mas.python_agents.faults import fault_lines, place_of_fault
 from jacaros.mas.python_agents.handlers import Handlers
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
@@ -33,30 +38,19 @@ class PythonAgentHost(AgentHost):
 
     Args:
         agent: object of the user's class.
-        name: name of the agent.
+        spec: its declaration in the project.
         run: its run.
         seed: seed of the agent's random numbers.
-        mind_options: options for its logs.
-        options: options of the project file.
-        beliefs: beliefs of the project file.
     """
 
-    def __init__(
-        self,
-        agent: PythonAgent,
-        name: str,
-        run: Run,
-        seed: str,
-        mind_options: Options,
-        options: Mapping[str, str],
-        beliefs: tuple[Literal, ...],
-    ) -> None:
-        super().__init__(name, run, seed)
-        self.options, self.beliefs = options, beliefs
+    def __init__(self, agent: PythonAgent, spec: AgentSpec, run: Run, seed: str) -> None:
+        super().__init__(spec.name, run, seed)
+        name, self.options = spec.name, spec.options
+        self.beliefs = _beliefs(spec)
         self.open_session: Callable[[], Session] | None = None
         self.task_activity = TaskActivity(run.activity, self._settled)
         self.mail = Messaging(name, self.send, self.agent_names, run.clock, run.activity, self.task_activity)
-        self.mind = _Task(self, mind_options)
+        self.mind = _Task(self, mind_options(spec.options))
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
@@ -105,7 +99,7 @@ class PythonAgentHost(AgentHost):
             tell("dropped", told, self, "")
             raise
         except BaseException as error:
-            tell("failed", told, self, said(error))
+            tell("failed", told, self, error_text(error))
             raise
         tell("achieved", told, self, "")
 
@@ -280,24 +274,20 @@ class _Task:
         try:
             return bool(self._host.agent.accept_kill(killer))
         except Exception as error:
-            self._host.log("error", f"accept_kill: {said(error)}{place_of_fault(error)}")
+            self._host.log("error", f"accept_kill: {error_text(error)}{place_of_fault(error)}")
             return True
-
-    def perceive(self, percepts: list[Percept]) -> None:
-        """Do nothing: it perceives through its session."""
-
-    def has_untaken(self, name: str) -> bool:
-        """Return False: its session processes everything immediately."""
-        return False
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Do nothing: it acts through its session."""
 
-    def preempted(self, act_id: int, resource: str) -> None:
-        """Do nothing: its operations pause automatically."""
-
-    def regained(self, act_id: int) -> None:
-        """Do nothing: its operations continue automatically."""
-
     def shut_down_in(self, milliseconds: float) -> None:
         """Do nothing: it is cancelled at the end."""
+
+
+def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
+    if not spec.beliefs.strip():
+        return ()
+    return tuple(
+        literal_of(lower_value(node))
+        for node in parse_literals(spec.beliefs, f"the declaration of {spec.name}")
+    )

@@ -5,12 +5,8 @@ from types import ModuleType
 from typing import Final
 
 from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.loader import parse_literals
-from jacaros.asl.lowering import lower_value
-from jacaros.extension.literal import Literal, literal_of
 from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import Run
-from jacaros.mas.agent_options import mind_options
 from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.python_agents.faults import place_of_fault
@@ -126,18 +122,7 @@ def make(modules: ProjectModules, spec: AgentSpec, run: Run, seed: str) -> Pytho
     except Exception as error:
         message = f"cannot create {kind.__name__}: {type(error).__name__}: {error}{place_of_fault(error)}"
         raise _wrong(spec, message) from error
-    return PythonAgentHost(
-        agent, spec.name, run, seed, mind_options(spec.options), spec.options, _beliefs(spec)
-    )
-
-
-def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
-    if not spec.beliefs.strip():
-        return ()
-    return tuple(
-        literal_of(lower_value(node))
-        for node in parse_literals(spec.beliefs, f"the declaration of {spec.name}")
-    )
+    return PythonAgentHost(agent, spec, run, seed)
 
 
 def _wrong(spec: AgentSpec, message: str, help: str | None = None) -> ProjectError:
