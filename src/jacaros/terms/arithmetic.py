@@ -60,48 +60,10 @@ def settle(term: Term) -> Term:
     if term.__class__ is tuple:
         kind = term[0].kind
         if kind == ARITHMETIC:
-            return _evaluate(term)
+            return _apply(term, list(map(settle, term[1:])))
         if kind == FUNCTION:
             return call(term)
     return term
-
-
-def _evaluate(term: Term) -> Term:
-    try:
-        operands = [settle(a) for a in term[1:]]
-    except RecursionError:
-        return _evaluate_iteratively(term)
-    return _apply(term, operands)
-
-
-_TOO_MANY = 1_000_000
-"""Maximum number of nested operations."""
-
-
-def _evaluate_iteratively(term: Term) -> Term:
-    """Evaluate arithmetic that is nested too deeply for Python's stack; calls of functions inside are not evaluated.
-
-    Raises:
-        RecursionError: it is nested without end.
-    """
-    todo: list[Term] = [term]
-    done: list[Term] = []
-    while todo:
-        item = deref(todo.pop())
-        if item.__class__ is list:
-            (operation,) = item
-            count = len(operation) - 1
-            operands = done[-count:]
-            del done[-count:]
-            done.append(_apply(operation, operands))
-        elif item.__class__ is tuple and item[0].kind == ARITHMETIC:
-            todo.append([item])
-            todo.extend(item[:0:-1])
-            if len(todo) > _TOO_MANY:
-                raise RecursionError("arithmetic is nested too deeply")
-        else:
-            done.append(item)
-    return done[0]
 
 
 def _apply(term: Term, operands: list[Term]) -> Term:

@@ -11,7 +11,6 @@ from operator import itemgetter, ne
 from typing import Any
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.iterative import MANY_TURNS
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
@@ -32,6 +31,11 @@ from jacaros.terms.values import (
 _NUMBER, _STRING, _LIST, _LITERAL, _OTHER, _VARIABLE = range(6)
 _EVALUATED = (ARITHMETIC, FUNCTION)
 _variable_numbers = itertools.count()
+MOST_CELLS = 1_000_000
+"""Maximum number of cells of an open list, or of structures in each other's last arguments: a walk along a term that
+contains itself ends there.
+"""
+TOO_LONG = f"a term has more than {MOST_CELLS} levels, or contains itself"
 
 
 def _rank(term: Term) -> int:
@@ -52,45 +56,43 @@ def _rank(term: Term) -> int:
 
 
 def compare(left: Term, right: Term) -> int:
-    """Return a negative number, zero or a positive number as *left* comes before, with or after *right*."""
-    turns = 0
-    try:
-        while turns < MANY_TURNS:
-            left, right = settle(left), settle(right)
-            if left is right:
-                return 0
-            rank = _rank(left)
-            other = _rank(right)
-            if rank != other:
-                return rank - other
-            if rank == _NUMBER:
-                return _compare_numbers(left, right)
-            if rank == _STRING:
-                return -1 if left < right else int(left > right)
-            if rank == _VARIABLE:
-                return _compare_variables(left, right)
-            if rank == _LIST and not (
-                (left.__class__ is List and right.__class__ is List) or left is NIL or right is NIL
-            ):
-                # An open list, or one that may be: compare element by element, as a closed one would be
-                # copied for each.
-                first, left = parts_of_list(left)
-                second, right = parts_of_list(right)
-                order = compare(first, second)
-                if order:
-                    return order
-                turns += 1
-                continue
-            if rank == _LITERAL and left.__class__ is not Annotated and right.__class__ is not Annotated:
-                return _compare_plain(left, right)
-            for decision in _decisions(left, right, rank):
-                order = decision if decision.__class__ is int else compare(*decision)
-                if order:
-                    return order
+    """Return a negative number, zero or a positive number as *left* comes before, with or after *right*.
+
+    Raises:
+        RecursionError: a term is nested too deeply for Python's stack, or contains itself.
+    """
+    for _ in range(MOST_CELLS):
+        left, right = settle(left), settle(right)
+        if left is right:
             return 0
-    except RecursionError:
-        pass
-    return _compare_iteratively(left, right)
+        rank = _rank(left)
+        other = _rank(right)
+        if rank != other:
+            return rank - other
+        if rank == _NUMBER:
+            return _compare_numbers(left, right)
+        if rank == _STRING:
+            return -1 if left < right else int(left > right)
+        if rank == _VARIABLE:
+            return _compare_variables(left, right)
+        if rank == _LIST and not (
+            (left.__class__ is List and right.__class__ is List) or left is NIL or right is NIL
+        ):
+            # An open list, or one that may be: compare element by element, as a closed one would be copied for each.
+            first, left = parts_of_list(left)
+            second, right = parts_of_list(right)
+            order = compare(first, second)
+            if order:
+                return order
+            continue
+        if rank == _LITERAL and left.__class__ is not Annotated and right.__class__ is not Annotated:
+            return _compare_plain(left, right)
+        for decision in _decisions(left, right, rank):
+            order = decision if decision.__class__ is int else compare(*decision)
+            if order:
+                return order
+        return 0
+    raise RecursionError(TOO_LONG)
 
 
 def _compare_plain(left: Term, right: Term) -> int:
@@ -108,32 +110,6 @@ def _compare_plain(left: Term, right: Term) -> int:
         if order:
             return order
     return int(first.arity - second.arity)
-
-
-def _compare_iteratively(left: Term, right: Term) -> int:
-    """`compare` for terms that are nested too deeply for Python's stack, or without end."""
-    todo: list[Any] = [(left, right)]
-    met: set[tuple[int, int]] = set()
-    while todo:
-        item = todo.pop()
-        if item.__class__ is int:
-            if item:
-                return int(item)
-            continue
-        left, right = settle(item[0]), settle(item[1])
-        rank = _rank(left)
-        if left is right:
-            continue
-        if rank != _rank(right) or rank in (_NUMBER, _STRING, _VARIABLE):
-            todo.append(compare(left, right))
-            continue
-        if left is not item[0] or right is not item[1] or rank == _OTHER:
-            # A term can contain itself only through a variable or a collection.
-            if (id(left), id(right)) in met:
-                continue
-            met.add((id(left), id(right)))
-        todo.extend(reversed([*_decisions(left, right, rank)]))
-    return 0
 
 
 def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
