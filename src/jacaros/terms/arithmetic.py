@@ -1,4 +1,14 @@
-"""Arithmetic on terms, evaluated when operands are known, kept as a term until then: doubles, and exact integers."""
+"""Arithmetic on terms, evaluated when operands are known, kept as a term until then: doubles, and exact integers.
+
+>>> from jacaros.terms.operators import BINARY
+>>> distance = Var("D")
+>>> half = (BINARY["/"].functor, distance, 2.0)
+>>> settle(half) is half
+True
+>>> distance.ref = 5.0
+>>> settle(half)
+2.5
+"""
 
 import math
 from collections.abc import Callable, Mapping

@@ -1,5 +1,14 @@
 """The mutable values of the language: sets, maps and queues, shared by reference as in Jason.
 
+>>> from jacaros.terms.text import text
+>>> shared = SetValue({2.0: None, 1.0: None})
+>>> text(shared)
+'{1,2}'
+>>> own = detached(shared)
+>>> own.items[3.0] = None
+>>> len(shared)
+2
+
 Another agent gets copies of its own (`detached`).
 """
 

@@ -1,4 +1,9 @@
-"""Logs show an `excerpt` of a long term."""
+"""Logs show an `excerpt` of a long term.
+
+>>> from jacaros.terms.text import text
+>>> text(excerpt(make_list(map(float, range(360))), 4))
+'[0,1,2|...]'
+"""
 
 from jacaros.terms.values import (
     NIL,

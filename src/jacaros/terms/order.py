@@ -1,5 +1,12 @@
 """The total order of terms: numbers, strings, lists, literals, other values, unbound variables.
 
+>>> from jacaros.terms.text import text
+>>> from jacaros.terms.values import atom, make_list, structure
+>>> text(make_list(sorted_terms([Var("X"), structure("b", 1.0), atom("a"), String("s"), 2.0])))
+'[2,"s",a,b(1),X]'
+>>> compare(1.0, 2.0) < 0
+True
+
 It never depends on addresses, so runs with the same seed sort alike.
 """
 

@@ -1,4 +1,16 @@
-"""Terms with all bindings applied: their values, copies with fresh variables, and when two are the same."""
+"""Terms with all bindings applied: their values, copies with fresh variables, and when two are the same.
+
+>>> from jacaros.terms.values import structure
+>>> place = Var("Place")
+>>> term = structure("at", place)
+>>> is_ground(term)
+False
+>>> place.ref = 2.0
+>>> resolve(term)
+(at/1, 2.0)
+>>> equal(term, structure("at", 2.0))
+True
+"""
 
 from operator import is_not
 from typing import Any

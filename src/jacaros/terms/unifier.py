@@ -1,5 +1,16 @@
 """Unification of terms.
 
+>>> from jacaros.terms.text import text
+>>> from jacaros.terms.values import atom, structure
+>>> place, trail = Var("Place"), Trail()
+>>> unify(structure("at", place), structure("at", atom("kitchen")), trail)
+True
+>>> text(place)
+'kitchen'
+>>> undo(trail, 0)
+>>> place.ref is None
+True
+
 Variables are bound in place; a `Trail` records which, so that a search can undo bindings. The difference from textbook
 unification is the treatment of annotations (as in Jason): those of the left term must be a subset of those of the right
 one.

@@ -1,5 +1,15 @@
 """The values of the language, chosen for speed: most are plain Python objects.
 
+>>> structure("at", atom("kitchen"), 1.0)
+(at/2, kitchen/0, 1.0)
+>>> plan = make_list([atom("lift"), atom("drop")])
+>>> parts_of_list(plan)[0]
+lift/0
+>>> place = Var("Place")
+>>> place.ref = atom("kitchen")
+>>> deref(place) is atom("kitchen")
+True
+
 ==================  ==================================================================================
 number              `float`, a double as in Jason; `int` only for an integer that no double is equal to (`number`)
 string              `String`, a `str` without arithmetic
