@@ -12,20 +12,23 @@ False
 True
 """
 
+from collections.abc import Callable
 from operator import is_not
 from typing import Any
 
 from jacaros.terms import values
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.operators import BINARY
-from jacaros.terms.order import MOST_CELLS, TOO_LONG, annotation_set, compare
+from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     FUNCTION,
+    MOST_CELLS,
     NEGATION,
     NIL,
     NO_KEY,
+    TOO_LONG,
     Annotated,
     Functor,
     List,
@@ -269,25 +272,38 @@ class _Alone(dict[Var, Var]):
 
 
 def _rename(term: Term, names: dict[Var, Var]) -> Term:
+    def fresh(part: Term) -> Term:
+        if part.__class__ is not Var:
+            return part
+        new = names.get(part)
+        if new is None:
+            new = names[part] = Var(part.name)
+        return new
+
+    return with_parts(term, fresh, List.is_settled)
+
+
+def with_parts(term: Term, change: Callable[[Term], Term], stays: Callable[[List], bool]) -> Term:
+    """Return a copy of a resolved term with what *change* returns for each of its variables and values.
+
+    Args:
+        term: the term.
+        change: returns what takes the place of a variable or value.
+        stays: returns whether a list need not be copied.
+    """
     kind = term.__class__
-    if kind is Var:
-        fresh = names.get(term)
-        if fresh is None:
-            fresh = names[term] = Var(term.name)
-        return fresh
-    if kind is tuple:
-        if term[0] is CONS:
-            heads, tail = parted(term)
-            return make_list([_rename(head, names) for head in heads], _rename(tail, names))
-        return (term[0], *[_rename(argument, names) for argument in term[1:]])
-    if kind is List:
-        if term.is_settled():
-            return term
-        return make_list([_rename(item, names) for item in term.elements()])
+    if kind is tuple and term[0] is not CONS:
+        return (term[0], *[with_parts(argument, change, stays) for argument in term[1:]])
+    if kind is List and stays(term):
+        return term
+    if kind is tuple or kind is List:
+        items, tail = parted(term)
+        return make_list([with_parts(item, change, stays) for item in items], with_parts(tail, change, stays))
     if kind is Annotated:
-        tail = None if term.tail is None else _rename(term.tail, names)
-        return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
-    return term
+        annotations = tuple([with_parts(each, change, stays) for each in term.annotations])
+        tail = None if term.tail is None else with_parts(term.tail, change, stays)
+        return Annotated(with_parts(term.term, change, stays), annotations, tail)
+    return change(term)
 
 
 def related(symbol: str, left: Term, right: Term) -> bool:

@@ -20,13 +20,15 @@ from collections.abc import Iterator
 
 from jacaros.terms.arithmetic import settle
 from jacaros.terms.negation import positive_form, qualify
-from jacaros.terms.order import MOST_CELLS, TOO_LONG, annotation_set
+from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import TWINS
 from jacaros.terms.substitution import ATOMIC, HOLDERS, free_variables, replace_variable, with_tail
 from jacaros.terms.values import (
+    MOST_CELLS,
     NEGATED,
     NIL,
     NO_KEY,
+    TOO_LONG,
     Annotated,
     List,
     Term,

@@ -5,13 +5,14 @@ from contextlib import suppress
 
 import pytest
 
+from jacaros.terms import order, substitution, unifier, values
 from jacaros.terms.collections import MapValue, SetValue, detached
 from jacaros.terms.operators import BINARY
 from jacaros.terms.order import annotation_set, compare, sorted_terms
 from jacaros.terms.substitution import as_key, equal, free_variables, is_ground, is_key, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, unify
-from jacaros.terms.values import Annotated, Term, Var, atom, list_items, make_list, structure
+from jacaros.terms.values import Annotated, Term, Var, atom, make_list, structure
 
 pytestmark = pytest.mark.whole_stack
 
@@ -135,7 +136,11 @@ def ring(length: int) -> Var:
 
 @pytest.mark.parametrize("make", [circle, ring])
 @pytest.mark.parametrize("length", [1, 100, 5000])
-def test_a_term_that_contains_itself_never_blocks_a_run(make: Callable[[int], Var], length: int) -> None:
+def test_a_term_that_contains_itself_never_blocks_a_run(
+    make: Callable[[int], Var], length: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (order, substitution, unifier, values):
+        monkeypatch.setattr(module, "MOST_CELLS", 20_000)
     term, twin = make(length), make(length)
     for use in (resolve, text, rename, lambda t: equal(t, twin)):
         with pytest.raises(RecursionError):
@@ -146,7 +151,6 @@ def test_a_term_that_contains_itself_never_blocks_a_run(make: Callable[[int], Va
         compare(term, twin)
     assert is_ground(term)
     assert not unify(term, atom("a"), Trail())
-    assert sum(1 for _ in list_items(term)) < 10 * length + 10
 
 
 def test_a_variable_is_bound_to_a_finite_copy_of_a_term_that_contains_it() -> None:
