@@ -178,8 +178,8 @@ class Output:
             self._changed.notify_all()
 
     def _has_thread(self) -> bool:
-        """Start the thread if there is none; return False if the interpreter starts none any more."""
-        if self._thread is None or not self._thread.is_alive():  # none lives on in a forked process
+        """Start the thread at the first line; return False while the interpreter shuts down."""
+        if self._thread is None or not self._thread.is_alive():  # not started yet, or in a forked process
             thread = threading.Thread(target=self._drain, name=self._name, daemon=True)
             try:
                 thread.start()

@@ -70,7 +70,12 @@ def settle(term: Term) -> Term:
     if term.__class__ is tuple:
         kind = term[0].kind
         if kind == ARITHMETIC:
-            return _apply(term, list(map(settle, term[1:])))
+            operands = []
+            # No comprehension: the depth of a sum is limited by the functions on Python's stack, and a call from C, as
+            # `map` makes it, takes much more of the thread's own stack.
+            for operand in term[1:]:
+                operands.append(settle(operand))
+            return _apply(term, operands)
         if kind == FUNCTION:
             return call(term)
     return term

@@ -83,7 +83,9 @@ def _resolve_list(term: List) -> Term:
     bottom = term.settled
     items = term.stack[bottom : term.size]
     # The first element first: evaluation may warn.
-    new = list(map(resolve, reversed(items)))
+    new = []
+    for item in reversed(items):  # no comprehension: it would be one more function on the stack
+        new.append(resolve(item))
     new.reverse()
     if any(map(is_not, new, items)):
         term = List(term.stack[:bottom] + new, term.size, bottom, term.depth)
@@ -175,7 +177,7 @@ def _resolve_cells(term: Term) -> Term:
 
 
 def _resolve_annotated(term: Annotated) -> Term:
-    annotations = tuple(map(resolve, term.annotations))
+    annotations = tuple([resolve(annotation) for annotation in term.annotations])
     inner, tail = resolve(term.term), None
     if term.tail is not None:
         annotations, tail = with_tail(annotations, resolve(term.tail))

@@ -134,7 +134,10 @@ def _unify_lists(left: List, right: List, trail: Trail) -> bool:
             return True
         if left.depth == right.depth == 1:
             return False
-    return all(unify(a, b, trail) for a, b in zip(left.elements(), right.elements(), strict=True))
+    for one, other in zip(left.elements(), right.elements(), strict=True):  # noqa: SIM110 - `all` is a call from C
+        if not unify(one, other, trail):
+            return False
+    return True
 
 
 def _unify_negated(left: Term, right: Term, trail: Trail) -> bool:
@@ -175,8 +178,9 @@ def _occurs(variable: Var, value: Term) -> bool:
     for _ in range(64):
         if value.__class__ is Annotated:
             tail = () if value.tail is None else (value.tail,)
-            if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
-                return True
+            for annotation in (*value.annotations, *tail):
+                if _occurs(variable, deref(annotation)):
+                    return True
             value = deref(value.term)
         if value.__class__ is List:
             return not value.is_settled() and any(variable is v for v in free_variables(value))

@@ -104,7 +104,7 @@ def test_deeper_terms_are_refused_or_handled(
         operation(nested(Var("X"), wrap, depth), nested(atom("core"), wrap, depth))
 
 
-def test_terms_deeper_than_the_stack_are_no_keys() -> None:
+def test_terms_deeper_than_the_stack_cannot_be_keys() -> None:
     assert not is_key(nested(atom("core"), WRAPPERS["in the first argument"], 400))
 
 
