@@ -1,4 +1,4 @@
-"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md and the index of internal actions.
+"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, the index of internal actions.
 
 make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
 """
@@ -53,6 +53,7 @@ def main(folder: Path) -> None:
     pages = (
         ("cli.md", command_line()),
         ("artifacts.md", artifacts()),
+        ("grammar.md", grammar()),
         (ACTIONS / "index.md", internal_actions()),
     )
     for name, lines in pages:
@@ -75,6 +76,16 @@ def command_line() -> Iterator[str]:
             yield from _parts(command, own)
         else:
             yield from _usage(command, own)
+
+
+def grammar() -> Iterator[str]:
+    """The page with the grammar of the language."""
+    yield NOTE
+    yield "# The grammar\n"
+    yield (ROOT / "tools" / "grammar.md").read_text(encoding="utf-8")
+    yield "```ebnf"
+    yield (ROOT / "src" / "jacaros" / "asl" / "grammar.ebnf").read_text(encoding="utf-8").rstrip()
+    yield "```"
 
 
 def _parts(group: click.Group, context: click.Context) -> Iterator[str]:

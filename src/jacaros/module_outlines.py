@@ -6,8 +6,11 @@ the file could show (a class made by a call, a base class of another package, an
 """
 
 import ast
+import builtins
 import importlib
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
@@ -104,6 +107,9 @@ def _flat(body: list[ast.stmt]) -> Iterator[ast.stmt]:
             yield statement
 
 
+_Declaration = ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+
+
 class _Outline:
     """Reduces the statements of a file to harmless ones.
 
@@ -115,23 +121,17 @@ class _Outline:
     def __init__(self, module: ModuleType, project: Callable[[str], ModuleType | None]) -> None:
         self._module, self._project = module, project
         self._names = module.__dict__
+        self._names["__unseen__"] = Unseen
 
     def visible(self, statement: ast.stmt) -> Iterator[ast.stmt]:
         """Yield the statements to execute in place of one; imports and unknown names are bound here."""
         if isinstance(statement, ast.Import | ast.ImportFrom):
             self._import(statement)
-        elif isinstance(statement, ast.ClassDef):
-            made = self._class(statement)
-            if made is None:
-                self._names[statement.name] = UNSEEN
+        elif isinstance(statement, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            if self._declares(statement):
+                yield statement
             else:
-                yield made
-        elif isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
-            function = self._function(statement)
-            if function is None:
                 self._names[statement.name] = UNSEEN
-            else:
-                yield function
         elif isinstance(statement, ast.Assign | ast.AnnAssign):
             yield from self._assigned(statement)
         elif _binds_more(statement):
@@ -168,11 +168,8 @@ class _Outline:
         return found
 
     def _found(self, name: str) -> Any:
-        level = len(name) - len(name.lstrip("."))
-        if level:
-            package = self._module.__package__ or ""
-            parts = package.split(".")[: len(package.split(".")) - level + 1]
-            name = ".".join([*parts, *filter(None, [name.lstrip(".")])])
+        with suppress(ImportError):  # beyond the top of its package
+            name = resolve_name(name, self._module.__package__)
         own = self._project(name)
         if own is not None:
             return own
@@ -185,60 +182,48 @@ class _Outline:
 
     # declarations
 
-    def _class(self, node: ast.ClassDef) -> ast.ClassDef | None:
+    def _declares(self, node: _Declaration) -> bool:
+        """Reduce a class or function to what it declares; return False if only running the file could show that."""
+        node.type_params = []  # type: ignore[union-attr]  # annotations with them become texts
+        return self._class(node) if isinstance(node, ast.ClassDef) else self._function(node)
+
+    def _class(self, node: ast.ClassDef) -> bool:
         bases = [base.value if isinstance(base, ast.Subscript) else base for base in node.bases]
         found = [self._value(base) for base in bases]
         if any(not isinstance(each, type) and not _is_typing(each) for each in found) or node.keywords:
-            return None
-        if any(not self._is_known(each) for each in node.decorator_list):
-            return None
+            return False
+        if not all(map(self._is_known, node.decorator_list)):
+            return False
         body: list[ast.stmt] = []
         for statement in _flat(node.body):
             if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
-                function = self._function(statement)
-                if function is None:
-                    return None
-                body.append(function)
+                if _is_part_of_property(statement):
+                    continue
+                if not self._declares(statement):
+                    return False
+                body.append(statement)
             elif isinstance(statement, ast.ClassDef):
-                inner = self._class(statement)
-                body += [inner] if inner is not None else [_unseen(statement, statement.name)]
+                body.append(statement if self._declares(statement) else _unseen(statement, statement.name))
             elif isinstance(statement, ast.Assign | ast.AnnAssign):
                 body += _attributes(statement)
             elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
                 body.append(statement)
             elif _binds_more(statement):
-                return None
-        self._names["__unseen__"] = Unseen
-        kept = [base for base, value in zip(bases, found, strict=True) if isinstance(value, type)]
-        return ast.copy_location(
-            ast.ClassDef(
-                name=node.name, bases=kept, keywords=[], body=body or [ast.Pass()],
-                decorator_list=node.decorator_list, **_TYPE_PARAMETERS,
-            ),
-            node,
-        )  # fmt: skip
+                return False
+        node.bases = [base for base, value in zip(bases, found, strict=True) if isinstance(value, type)]
+        node.body = body or [ast.Pass()]
+        return True
 
-    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.stmt | None:
-        """Return the function with an empty body; None if a decorator may turn it into anything."""
-        decorators = []
-        for each in node.decorator_list:
-            if isinstance(each, ast.Attribute) and each.attr in ("setter", "getter", "deleter"):
-                return ast.copy_location(ast.Pass(), node)
-            if self._is_known(each):
-                decorators.append(each)
-            elif not self._is_transparent(each):
-                return None
-        first = node.body[:1]
-        body: list[ast.stmt] = list(first) if ast.get_docstring(node) is not None else []
-        body.append(ast.Expr(ast.Yield()) if _yields(node) else ast.Pass())
-        self._names["__unseen__"] = Unseen
-        return ast.copy_location(
-            type(node)(
-                name=node.name, args=_arguments(node.args), body=body, decorator_list=decorators,
-                returns=_written(node.returns), **_TYPE_PARAMETERS,
-            ),
-            node,
-        )  # fmt: skip
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+        """Empty the body of a function; return False if a decorator may turn it into anything."""
+        known = [each for each in node.decorator_list if self._is_known(each)]
+        if any(each not in known and not self._is_transparent(each) for each in node.decorator_list):
+            return False
+        documentation = node.body[:1] if ast.get_docstring(node) is not None else []
+        node.body = [*documentation, ast.Expr(ast.Yield()) if _yields(node) else ast.Pass()]
+        node.decorator_list, node.returns = known, _written(node.returns)
+        _reduce(node.args)
+        return True
 
     def _is_known(self, decorator: ast.expr) -> bool:
         """Return whether a decorator only declares, with constants as its arguments."""
@@ -277,8 +262,6 @@ class _Outline:
     def _value(self, node: ast.expr) -> Any:
         """Return the value of a name, with or without dots; `UNSEEN` for anything else."""
         if isinstance(node, ast.Name):
-            import builtins
-
             return self._names.get(node.id, getattr(builtins, node.id, UNSEEN))
         if isinstance(node, ast.Attribute):
             owner = self._value(node.value)
@@ -286,7 +269,11 @@ class _Outline:
         return UNSEEN
 
 
-_TYPE_PARAMETERS: Final[dict[str, Any]] = {"type_params": []} if "type_params" in ast.ClassDef._fields else {}
+def _is_part_of_property(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    return any(
+        isinstance(each, ast.Attribute) and each.attr in ("setter", "getter", "deleter")
+        for each in node.decorator_list
+    )
 
 
 def _is_typing(value: object) -> bool:
@@ -330,24 +317,15 @@ def _attributes(statement: ast.Assign | ast.AnnAssign) -> list[ast.stmt]:
     return [ast.copy_location(ast.AnnAssign(statement.target, annotation, value, 1), statement)]
 
 
-def _arguments(given: ast.arguments) -> ast.arguments:
-    """Parameters with annotations as texts, and constants as default values."""
-
-    def parameter(each: ast.arg) -> ast.arg:
-        return ast.copy_location(ast.arg(each.arg, _written(each.annotation)), each)
-
-    def default(each: ast.expr | None) -> ast.expr | None:
-        return each if each is None or _is_constant(each) else _made_unseen()
-
-    return ast.arguments(
-        posonlyargs=[parameter(each) for each in given.posonlyargs],
-        args=[parameter(each) for each in given.args],
-        vararg=parameter(given.vararg) if given.vararg else None,
-        kwonlyargs=[parameter(each) for each in given.kwonlyargs],
-        kw_defaults=[default(each) for each in given.kw_defaults],
-        kwarg=parameter(given.kwarg) if given.kwarg else None,
-        defaults=[each for each in map(default, given.defaults) if each is not None],
-    )
+def _reduce(given: ast.arguments) -> None:
+    """Keep annotations of parameters as texts, and constants as default values."""
+    for each in ast.walk(given):
+        if isinstance(each, ast.arg):
+            each.annotation = _written(each.annotation)
+    given.defaults = [each if _is_constant(each) else _made_unseen() for each in given.defaults]
+    given.kw_defaults = [
+        each if each is None or _is_constant(each) else _made_unseen() for each in given.kw_defaults
+    ]
 
 
 _OF_TYPES: Final = (

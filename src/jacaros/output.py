@@ -1,8 +1,9 @@
 """Output that cannot hurt the program that writes it, whatever happens to the reader or the disk.
 
-The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one. An `Output`
-writes directly as long as its sink accepts everything. The rest waits in a bounded queue, which a daemon thread writes.
-If the queue stays full, or the sink raises an exception, lines are lost: they are counted and reported.
+The loop of a run must not wait for a terminal, a pipe or a disk, and a step must not fail because of one. The lines of an
+`Output` pass through a bounded queue, which a daemon thread writes; `Output.write` waits for it a moment, so that lines on
+two streams keep their order, and a line before a crash is not lost. If the queue stays full, or the sink raises an
+exception, lines are lost: they are counted and reported.
 """
 
 import codecs
@@ -10,14 +11,11 @@ import contextlib
 import errno
 import io
 import os
-import select
-import stat
-import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol, TextIO
+from typing import Any, NamedTuple, Protocol, TextIO
 
 from jacaros.excerpts import is_worth_a_line, visible
 
@@ -30,8 +28,12 @@ CLOSING = 2.0
 _RETRY = 1.0
 """Seconds until a sink that raised an error is tried again."""
 _PIECE = 1 << 16
-_ATOMIC = 4096
-"""Bytes that a pipe takes in one piece as soon as it is writable (PIPE_BUF of Linux)."""
+_ATOMIC = 4096 if os.name == "posix" else _PIECE
+"""Bytes written at a time (PIPE_BUF of Linux): a pipe takes them as soon as it has room, which counts as progress.
+A console of Windows takes no part of a character.
+"""
+_MOMENT = 0.01
+"""Seconds that a writer waits for its text to be written, until the sink is once too slow for that."""
 
 
 PLAIN = "jacaros.plain"
@@ -76,7 +78,7 @@ class Output:
         warn: called with a warning of one line, without ``warning:``; None for no warnings.
         patience: seconds that `write` waits if the queue is full and the sink accepts nothing; then lines are dropped until
             half of the queue is free.
-        delay: seconds that text may be collected before the thread writes it; 0 writes directly while the sink accepts it.
+        delay: seconds that text may be collected before the thread writes it; 0 waits a moment until it is written.
         raw: write control characters as they are; otherwise they are escaped (`jacaros.excerpts.visible`).
 
     Attributes:
@@ -99,14 +101,14 @@ class Output:
         # Reentrant: a signal handler may log in the middle of a write.
         self._changed = threading.Condition(threading.RLock())
         self._stream: Stream | None = None
-        self._descriptor: _Sink | None = None
+        self._sink: _Sink | None = None
         self._queue: deque[bytes] = deque()
         self._waiting = 0
         self._progress = 0.0
         self._thread: threading.Thread | None = None
         self._hurry = self._closed = False
         self._retry_at: float | None = None
-        self._blocked = False
+        self._behind = self._blocked = False
         self._failures = self._lost = 0
         self._cut = self._in_line = False
 
@@ -127,24 +129,17 @@ class Output:
                 return
             stream = beneath(self._find())
             if stream is not self._stream:
-                self._adopt(stream)
-            if self._descriptor is None or self._closed:
+                self._stream, self._sink = stream, _sink_of(stream)
+            if self._sink is None or self._closed or not self._has_thread():
                 self._write_to_stream(text)
                 return
-            data = text if isinstance(text, bytes) else self._descriptor.encode(text)
-            if not self._waiting and not self._delay:  # the common case
-                data = self._write_directly(data)
-            elif not self._has_room(len(data)):
+            data = text if isinstance(text, bytes) else self._sink.encode(text)
+            if not self._has_room(len(data)):
                 self._lost += data.count(b"\n")
                 return
-            if data:
-                self._enqueue(data)
-
-    def _adopt(self, stream: Stream | None) -> None:
-        if self._descriptor is not None and not self._waiting:
-            self._descriptor.close()
-        self._stream = stream
-        self._descriptor = _descriptor_of(stream)
+            self._enqueue(data)
+            if not (self._delay or self._behind or threading.current_thread() is self._thread):
+                self._behind = not self._changed.wait_for(lambda: not self._waiting, _MOMENT)
 
     def _write_to_stream(self, text: str | bytes) -> None:
         try:
@@ -157,25 +152,6 @@ class Output:
             self._fail(error)
         else:
             self._recover()
-
-    def _write_directly(self, data: bytes) -> bytes:
-        """Write what the sink accepts now; return the rest."""
-        assert self._descriptor is not None
-        try:
-            if self._stream is not None:
-                self._stream.flush()  # what others have printed comes first
-            while data:
-                written = self._descriptor.write(data)
-                data = data[written:]
-        except BlockingIOError:
-            return data
-        except Exception as error:
-            self._lost += data.count(b"\n")
-            self._fail(error)
-            return b""
-        if self._retry_at is not None or self._blocked:
-            self._recover()
-        return b""
 
     # ---- the queue
 
@@ -198,11 +174,19 @@ class Output:
         before = self._waiting
         self._queue.append(data)
         self._waiting += len(data)
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._drain, name=self._name, daemon=True)
-            self._thread.start()
-        elif not before or before < _PIECE <= self._waiting:
+        if not before or before < _PIECE <= self._waiting:
             self._changed.notify_all()
+
+    def _has_thread(self) -> bool:
+        """Start the thread at the first line; return False while the interpreter shuts down."""
+        if self._thread is None or not self._thread.is_alive():  # not started yet, or in a forked process
+            thread = threading.Thread(target=self._drain, name=self._name, daemon=True)
+            try:
+                thread.start()
+            except RuntimeError:
+                return False
+            self._thread = thread
+        return True
 
     def _drain(self) -> None:
         """Write pending text until `close`; the body of the thread."""
@@ -215,17 +199,15 @@ class Output:
                 due = time.monotonic() + self._delay
                 while self._waiting < _PIECE and not self._hurry and (left := due - time.monotonic()) > 0:
                     self._changed.wait(left)
-                descriptor, piece = self._descriptor, self._next_piece()
+                stream, sink, piece = self._stream, self._sink, self._next_piece()
             written, error = 0, None
             try:
-                if descriptor is None:
+                if stream is None or sink is None:
                     raise OSError(errno.EBADF, "it is closed")
-                descriptor.wait()
+                stream.flush()  # what others have printed comes first
                 if self._cut:  # a full disk has taken a part of a line
-                    self._cut = not descriptor.write(b"\n")
-                written = descriptor.write(piece)
-            except BlockingIOError:
-                pass
+                    self._cut = not sink.write(b"\n")
+                written = sink.write(piece)
             except Exception as raised:
                 error = raised
             with self._changed:
@@ -249,6 +231,7 @@ class Output:
             if written < len(piece):
                 self._queue.appendleft(piece[written:])
             self._waiting -= written
+            self._behind = self._behind and self._waiting > 0
             if written:
                 self._in_line = piece[written - 1] != 10  # a line feed
                 self._progress = time.monotonic()
@@ -308,8 +291,6 @@ class Output:
                 self._lost = max(self._lost, 1)  # the thread is stuck with a piece of it
             self._queue.clear()
             self._changed.notify_all()
-            if self._descriptor is not None and not self._waiting:
-                self._descriptor.close()
             if self._lost:
                 self._report(f"{_lines(self._lost)} could not be written to {self._name}")
                 self._lost = 0
@@ -325,99 +306,15 @@ class Output:
             self._changed.wait(0.1)
 
 
-class Printed(io.TextIOBase):
-    """Replaces a standard stream during a run, for code that prints by itself.
-
-    ``print`` in project code, loggers and warnings write to `sys.stdout` and `sys.stderr` directly. There a
-    full disk would
-    raise an exception in the middle of an operation, and a blocked reader would stop the loop. Here complete
-    lines go to
-    *output*. Otherwise, for example in its encoding and file descriptor, it behaves like the stream itself.
+class Wrapped(io.TextIOBase):
+    """A text stream in front of another one, whose properties it has.
 
     Args:
-        stream: the stream.
-        output: writes to it.
-    """
-
-    def __init__(self, stream: TextIO, output: Output) -> None:
-        self._stream, self._output = stream, output
-        self._lock = threading.RLock()
-        self._line = ""
-
-    def write(self, text: str) -> int:
-        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an agent.
-
-        Raises:
-            TypeError: *text* is not a string.
-        """
-        if not isinstance(text, str):
-            raise TypeError(f"write() argument must be str, not {type(text).__name__}")
-        with self._lock:
-            lines, end, rest = (
-                (self._line + text).rpartition("\n") if "\n" in text else ("", "", self._line + text)
-            )
-            self._line = rest
-            if end:
-                self._output.write(lines + end)
-        return len(text)
-
-    def flush(self) -> None:
-        """Write the incomplete last line."""
-        with self._lock:
-            line, self._line = self._line, ""
-            if line:
-                self._output.write(line)
-
-    def writable(self) -> bool:
-        """Return True."""
-        return True
-
-    def close(self) -> None:
-        """Flush: the process needs the stream itself."""
-        self.flush()
-
-    def isatty(self) -> bool:
-        """Return whether the stream is a terminal."""
-        return self._stream.isatty()
-
-    def fileno(self) -> int:
-        """Return the stream's file descriptor."""
-        return self._stream.fileno()
-
-    @property
-    def encoding(self) -> str:  # type: ignore[override]
-        """The encoding of the stream."""
-        return self._stream.encoding
-
-    @property
-    def errors(self) -> str | None:  # type: ignore[override]
-        """How characters that the encoding lacks are handled."""
-        return self._stream.errors
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
-class Visible(io.TextIOBase):
-    """A standard stream of a command: whatever is written, control characters are escaped.
-
-    It has no ``buffer``, by which libraries would write past it. `beneath` returns the stream for own styles and pictures.
-
-    Args:
-        stream: the stream.
+        stream: the other stream.
     """
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
-
-    def write(self, text: str) -> int:
-        """Write *text*."""
-        self.stream.write(visible(text))
-        return len(text)
-
-    def flush(self) -> None:
-        """Flush the stream."""
-        self.stream.flush()
 
     def writable(self) -> bool:
         """Return True."""
@@ -442,139 +339,113 @@ class Visible(io.TextIOBase):
         return self.stream.errors
 
 
+class Printed(Wrapped):
+    """Replaces a standard stream during a run, for code that prints by itself.
+
+    ``print`` in project code, loggers and warnings write to `sys.stdout` and `sys.stderr` directly. There a full disk would
+    raise an exception in the middle of an operation, and a blocked reader would stop the loop. Here complete lines go to
+    *output*. Otherwise it behaves like the stream itself.
+
+    Args:
+        stream: the stream.
+        output: writes to it.
+    """
+
+    def __init__(self, stream: TextIO, output: Output) -> None:
+        super().__init__(stream)
+        self._output = output
+        self._lock = threading.RLock()
+        self._line = ""
+
+    def write(self, text: str) -> int:
+        """Write the lines that *text* completes; the rest waits for its end, for `flush`, or for a line of an agent.
+
+        Raises:
+            TypeError: *text* is not a string.
+        """
+        if not isinstance(text, str):
+            raise TypeError(f"write() argument must be str, not {type(text).__name__}")
+        with self._lock:
+            lines, end, self._line = (self._line + text).rpartition("\n")
+            if end:
+                self._output.write(lines + end)
+        return len(text)
+
+    def flush(self) -> None:
+        """Write the incomplete last line."""
+        with self._lock:
+            line, self._line = self._line, ""
+            if line:
+                self._output.write(line)
+
+    def close(self) -> None:
+        """Flush: the process needs the stream itself."""
+        self.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.stream, name)
+
+
+class Visible(Wrapped):
+    """A standard stream of a command: whatever is written, control characters are escaped.
+
+    It has no ``buffer``, by which libraries would write past it. `beneath` returns the stream for own styles and pictures.
+    """
+
+    def write(self, text: str) -> int:
+        """Write *text*."""
+        self.stream.write(visible(text))
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the stream."""
+        self.stream.flush()
+
+
 def beneath(stream: Any) -> Any:
     """Return the stream itself, for text that is escaped already."""
     return stream.stream if isinstance(stream, Visible) else stream
 
 
-class _Sink(Protocol):
-    """What an `Output` writes to."""
+class _Sink(NamedTuple):
+    """The file of a stream of the process; only the thread of an `Output` writes to it, and may have to wait."""
+
+    file: io.RawIOBase
+    encoding: str
+    errors: str
+    line_end: str = "\n"
 
     def encode(self, text: str) -> bytes:
-        """The bytes of *text*."""
+        """Return the bytes of *text*; characters that the encoding lacks are escaped."""
+        text = text if self.line_end == "\n" else text.replace("\n", self.line_end)
+        try:
+            return text.encode(self.encoding, self.errors)
+        except UnicodeError:
+            return text.encode(self.encoding, PLAIN)
 
     def write(self, data: bytes) -> int:
-        """Write what is taken now; the number of bytes.
+        """Write what is accepted; return the number of bytes.
 
         Raises:
-            BlockingIOError: nothing is taken now.
             OSError: the sink is full, gone or broken.
+            ValueError: it was closed.
         """
-
-    def wait(self) -> None:
-        """Wait until something can be written; in the thread of the `Output` only."""
-
-    def close(self) -> None:
-        """Let go of the sink; closing twice does no harm."""
+        written = self.file.write(data[:_ATOMIC])
+        if written is None:  # another process has the same terminal, and does not want to wait for it
+            time.sleep(_MOMENT)
+        return written or 0
 
 
-class _Descriptor:
-    """A file descriptor that is written without waiting for a reader.
-
-    On Linux, a terminal or a pipe is opened again, as all processes that write to an open file share whether it blocks.
-    """
-
-    def __init__(self, number: int, encoding: str, errors: str) -> None:
-        self._encoding, self._errors = encoding, errors
-        self._number, self._own, self._piece = number, False, _PIECE
-        mode = os.fstat(number).st_mode
-        self._poll: Any = None
-        if sys.platform == "win32" or stat.S_ISREG(mode):
-            return
-        with contextlib.suppress(OSError):
-            if sys.platform == "linux" and (stat.S_ISFIFO(mode) or os.isatty(number)):
-                flags = os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
-                self._number, self._own = os.open(f"/proc/self/fd/{number}", flags), True
-        self._poll = select.poll()
-        self._poll.register(self._number, select.POLLOUT)
-        if not self._own:
-            self._piece = _ATOMIC
-
-    def encode(self, text: str) -> bytes:
-        """Encode *text*; characters that the encoding lacks are escaped."""
-        return _encoded(text, self._encoding, self._errors)
-
-    def write(self, data: bytes) -> int:
-        """Write what is accepted now; return the number of bytes.
-
-        Raises:
-            BlockingIOError: nothing is accepted now.
-            OSError: the sink is full, gone or broken.
-        """
-        if self._poll is not None and not self._own and not self._poll.poll(0):
-            raise BlockingIOError
-        return os.write(self._number, data if len(data) <= self._piece else data[: self._piece])
-
-    def wait(self) -> None:
-        """Wait until something can be written."""
-        if self._poll is not None:
-            self._poll.poll()
-
-    def close(self) -> None:
-        """Close what was opened here; closing twice does no harm."""
-        if self._own:
-            self._own = False
-            os.close(self._number)
-
-
-class _Buffer:
-    """The buffer of a standard stream of Windows, where nothing tells whether a write would wait.
-
-    Only the thread of an `Output` writes: a console whose text is being marked takes nothing.
-    """
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._writer: int | None = None
-
-    def encode(self, text: str) -> bytes:
-        """The bytes of *text*, with the line ends of the system."""
-        text = text if os.linesep == "\n" else text.replace("\n", os.linesep)
-        return _encoded(text, self._stream.encoding, self._stream.errors or "strict")
-
-    def write(self, data: bytes) -> int:
-        """Write everything; the number of bytes.
-
-        Raises:
-            BlockingIOError: this is not the thread that waits.
-            OSError: the sink is full, gone or broken.
-        """
-        if threading.get_ident() != self._writer:
-            raise BlockingIOError
-        self._stream.buffer.write(data)
-        self._stream.buffer.flush()
-        return len(data)
-
-    def wait(self) -> None:
-        """Let this thread write."""
-        self._writer = threading.get_ident()
-
-    def close(self) -> None:
-        """The stream is the process's."""
-
-
-def _encoded(text: str, encoding: str, errors: str) -> bytes:
-    try:
-        return text.encode(encoding, errors)
-    except UnicodeError:
-        return text.encode(encoding, PLAIN)
-
-
-def _descriptor_of(stream: Stream | None) -> _Sink | None:
+def _sink_of(stream: Stream | None) -> _Sink | None:
     """Return the sink of a stream of the process; None for a stream made by other code, such as a test."""
     if type(stream) is io.FileIO:
-        return _Descriptor(stream.fileno(), "utf-8", PLAIN)
-    if type(stream) is not io.TextIOWrapper:
+        return _Sink(stream, "utf-8", PLAIN)
+    if type(stream) is not io.TextIOWrapper or stream.closed:
         return None
-    if sys.platform == "win32":
-        return _Buffer(stream)
-    buffer = stream.buffer
-    if not isinstance(getattr(buffer, "raw", buffer), io.FileIO):  # python -u has no buffer
+    file = getattr(stream.buffer, "raw", stream.buffer)  # python -u has no buffer
+    if not isinstance(file, io.RawIOBase):
         return None
-    try:
-        return _Descriptor(stream.fileno(), stream.encoding, stream.errors or "strict")
-    except (OSError, ValueError):
-        return None
+    return _Sink(file, stream.encoding, stream.errors or "strict", os.linesep)
 
 
 def _line_ends(text: str | bytes) -> int:

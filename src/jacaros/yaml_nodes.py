@@ -98,18 +98,21 @@ class Node:
         return {str(key): self._entry(key) for key in self.value if not known or key in known}
 
     def _entry(self, key: object) -> "Node":
-        # A key that a YAML merge (<<) brought in has no place of its own.
-        known = key in (self.value.lc.data or {})
-        line, column = self.value.lc.value(key) if known else (self.line - 1, self.column - 1)
-        if known and self.value[key] is None:  # the place of a missing value is that of the next thing
-            line, column = self.value.lc.key(key)
-        return Node(self.value[key], line + 1, column + 1, self.problems, f"'{key}'")
+        # The place of a missing value would be that of the next thing.
+        place = self._place(key, at_value=self.value[key] is not None)
+        return Node(self.value[key], *place, self.problems, f"'{key}'")
+
+    def _place(self, key: object, at_value: bool = False) -> tuple[int, int]:
+        """Return line and column of a key or its value; those of the mapping for one that a YAML merge brought in."""
+        places = self.value.lc
+        if key not in (places.data or {}):
+            return self.line, self.column
+        line, column = places.value(key) if at_value else places.key(key)
+        return line + 1, column + 1
 
     def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
-        known_at = (self.value.lc.data or {}).get(key)  # None: a YAML merge (<<) brought it in
-        line, column = (self.line - 1, self.column - 1) if known_at is None else known_at[:2]
         help = suggestion(str(key), known, f"known keys: {', '.join(known)}")
-        self.problems.append(Problem(line + 1, column + 1, f"{self.what} has no key '{key}'", help))
+        self.problems.append(Problem(*self._place(key), f"{self.what} has no key '{key}'", help))
 
     def entries(self) -> Iterator[tuple["Node", "Node"]]:
         """Yield names and values of a mapping whose keys the author chooses; nothing for a missing value."""
@@ -119,8 +122,7 @@ class Node:
             self.wrong(f"{self.what} must be a mapping of names to values", "write 'name: ...' lines")
             return
         for key in self.value:
-            place = (self.value.lc.data or {}).get(key, (self.line - 1, self.column - 1))
-            yield Node(key, place[0] + 1, place[1] + 1, self.problems, "a name"), self._entry(key)
+            yield Node(key, *self._place(key), self.problems, "a name"), self._entry(key)
 
     def sequence(self) -> Iterator["Node"]:
         """Yield the items of a list; a missing value is an empty list."""
@@ -200,10 +202,7 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
     reader = YAML(typ="rt")
     reader.Constructor = _PlacingConstructor
     reader.allow_duplicate_keys = True  # all of them are reported below
-    document, composed = _loaded(reader, text, problems)
-    if composed is not None:
-        problems += _twice(composed, set())
-    return Node(document, 1, 1, problems, what)
+    return Node(_loaded(reader, text, problems), 1, 1, problems, what)
 
 
 def plain_values(text: str) -> tuple[Any, Problem | None]:
@@ -211,25 +210,27 @@ def plain_values(text: str) -> tuple[Any, Problem | None]:
     problems: list[Problem] = []
     reader = YAML(typ="safe", pure=True)
     reader.Constructor = _PlacingSafeConstructor
-    document, _ = _loaded(reader, text, problems)
+    document = _loaded(reader, text, problems)
     return document, problems[0] if problems else None
 
 
-def _loaded(reader: YAML, text: str, problems: list[Problem]) -> tuple[Any, Any]:
-    """Return the document and its nodes; None for both after an error, which is added to *problems*."""
+def _loaded(reader: YAML, text: str, problems: list[Problem]) -> Any:
+    """Return the document; None after an error, which is added to *problems*."""
+    twice: list[Problem] = []
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # YAML 1.2 allows an anchor to be given again
-            composed = reader.compose(StringIO(text))
-            unusable = _unusable(composed)
+            unusable = _unusable(reader.compose(StringIO(text)), twice)
             if unusable is None:
-                return reader.load(StringIO(text)), composed
+                document = reader.load(StringIO(text))
+                problems += twice
+                return document
         problems.append(unusable)
     except YAMLError as error:
         problems.append(syntax_problem(error, text))
     except RecursionError:
         problems.append(_TOO_DEEP)
-    return None, None
+    return None
 
 
 _TOO_DEEP: Final = Problem(1, 1, "values are nested too deeply", "close all brackets")
@@ -274,8 +275,11 @@ def _parts(node: Any) -> Iterator[Any]:
         yield from node.value
 
 
-def _unusable(document: Any) -> Problem | None:
-    """Return the error of an unknown tag, an alias inside its own value, or aliases that make the document endless."""
+def _unusable(document: Any, twice: list[Problem]) -> Problem | None:
+    """Return the error of an unknown tag, an alias inside its own value, or aliases that make the document endless.
+
+    Keys that occur twice in one mapping are added to *twice*.
+    """
     sizes: dict[int, int] = {}
     depths: dict[int, int] = {}
     within: set[int] = set()
@@ -291,6 +295,8 @@ def _unusable(document: Any) -> Problem | None:
         if id(node) in within:
             return Problem(line, column, f"&{node.anchor} contains itself", "remove the alias")
         within.add(id(node))
+        if isinstance(node, MappingNode):
+            twice.extend(_twice(node))
         parts = list(_parts(node))
         for part in parts:
             if (wrong := measure(part)) is not None:
@@ -305,20 +311,13 @@ def _unusable(document: Any) -> Problem | None:
     return None if document is None else measure(document)
 
 
-def _twice(node: Any, seen_nodes: set[int]) -> Iterator[Problem]:
-    """Yield the keys that occur twice in one mapping."""
-    if id(node) in seen_nodes:
-        return
-    seen_nodes.add(id(node))
-    if isinstance(node, MappingNode):
-        seen: dict[str, int] = {}
-        for key, _ in node.value:
-            line, column = key.start_mark.line + 1, key.start_mark.column + 1
-            if isinstance(key.value, str) and key.value in seen and key.value != "<<":
-                first = seen[key.value]
-                help = "rename one of them, or remove it"
-                yield Problem(line, column, f"duplicate key '{key.value}', first in line {first}", help)
-            else:
-                seen[str(key.value)] = line
-    for part in _parts(node):
-        yield from _twice(part, seen_nodes)
+def _twice(mapping: MappingNode) -> Iterator[Problem]:
+    """Yield the keys that occur twice in a mapping."""
+    seen: dict[str, int] = {}
+    for key, _ in mapping.value:
+        line, column = key.start_mark.line + 1, key.start_mark.column + 1
+        if isinstance(key.value, str) and key.value in seen and key.value != "<<":
+            message = f"duplicate key '{key.value}', first in line {seen[key.value]}"
+            yield Problem(line, column, message, "rename one of them, or remove it")
+        else:
+            seen[str(key.value)] = line

@@ -260,11 +260,13 @@ class Cursor:
     def after_literal(self, index: int) -> int:
         """Return the index after the literal or variable at *index*, or *index* if there is neither."""
         tokens, start = self.tokens, index
+        negated = tokens[index].kind == "~"  # before a namespace, or behind it
+        index += negated
         if tokens[index].kind == "::":
             index += 1
         elif tokens[index].kind in ("atom", "variable") and tokens[index + 1].kind == "::":
             index += 2
-        if tokens[index].kind == "~":
+        if tokens[index].kind == "~" and not negated:
             index += 1
         if tokens[index].kind not in ("atom", "variable"):
             return start

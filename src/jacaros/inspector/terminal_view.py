@@ -5,7 +5,6 @@ does not slow a virtual run, which may simulate hundreds of seconds between two 
 plain lines at intervals.
 """
 
-import io
 import math
 import sys
 import time
@@ -22,7 +21,7 @@ from jacaros.inspector.braille import BrailleMap, character, draw_world
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.inspector.terminal_console import TerminalConsole
-from jacaros.output import Output
+from jacaros.output import Output, Wrapped
 
 FRAME_PERIOD = 0.1
 """Seconds of real time between two pictures."""
@@ -37,7 +36,7 @@ _INTENTIONS = 4
 """Maximum number of intentions shown for one agent."""
 
 
-class Screen(io.TextIOBase):
+class Screen(Wrapped):
     """A terminal as a file for Rich.  Drawing never waits for it: a blocked terminal must not stop agents.
 
     Args:
@@ -45,7 +44,7 @@ class Screen(io.TextIOBase):
     """
 
     def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
+        super().__init__(stream)
         self._output = Output(stream, "the terminal", raw=True)
 
     @property
@@ -53,19 +52,10 @@ class Screen(io.TextIOBase):
         """Whether the terminal has not accepted the last picture yet."""
         return self._output.waiting
 
-    @property
-    def encoding(self) -> str:  # type: ignore[override]
-        """Encoding of the stream."""
-        return self._stream.encoding
-
     def write(self, text: str) -> int:
         """Write *text*, or queue the part that the terminal does not accept now."""
         self._output.write(text)
         return len(text)
-
-    def isatty(self) -> bool:
-        """Return whether the stream is a terminal."""
-        return self._stream.isatty()
 
     def end(self) -> None:
         """Write the queue, as long as the terminal accepts it."""

@@ -1,4 +1,14 @@
-"""Arithmetic on terms, evaluated when operands are known, kept as a term until then: doubles, and exact integers."""
+"""Arithmetic on terms, evaluated when operands are known, kept as a term until then: doubles, and exact integers.
+
+>>> from jacaros.terms.operators import BINARY
+>>> distance = Var("D")
+>>> half = (BINARY["/"].functor, distance, 2.0)
+>>> settle(half) is half
+True
+>>> distance.ref = 5.0
+>>> settle(half)
+2.5
+"""
 
 import math
 from collections.abc import Callable, Mapping
@@ -60,48 +70,15 @@ def settle(term: Term) -> Term:
     if term.__class__ is tuple:
         kind = term[0].kind
         if kind == ARITHMETIC:
-            return _evaluate(term)
+            operands = []
+            # No comprehension: the depth of a sum is limited by the functions on Python's stack, and a call from C, as
+            # `map` makes it, takes much more of the thread's own stack.
+            for operand in term[1:]:
+                operands.append(settle(operand))
+            return _apply(term, operands)
         if kind == FUNCTION:
             return call(term)
     return term
-
-
-def _evaluate(term: Term) -> Term:
-    try:
-        operands = [settle(a) for a in term[1:]]
-    except RecursionError:
-        return _evaluate_iteratively(term)
-    return _apply(term, operands)
-
-
-_TOO_MANY = 1_000_000
-"""Maximum number of nested operations."""
-
-
-def _evaluate_iteratively(term: Term) -> Term:
-    """Evaluate arithmetic that is nested too deeply for Python's stack; calls of functions inside are not evaluated.
-
-    Raises:
-        RecursionError: it is nested without end.
-    """
-    todo: list[Term] = [term]
-    done: list[Term] = []
-    while todo:
-        item = deref(todo.pop())
-        if item.__class__ is list:
-            (operation,) = item
-            count = len(operation) - 1
-            operands = done[-count:]
-            del done[-count:]
-            done.append(_apply(operation, operands))
-        elif item.__class__ is tuple and item[0].kind == ARITHMETIC:
-            todo.append([item])
-            todo.extend(item[:0:-1])
-            if len(todo) > _TOO_MANY:
-                raise RecursionError("arithmetic is nested too deeply")
-        else:
-            done.append(item)
-    return done[0]
 
 
 def _apply(term: Term, operands: list[Term]) -> Term:

@@ -1,5 +1,14 @@
 """The mutable values of the language: sets, maps and queues, shared by reference as in Jason.
 
+>>> from jacaros.terms.text import text
+>>> shared = SetValue({2.0: None, 1.0: None})
+>>> text(shared)
+'{1,2}'
+>>> own = detached(shared)
+>>> own.items[3.0] = None
+>>> len(shared)
+2
+
 Another agent gets copies of its own (`detached`).
 """
 
@@ -10,8 +19,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from jacaros.terms.order import SortKey, sorted_terms
-from jacaros.terms.substitution import resolve
-from jacaros.terms.values import ATOMIC, Annotated, List, Term, deref, is_list, list_items, make_list
+from jacaros.terms.substitution import resolve, with_parts
+from jacaros.terms.values import ATOMIC, Annotated, List, Term, deref, make_list
 
 
 class SetValue:
@@ -140,18 +149,13 @@ def holds_collection(term: Term) -> bool:
 
 
 def _copy(term: Term, copies: dict[int, Term]) -> Term:
-    kind = term.__class__
-    if kind in _COLLECTIONS:
-        known = copies.get(id(term))
-        return known if known is not None else _copy_collection(term, copies)
-    if not holds_collection(term):
-        return term
-    if kind is Annotated:
-        annotations = tuple(_copy(a, copies) for a in term.annotations)
-        return Annotated(_copy(term.term, copies), annotations, term.tail)
-    if is_list(term):
-        return make_list([_copy(item, copies) for item in list_items(term)])
-    return (term[0], *(_copy(argument, copies) for argument in term[1:]))
+    def own(part: Term) -> Term:
+        if part.__class__ not in _COLLECTIONS:
+            return part
+        known = copies.get(id(part))
+        return known if known is not None else _copy_collection(part, copies)
+
+    return with_parts(term, own, lambda items: not holds_collection(items))
 
 
 def _copy_collection(term: Term, copies: dict[int, Term]) -> Term:

@@ -1,5 +1,10 @@
 """The arithmetic functions of the language (``math.abs``, ``math.sum`` …).
 
+>>> FUNCTIONS["math.max"](1.0, 3.0, 2.0)
+3.0
+>>> is_function("math.abs", 2, {})
+False
+
 The parser tells them from internal actions by name and number of arguments.
 """
 

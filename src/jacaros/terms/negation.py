@@ -1,4 +1,11 @@
-"""Strong negation and namespaces of terms that are known only later: ``~X`` and ``ns::X``."""
+"""Strong negation and namespaces of terms that are known only later: ``~X`` and ``ns::X``.
+
+>>> from jacaros.terms.values import atom
+>>> qualify(atom("safe"), "north", True)
+north::~safe/0
+>>> positive_form(atom("safe")) is None
+True
+"""
 
 from jacaros.terms.values import NEGATED, Annotated, Functor, Term, Var, deref, functor
 

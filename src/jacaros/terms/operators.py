@@ -1,5 +1,10 @@
 r"""The operators of the language, one line for each in `OPERATORS`.
 
+>>> BINARY["div"].numbers(7.0, -2.0)
+-3.0
+>>> BINARY["&"].level < BINARY["<"].level < BINARY["+"].level
+True
+
 Lexer, parser, printers, `jacaros fmt`, compiler and interpreter read this table. To add an arithmetic operator, or a
 relation that binds nothing, add a line here (and its function, if Python has none). A connective also needs a syntax
 node and a meaning as a condition.

@@ -1,23 +1,31 @@
 """The total order of terms: numbers, strings, lists, literals, other values, unbound variables.
 
+>>> from jacaros.terms.text import text
+>>> from jacaros.terms.values import atom, make_list, structure
+>>> text(make_list(sorted_terms([Var("X"), structure("b", 1.0), atom("a"), String("s"), 2.0])))
+'[2,"s",a,b(1),X]'
+>>> compare(1.0, 2.0) < 0
+True
+
 It never depends on addresses, so runs with the same seed sort alike.
 """
 
 import itertools
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Sequence
 from functools import cmp_to_key
 from operator import itemgetter, ne
 from typing import Any
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.iterative import MANY_TURNS
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     FUNCTION,
+    MOST_CELLS,
     NIL,
     NUMBERS,
+    TOO_LONG,
     Annotated,
     Functor,
     List,
@@ -26,6 +34,7 @@ from jacaros.terms.values import (
     Term,
     Var,
     annotations_of,
+    bare,
     parts_of_list,
 )
 
@@ -52,128 +61,72 @@ def _rank(term: Term) -> int:
 
 
 def compare(left: Term, right: Term) -> int:
-    """Return a negative number, zero or a positive number as *left* comes before, with or after *right*."""
-    turns = 0
-    try:
-        while turns < MANY_TURNS:
-            left, right = settle(left), settle(right)
-            if left is right:
-                return 0
-            rank = _rank(left)
-            other = _rank(right)
-            if rank != other:
-                return rank - other
-            if rank == _NUMBER:
-                return _compare_numbers(left, right)
-            if rank == _STRING:
-                return -1 if left < right else int(left > right)
-            if rank == _VARIABLE:
-                return _compare_variables(left, right)
-            if rank == _LIST and not (
-                (left.__class__ is List and right.__class__ is List) or left is NIL or right is NIL
-            ):
-                # An open list, or one that may be: compare element by element, as a closed one would be
-                # copied for each.
-                first, left = parts_of_list(left)
-                second, right = parts_of_list(right)
-                order = compare(first, second)
-                if order:
-                    return order
-                turns += 1
-                continue
-            if rank == _LITERAL and left.__class__ is not Annotated and right.__class__ is not Annotated:
-                return _compare_plain(left, right)
-            for decision in _decisions(left, right, rank):
-                order = decision if decision.__class__ is int else compare(*decision)
-                if order:
-                    return order
+    """Return a negative number, zero or a positive number as *left* comes before, with or after *right*.
+
+    Raises:
+        RecursionError: a term is nested too deeply for Python's stack, or contains itself.
+    """
+    for _ in range(MOST_CELLS):
+        left, right = settle(left), settle(right)
+        if left is right:
             return 0
-    except RecursionError:
-        pass
-    return _compare_iteratively(left, right)
+        rank, other = _rank(left), _rank(right)
+        if rank != other:
+            return rank - other
+        if rank != _LIST or left is NIL or right is NIL or left.__class__ is right.__class__ is List:
+            return _COMPARE[rank](left, right)
+        # An open list, or one that may be: compare element by element, as a closed one would be copied for each.
+        first, left = parts_of_list(left)
+        second, right = parts_of_list(right)
+        order = compare(first, second)
+        if order:
+            return order
+    raise RecursionError(TOO_LONG)
 
 
-def _compare_plain(left: Term, right: Term) -> int:
-    """Compare atoms and structures without annotations: `_decisions` inlined for speed."""
+def _compare_each(left: Sequence[Term], right: Sequence[Term]) -> int:
+    """Compare pairwise; of two that are equal so far, the shorter one comes first."""
+    for x, y in zip(left, right, strict=False):
+        order = compare(x, y)
+        if order:
+            return order
+    return len(left) - len(right)
+
+
+def _compare_lists(left: Term, right: Term) -> int:
+    if left is NIL or right is NIL:
+        return (left is not NIL) - (right is not NIL)
+    return _compare_each(left.elements(), right.elements())
+
+
+def _compare_literals(left: Term, right: Term) -> int:
+    """Compare by namespace, functor, positive before negated, arguments pairwise, arity, and annotations."""
+    if left.__class__ is Annotated or right.__class__ is Annotated:
+        bare_left, bare_right = settle(bare(left)), settle(bare(right))
+        order = compare(bare_left, bare_right)
+        if order or _rank(bare_left) != _LITERAL:
+            return order
+        return _compare_each(annotations_of(left), annotations_of(right))
     first = left[0] if left.__class__ is tuple else left
     second = right[0] if right.__class__ is tuple else right
     if first is not second:
         order = _compare_functors(first, second)
-        if order or first is left or second is right:
-            return order or int(first.arity - second.arity)
-    elif first is left:
-        return 0
-    for x, y in zip(left[1:], right[1:], strict=False):
-        order = compare(x, y)
         if order:
             return order
-    return int(first.arity - second.arity)
+    return _compare_each(_arguments(left), _arguments(right))
 
 
-def _compare_iteratively(left: Term, right: Term) -> int:
-    """`compare` for terms that are nested too deeply for Python's stack, or without end."""
-    todo: list[Any] = [(left, right)]
-    met: set[tuple[int, int]] = set()
-    while todo:
-        item = todo.pop()
-        if item.__class__ is int:
-            if item:
-                return int(item)
-            continue
-        left, right = settle(item[0]), settle(item[1])
-        rank = _rank(left)
-        if left is right:
-            continue
-        if rank != _rank(right) or rank in (_NUMBER, _STRING, _VARIABLE):
-            todo.append(compare(left, right))
-            continue
-        if left is not item[0] or right is not item[1] or rank == _OTHER:
-            # A term can contain itself only through a variable or a collection.
-            if (id(left), id(right)) in met:
-                continue
-            met.add((id(left), id(right)))
-        todo.extend(reversed([*_decisions(left, right, rank)]))
-    return 0
+def _compare_others(left: Term, right: Term) -> int:
+    """Compare sets, maps and queues by kind and contents; opaque objects by their numbers."""
+    if left.__class__ is not right.__class__:
+        return -1 if left.__class__.__name__ < right.__class__.__name__ else 1
+    if left.__class__ is Reference:
+        return 0 if left == right else int(left.number - right.number)
+    return compare(left.as_list(), right.as_list())
 
 
-def _decisions(left: Term, right: Term, rank: int) -> Iterator[Any]:
-    """Yield what decides between two terms of the same rank, in order: pairs of terms to compare, and decisions.
-
-    Literals: by namespace, functor, positive before negated, arguments pairwise, arity, annotations. Sets, maps and
-    queues: by kind and contents. Opaque objects: by their numbers.
-    """
-    if rank == _OTHER:
-        if left.__class__ is not right.__class__:
-            yield -1 if left.__class__.__name__ < right.__class__.__name__ else 1
-        elif left.__class__ is Reference:
-            yield 0 if left == right else left.number - right.number
-        else:
-            yield left.as_list(), right.as_list()
-        return
-    if rank == _LIST:
-        if left is NIL or right is NIL:
-            yield (left is not NIL) - (right is not NIL)
-        elif left.__class__ is List and right.__class__ is List:
-            yield from zip(left.elements(), right.elements(), strict=False)
-            yield left.size - right.size
-        else:
-            yield from zip(parts_of_list(left), parts_of_list(right), strict=True)
-        return
-    left_bare = settle(left.term) if left.__class__ is Annotated else left
-    right_bare = settle(right.term) if right.__class__ is Annotated else right
-    if _rank(left_bare) != _LITERAL or _rank(right_bare) != _LITERAL:
-        yield left_bare, right_bare
-        return
-    first = left_bare[0] if left_bare.__class__ is tuple else left_bare
-    second = right_bare[0] if right_bare.__class__ is tuple else right_bare
-    if first is not second:
-        yield _compare_functors(first, second)
-    yield from zip(_arguments(left_bare), _arguments(right_bare), strict=False)
-    yield first.arity - second.arity
-    if left.__class__ is Annotated or right.__class__ is Annotated:
-        more, others = annotations_of(left), annotations_of(right)
-        yield from zip(more, others, strict=False)
-        yield len(more) - len(others)
+def _compare_strings(left: String, right: String) -> int:
+    return -1 if left < right else int(left > right)
 
 
 def _compare_numbers(left: float, right: float) -> int:
@@ -198,6 +151,17 @@ def number_of(variable: Var) -> int:
     except AttributeError:
         variable.number = next(_variable_numbers)
         return variable.number
+
+
+_COMPARE: dict[int, Callable[[Any, Any], int]] = {
+    _NUMBER: _compare_numbers,
+    _STRING: _compare_strings,
+    _LIST: _compare_lists,
+    _LITERAL: _compare_literals,
+    _OTHER: _compare_others,
+    _VARIABLE: _compare_variables,
+}
+"""How terms of the same rank are compared."""
 
 
 def _compare_functors(first: Functor, second: Functor) -> int:

@@ -1,5 +1,12 @@
 """Plans, bodies, triggers and rules as terms, so that programs can pass them around and unify them.
 
+>>> from jacaros.terms.text import text
+>>> body = make_body([step("!", atom("lift")), step("", atom("beep"))])
+>>> text(body)
+'!lift; beep'
+>>> [step_parts(each)[0] for each in body_steps(body)]
+['!', '']
+
 ================  ===============================================================
 plan              ``(PLAN, label, trigger, context, body)``
 trigger           ``(TRIGGER, operator atom, literal)``

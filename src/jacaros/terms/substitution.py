@@ -1,27 +1,40 @@
-"""Terms with all bindings applied: their values, copies with fresh variables, and when two are the same."""
+"""Terms with all bindings applied: their values, copies with fresh variables, and when two are the same.
 
+>>> from jacaros.terms.values import structure
+>>> place = Var("Place")
+>>> term = structure("at", place)
+>>> is_ground(term)
+False
+>>> place.ref = 2.0
+>>> resolve(term)
+(at/1, 2.0)
+>>> equal(term, structure("at", 2.0))
+True
+"""
+
+from collections.abc import Callable
 from operator import is_not
 from typing import Any
 
 from jacaros.terms import values
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.iterative import Turns, rebuild
 from jacaros.terms.operators import BINARY
 from jacaros.terms.order import annotation_set, compare
 from jacaros.terms.values import (
     ARITHMETIC,
     CONS,
     FUNCTION,
+    MOST_CELLS,
     NEGATION,
     NIL,
     NO_KEY,
+    TOO_LONG,
     Annotated,
     Functor,
     List,
     Term,
     Var,
     deref,
-    list_items,
     make_list,
     parted,
 )
@@ -36,32 +49,20 @@ def resolve(term: Term) -> Term:
     """Apply all bindings: variables are replaced by their values, arithmetic is evaluated.
 
     If there is nothing to replace, the term itself is returned. Unbound variables are kept.
+
+    Raises:
+        RecursionError: it is nested too deeply for Python's stack, or contains itself.
     """
+    if term.__class__ is Var:
+        term = deref(term)
     kind = term.__class__
     if kind in ATOMIC:
         return term
-    try:
-        if kind is Var:
-            value = deref(term)
-            return value if value.__class__ is Var else resolve(value)
-        if kind is tuple:
-            return _resolve_cells(term) if term[0] is CONS else _resolve_structure(term)
-        if kind is List:
-            return term if term.settled == term.size else _resolve_list(term)
-        if kind is Annotated:
-            return _resolve_annotated(term)
-    except RecursionError:
-        return rebuild(term, _itself, _settled, _annotate)
-    return term
-
-
-def _itself(term: Term) -> Term:
-    return term
-
-
-def _settled(term: Term) -> Term:
-    """A structure whose arguments are resolved; arithmetic is evaluated."""
-    return settle(term) if term[0].kind in (ARITHMETIC, FUNCTION) else term
+    if kind is tuple:
+        return _resolve_cells(term) if term[0] is CONS else _resolve_structure(term)
+    if kind is List:
+        return term if term.settled == term.size else _resolve_list(term)
+    return _resolve_annotated(term) if kind is Annotated else term
 
 
 def _resolve_structure(term: Term) -> Term:
@@ -73,10 +74,7 @@ def _resolve_structure(term: Term) -> Term:
         parts.append(new)
     if changed:
         term = tuple(parts)
-    kind = term[0].kind
-    if kind in (ARITHMETIC, FUNCTION):
-        return settle(term)
-    return term
+    return settle(term) if term[0].kind in (ARITHMETIC, FUNCTION) else term
 
 
 def _resolve_list(term: List) -> Term:
@@ -85,7 +83,9 @@ def _resolve_list(term: List) -> Term:
     bottom = term.settled
     items = term.stack[bottom : term.size]
     # The first element first: evaluation may warn.
-    new = [item if item.__class__ in ATOMIC else resolve(item) for item in reversed(items)]
+    new = []
+    for item in reversed(items):  # no comprehension: it would be one more function on the stack
+        new.append(resolve(item))
     new.reverse()
     if any(map(is_not, new, items)):
         term = List(term.stack[:bottom] + new, term.size, bottom, term.depth)
@@ -93,22 +93,18 @@ def _resolve_list(term: List) -> Term:
     return term
 
 
-def _settle(term: List) -> None:
+def _settle(term: List, level: int = 0) -> None:
     """Determine how many elements of a resolved list need not be checked again."""
     if term.is_settled():
         return
     count, depth = term.settled, term.depth
-    items = term.stack[count : term.size]
-    try:
-        for item in items:
-            if item.__class__ not in ATOMIC:
-                inner = _depth(item)
-                if inner is None:
-                    break
-                depth = max(depth, inner + 1)
-            count += 1
-    except RecursionError:
-        return
+    for item in term.stack[count : term.size]:
+        if item.__class__ not in ATOMIC:
+            inner = _depth(item, level + 1)
+            if inner is None:
+                break
+            depth = max(depth, inner + 1)
+        count += 1
     # Set the depth first: another thread may read the list.
     term.depth = depth
     term.settled = count
@@ -125,7 +121,7 @@ def _depth(term: Term, level: int = 0) -> int | None:
         parts = term[1:]
     elif kind is List:
         if term.settled != term.size:
-            _settle(term)
+            _settle(term, level + 1)
         # A list takes two levels of Python's stack to compare or to hash.
         return term.depth + 1 if term.settled == term.size else None
     elif kind is Annotated:
@@ -156,17 +152,15 @@ def _resolve_cells(term: Term) -> Term:
     heads: list[Term] = []
     changed = False
     cell = term
-    turns: Turns | None = None
     while cell.__class__ is tuple and cell[0] is CONS:
         head = cell[1]
         new = head if head.__class__ in ATOMIC else resolve(head)
         changed = changed or new is not head
         heads.append(new)
+        if len(heads) > MOST_CELLS:
+            raise RecursionError(TOO_LONG)
         tail = cell[2]
         if tail.__class__ is Var:
-            if turns is None:
-                turns = Turns()
-            turns.pass_by(tail)
             cell = deref(tail)
             changed = changed or cell is not tail
         else:
@@ -183,14 +177,10 @@ def _resolve_cells(term: Term) -> Term:
 
 
 def _resolve_annotated(term: Annotated) -> Term:
-    annotations = tuple(resolve(a) for a in term.annotations)
-    return _annotate(resolve(term.term), annotations, None if term.tail is None else resolve(term.tail))
-
-
-def _annotate(inner: Term, annotations: tuple[Term, ...], tail: Term) -> Term:
-    """A resolved term with resolved annotations."""
-    if tail is not None:
-        annotations, tail = with_tail(annotations, tail)
+    annotations = tuple([resolve(annotation) for annotation in term.annotations])
+    inner, tail = resolve(term.term), None
+    if term.tail is not None:
+        annotations, tail = with_tail(annotations, resolve(term.tail))
     if inner.__class__ is Annotated:
         annotations += inner.annotations
         inner = inner.term
@@ -284,35 +274,38 @@ class _Alone(dict[Var, Var]):
 
 
 def _rename(term: Term, names: dict[Var, Var]) -> Term:
-    try:
-        return _renamed(term, names)
-    except RecursionError:
-        return rebuild(term, lambda variable: _renamed(variable, names), _itself, Annotated)
+    def fresh(part: Term) -> Term:
+        if part.__class__ is not Var:
+            return part
+        new = names.get(part)
+        if new is None:
+            new = names[part] = Var(part.name)
+        return new
+
+    return with_parts(term, fresh, List.is_settled)
 
 
-def _renamed(term: Term, names: dict[Var, Var]) -> Term:
+def with_parts(term: Term, change: Callable[[Term], Term], stays: Callable[[List], bool]) -> Term:
+    """Return a copy of a resolved term with what *change* returns for each of its variables and values.
+
+    Args:
+        term: the term.
+        change: returns what takes the place of a variable or value.
+        stays: returns whether a list need not be copied.
+    """
     kind = term.__class__
-    if kind is Var:
-        fresh = names.get(term)
-        if fresh is None:
-            fresh = names[term] = Var(term.name)
-        return fresh
-    if kind is tuple:
-        if term[0] is CONS:
-            heads = []
-            while term.__class__ is tuple and term[0] is CONS:
-                heads.append(_rename(term[1], names))
-                term = term[2]
-            return make_list(heads, _rename(term, names))
-        return (term[0], *(_rename(a, names) for a in term[1:]))
-    if kind is List:
-        if term.is_settled():
-            return term
-        return make_list([_rename(item, names) for item in list_items(term)])
+    if kind is tuple and term[0] is not CONS:
+        return (term[0], *[with_parts(argument, change, stays) for argument in term[1:]])
+    if kind is List and stays(term):
+        return term
+    if kind is tuple or kind is List:
+        items, tail = parted(term)
+        return make_list([with_parts(item, change, stays) for item in items], with_parts(tail, change, stays))
     if kind is Annotated:
-        tail = None if term.tail is None else _rename(term.tail, names)
-        return Annotated(_rename(term.term, names), tuple(_rename(a, names) for a in term.annotations), tail)
-    return term
+        annotations = tuple([with_parts(each, change, stays) for each in term.annotations])
+        tail = None if term.tail is None else with_parts(term.tail, change, stays)
+        return Annotated(with_parts(term.term, change, stays), annotations, tail)
+    return change(term)
 
 
 def related(symbol: str, left: Term, right: Term) -> bool:
@@ -330,40 +323,12 @@ def related(symbol: str, left: Term, right: Term) -> bool:
 def equal(left: Term, right: Term) -> bool:
     """The relation ``==``: the same term after applying all bindings, annotations included."""
     left, right = resolve(left), resolve(right)
-    if left.__class__ is not right.__class__:
-        return False
-    try:
-        return bool(left == right)
-    except RecursionError:
-        return _equal_by_parts(left, right)
-
-
-def _equal_by_parts(left: Term, right: Term) -> bool:
-    """Compare resolved terms that are nested too deeply for Python's own comparison."""
-    stack = [(left, right)]
-    while stack:
-        a, b = stack.pop()
-        if a is b:
-            continue
-        if a.__class__ is not b.__class__:
+    while left.__class__ is right.__class__ is tuple and left[0] is right[0] is CONS:
+        # Python's own comparison has a level for each element of an open list.
+        if left[1] != right[1]:
             return False
-        if a.__class__ is tuple:
-            if len(a) != len(b):
-                return False
-            stack.extend(zip(a, b, strict=True))
-        elif a.__class__ is List:
-            if a.size != b.size:
-                return False
-            if a.stack is not b.stack:
-                stack.extend(zip(a.from_bottom(), b.from_bottom(), strict=True))
-        elif a.__class__ is Annotated:
-            if len(a.annotations) != len(b.annotations):
-                return False
-            stack.append((a.term, b.term))
-            stack.extend(zip(a.annotations, b.annotations, strict=True))
-        elif a != b:
-            return False
-    return True
+        left, right = left[2], right[2]
+    return left.__class__ is right.__class__ and bool(left == right)
 
 
 _KEY_DEPTH = 300
@@ -389,3 +354,25 @@ def is_key(term: Term, depth: int = 0) -> bool:
             if argument.__class__ not in ATOMIC and not is_key(argument, depth):
                 return False
         term = term[-1]
+
+
+_HASHABLE = 10_000
+"""Maximum depth of a term that Python can hash without overflowing its stack; each element of an open list is a level."""
+
+
+def as_key(term: Term) -> Term:
+    """Return the resolved term, which becomes an element of a set or a key of a map.
+
+    Raises:
+        RecursionError: it is nested too deeply for that.
+    """
+    todo = [(term, 0)] if term.__class__ in HOLDERS else []
+    while todo:
+        item, depth = todo.pop()
+        if depth > _HASHABLE:
+            raise RecursionError(f"elements of sets and keys of maps have {_HASHABLE} levels at most")
+        parts: Any = item.from_bottom() if item.__class__ is List else item
+        if item.__class__ is Annotated:
+            parts = (item.term, *item.annotations)
+        todo += [(part, depth + 1) for part in parts if part.__class__ in HOLDERS]
+    return term

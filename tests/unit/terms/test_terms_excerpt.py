@@ -3,7 +3,7 @@
 import pytest
 
 from jacaros.terms.collections import SetValue
-from jacaros.terms.iterative import excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import BINARY
 from jacaros.terms.plans import make_body, step
 from jacaros.terms.text import text

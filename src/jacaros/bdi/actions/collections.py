@@ -10,7 +10,7 @@ from typing import TypeVar
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action, members
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.iterative import as_key
+from jacaros.terms.substitution import as_key
 from jacaros.terms.text import text
 from jacaros.terms.values import Functor, Term, Var
 

@@ -14,9 +14,8 @@ from jacaros.bdi.actions.internal_action import (
 from jacaros.bdi.actions.strings import replace_all
 from jacaros.bdi.rules.context import Context
 from jacaros.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.terms.iterative import as_key
 from jacaros.terms.order import compare, ordered_by_python, sorted_set, sorted_terms
-from jacaros.terms.substitution import ATOMIC, equal, is_ground
+from jacaros.terms.substitution import ATOMIC, as_key, equal, is_ground
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail, undo, unify
 from jacaros.terms.values import (

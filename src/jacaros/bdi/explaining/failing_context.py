@@ -21,7 +21,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.iterative import CyclicTerm, excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
@@ -190,7 +190,7 @@ class _Search:
 
 def _value_text(value: Term) -> str:
     value = excerpt(value)
-    with suppress(ArithmeticFault, CyclicTerm, RecursionError):
+    with suppress(ArithmeticFault, RecursionError):
         value = resolve(value)
     return text(value)
 

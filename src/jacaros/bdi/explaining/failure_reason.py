@@ -11,7 +11,7 @@ from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
 from jacaros.bdi.state.plan import Plan, StepInfo
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.iterative import CyclicTerm, excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import resolve
@@ -204,7 +204,7 @@ class StepPlace(_Nowhere):
         node = self.node
         try:
             term = resolve(term)
-        except (ArithmeticFault, CyclicTerm, RecursionError):
+        except (ArithmeticFault, RecursionError):
             # The formula contains the very expression that has no value: show it as written.
             term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
         return term
@@ -276,7 +276,7 @@ class GoalPlace(_Nowhere):
         shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
         try:
             term = resolve(literal_of(self.goal, shown))
-        except (ArithmeticFault, CyclicTerm):
+        except (ArithmeticFault, RecursionError):
             term = String(goal_text(self.goal))
         span, file = self._call()
         return _code(term, span, file)
@@ -336,7 +336,7 @@ def goal_text(goal: Goal) -> str:
     """Return a goal as text; one whose arguments have no value (``g(1 div 0)``) by its name."""
     try:
         return text(literal_of(goal, ()))
-    except (ArithmeticFault, CyclicTerm):
+    except (ArithmeticFault, RecursionError):
         return f"{goal[0].functor.name}(...)"
 
 
@@ -346,7 +346,7 @@ def shown_goal(goal: Goal) -> str:
     sign = "" if trigger.operator == "+" and trigger.kind else trigger.operator
     try:
         told = text(excerpt(literal_of(goal, ())))
-    except (ArithmeticFault, CyclicTerm):
+    except (ArithmeticFault, RecursionError):
         told = f"{trigger.functor.name}(...)"
     return f"{sign}{trigger.kind}{told}"
 

@@ -14,7 +14,7 @@ from jacaros.bdi.state.intention import GOAL, Intention
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.iterative import excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.text import text
 from jacaros.terms.values import functor, functor_of
 

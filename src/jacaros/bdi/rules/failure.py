@@ -20,7 +20,6 @@ from jacaros.bdi.state.plan import Fail, Failure, StepInfo
 from jacaros.bdi.state.supervision import SUPERVISED
 from jacaros.bdi.state.triggers import Goal, Trigger
 from jacaros.errors import InternalError
-from jacaros.terms.iterative import CyclicTerm
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import ATOMIC, resolve
 from jacaros.terms.text import display, text
@@ -76,7 +75,6 @@ _ERRORS = (
     (ArithmeticFault, "arithmetic_error"),
     (SearchLimit, "search_limit"),
     (RecursionError, "too_deep"),
-    (CyclicTerm, "cyclic_term"),
 )
 """Exceptions whose text is the message, and their error ids."""
 

@@ -16,7 +16,7 @@ from jacaros.inspector.live.commands import LONGEST, Command, Given, Refused, ch
 from jacaros.inspector.live.time_limit import within
 from jacaros.mas.open_mind import OpenMind, question
 from jacaros.mas.system import System
-from jacaros.terms.iterative import excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.substitution import resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import Term, Var

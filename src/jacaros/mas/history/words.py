@@ -4,7 +4,7 @@ import re
 
 from jacaros.bdi.state.literals import EventAnnotations, literal_of
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.iterative import CyclicTerm, excerpt
+from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import is_flat
 from jacaros.terms.text import text
@@ -21,7 +21,7 @@ def shown(term: Term) -> str:
         return cut(text(term))
     try:
         return cut(named(text(excerpt(term))))
-    except (ArithmeticFault, CyclicTerm, RecursionError):
+    except (ArithmeticFault, RecursionError):
         return "..."
 
 
