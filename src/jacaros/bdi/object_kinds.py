@@ -19,12 +19,11 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.plan_terms import plan_of_body
 from jacaros.bdi.rules.searching import Remaining
-from jacaros.bdi.rules.watched import WatchedGoal
-from jacaros.bdi.state.condition_waits import ConditionObserver
+from jacaros.bdi.rules.watched import WatchedCondition, WatchedGoal
+from jacaros.bdi.state.pending import CoroutineWait
 from jacaros.bdi.state.plan import Plan, label_of, position_of, with_subplans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Trigger, trigger
-from jacaros.bdi.state.waiting import CoroutineWait
 from jacaros.errors import JacarosError
 from jacaros.terms.collections import QueueValue
 from jacaros.terms.values import Annotated, Functor, List, Reference, Var, functor, list_items, make_list
@@ -36,7 +35,7 @@ _PACKAGES = ("jacaros.asl.", "jacaros.bdi.", "jacaros.terms.")
 """Packages of the classes and functions of a mind."""
 _LIVE = {
     CoroutineWait: "it waits for a coroutine",
-    ConditionObserver: "Python code awaits a condition",
+    WatchedCondition: "Python code awaits a condition",
     WatchedGoal: "Python code awaits a goal",
     Reference: "a term holds a Python object",
 }
@@ -130,10 +129,18 @@ def _name_of(value: Value) -> Data:
     Raises:
         NotStorable: it cannot be found by name.
     """
+    _refuse_live(value)
     module, name = getattr(value, "__module__", None) or "", getattr(value, "__qualname__", "")
     if module.startswith(_PACKAGES) and getattr(sys.modules.get(module), name, None) is value:
         return [module, name]
     raise NotStorable(f"the mind cannot be stored: it holds {value!r}")
+
+
+def _refuse_live(value: Value) -> None:
+    """Refuse a live object, or a method of one."""
+    for live, why in _LIVE.items():
+        if isinstance(getattr(value, "__self__", value), live):
+            raise NotStorable(f"the mind cannot be stored: {why}")
 
 
 def _named(data: Data, wanted: type) -> Value:
@@ -168,9 +175,7 @@ def _fill_queue(made: QueueValue, parts: Data) -> None:
 
 
 def _written_object(_: ProgramParts, value: Value) -> tuple[Data, Data]:
-    for live, why in _LIVE.items():
-        if isinstance(value, live):
-            raise NotStorable(f"the mind cannot be stored: {why}")
+    _refuse_live(value)
     if isinstance(value, FailureReason):
         value.terms  # noqa: B018 - puts them together
     return _name_of(value.__class__), [part for item in _attributes(value) for part in item]

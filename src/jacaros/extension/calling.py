@@ -11,7 +11,7 @@ from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAc
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.waits import fail, succeed
-from jacaros.bdi.state.waiting import CoroutineWait, Waiting
+from jacaros.bdi.state.pending import CoroutineWait, Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations

@@ -20,7 +20,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.goals import describe
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
-from jacaros.bdi.state.waiting import is_action
+from jacaros.bdi.state.pending import is_action
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost

@@ -21,11 +21,11 @@ from jacaros.bdi.actions.internal_action import (
     whole,
 )
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.alarms import set_alarm
 from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.pending import set_alarm
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
+from jacaros.bdi.state.pending import AnswerWait, Waiting
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.waiting import AnswerWait, Waiting
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
@@ -187,7 +187,7 @@ def _ask(
     if len(rest) > 1:
         if rest[1].__class__ is not float:
             raise WrongArguments(f"the timeout must be a number of milliseconds, not {text(rest[1])}")
-        waiting.alarm = set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting)
+        waiting.pending.append(set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting))
     return waiting
 
 

@@ -15,10 +15,10 @@ from jacaros.bdi.rules.plan_terms import bindings_of, is_body_frame, variables_o
 from jacaros.bdi.state.event import EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.pending import is_action
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import resolve

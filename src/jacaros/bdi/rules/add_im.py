@@ -118,7 +118,7 @@ def go_without(
         return False
     agent.note(posted.goal[0])
     if agent.waits.events:
-        agent.notify_event_waits(event)
+        agent.notify_listeners(event)
     return push(agent, intention, posted.goal, posted.annotations)
 
 

@@ -5,6 +5,7 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
+from jacaros.bdi.rules.pending import note_change, note_rule
 from jacaros.bdi.rules.searching import unify_rows
 from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.state.circumstance import Circumstance
@@ -64,7 +65,8 @@ def own_event(
     """Raise the event of a belief that a step has added; *new* are the annotations that it did not have before."""
     if new is None:
         return None
-    note_change(agent, symbol, row)
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
     if agent.observers.hear_beliefs:
         _tell_change(agent, "+", symbol, row, new, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
@@ -120,16 +122,6 @@ def is_quiet(agent: Circumstance) -> bool:
     )
 
 
-def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
-    """Note that a belief changed: awaited conditions on such beliefs are tested again."""
-    if agent.waits.conditions and agent.waits.conditions.changed(symbol, row):
-        agent.do_soon(look_again)
-
-
-def look_again(_: Circumstance) -> None:
-    """Do nothing: a task that makes the agent test awaited conditions again."""
-
-
 def insert(
     agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
 ) -> Annotations | None:
@@ -173,7 +165,8 @@ def delete_belief(
 
 def deleted(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, apart: bool) -> Raised:
     """Raise the event of a belief that a step has deleted."""
-    note_change(agent, symbol, row)
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
     if agent.observers.hear_beliefs:
         _tell_change(agent, "-", symbol, row, annotations, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].deleted, *row), annotations, apart)
@@ -342,6 +335,5 @@ def _abolish_entry(
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
     """Add a rule at run time; rules raise no events."""
     if agent.waits.conditions:
-        agent.waits.conditions.depend_on_rules(head)
-        agent.do_soon(look_again)
+        note_rule(agent, head)
     agent.beliefs[head].add(rule, rule.head_annotations(), last)

@@ -4,7 +4,7 @@ from jacaros.bdi.state.act import NEEDS, Act
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.need import Need, Wanted, wanted_in
-from jacaros.bdi.state.waiting import ActWait
+from jacaros.bdi.state.pending import Waiting
 from jacaros.terms.values import String, Term, atom, make_list, structure
 
 
@@ -51,10 +51,10 @@ def claim(agent: Circumstance, intention: Intention, act: Act) -> None:
         act.within = tuple(each.number for each in of(agent, intention))
 
 
-def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> ActWait:
+def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> Waiting:
     """Let an intention wait for what it has requested."""
     reason = structure("needs", *(atom(name) for name in wanted.names))
-    waiting = ActWait(intention, reason, number)
+    waiting = Waiting(intention, reason, number)
     waiting.attach(frame, frame[STEP])
     agent.waits.acts[number] = waiting
     return waiting

@@ -14,7 +14,7 @@ def preempted(agent: Circumstance, number: int, resource: str) -> None:
 
 def regained(agent: Circumstance, number: int) -> None:
     """Note that the act, or the plan, has it again, or no longer waits for it."""
-    agent.do_soon(_resume, number)
+    agent.do_soon(resume, number)
     agent.architecture.ready()
 
 
@@ -28,7 +28,8 @@ def _suspend(agent: Circumstance, number: int, reason: Term) -> None:
             goals.suspend_intention(agent, intention, reason)
 
 
-def _resume(agent: Circumstance, number: int) -> None:
+def resume(agent: Circumstance, number: int) -> None:
+    """Resume the intentions that were suspended because an act had lost a resource."""
     known = agent.waits.preempted.pop(number, None)
     if known is None:
         return

@@ -10,18 +10,17 @@ from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
 from jacaros.bdi.state.budget import SearchBudget, budgets
-from jacaros.bdi.state.condition_waits import ConditionWaits
-from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event, Posted
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
-from jacaros.bdi.state.need import Need, Wanted
+from jacaros.bdi.state.need import Wanted
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.pending import Waiting, Waits
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger
-from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, TimedWait, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Functor, Term
@@ -176,51 +175,6 @@ class Counts:
         self.next_check = INTERVAL
 
 
-class Waits:
-    """What the intentions of an agent wait for, and what has been postponed.
-
-    Attributes:
-        events: waits for an event.
-        conditions: waits for a condition.
-        acts: waits for an external action, by its number.
-        questions: waits for an answer, by the id of the question.
-        abandoned: ids of questions that no intention waits for: a late answer is discarded.
-        alarms: calls that are due at a moment, by number.
-        alarms_made: number of alarms so far.
-        suspended_events: those of suspended intentions, and of goals that were suspended before they began.
-        needs: the resources that plans and goals have requested, by the number of the act.
-        preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
-        requeued: external events without plan that are to be tried again (``events=requeue``).
-    """
-
-    __slots__ = (
-        "abandoned",
-        "acts",
-        "alarms",
-        "alarms_made",
-        "conditions",
-        "events",
-        "needs",
-        "preempted",
-        "questions",
-        "requeued",
-        "suspended_events",
-    )
-
-    def __init__(self) -> None:
-        self.events = EventWaits()
-        self.conditions = ConditionWaits()
-        self.acts: dict[int, ActWait] = {}
-        self.needs: dict[int, Need] = {}
-        self.preempted: dict[int, tuple[Term, list[Intention]]] = {}
-        self.questions: dict[str, AnswerWait] = {}
-        self.abandoned: set[str | None] = set()
-        self.alarms: dict[int, Alarm] = {}
-        self.alarms_made = 0
-        self.suspended_events: list[Event] = []
-        self.requeued: list[Event] = []
-
-
 class Features:
     """What is true of all plans and observers of an agent together.
 
@@ -313,9 +267,9 @@ class Circumstance:
     observe_rest: Callable[[Intention], None]
     drop_wait: Callable[[Waiting], None]
     end_above: Callable[[Intention, int], None]
-    end_wait: Callable[[TimedWait], None]
+    end_wait: Callable[[Waiting], None]
     begin_need: Callable[[Intention, Frame, Wanted], bool]
-    notify_event_waits: Callable[[Event], None]
+    notify_listeners: Callable[[Event], None]
 
     def __init__(
         self,
@@ -416,6 +370,9 @@ class Circumstance:
         if intention.waiting is not None:
             waiting, intention.waiting = intention.waiting, None
             self.drop_wait(waiting)
+        if intention.on_end is not None:
+            function, arguments = intention.on_end
+            function(self, *arguments)
 
     def may_handle(self, kind: Trigger) -> bool:
         """Return whether there may be a plan for an event kind (sub-plans are checked when the event is handled)."""
@@ -448,7 +405,14 @@ class Circumstance:
             self.note(event[EVENT_GOAL][0])
         self.events.append(event)
         if self.waits.events:
-            self.notify_event_waits(event)
+            self.notify_listeners(event)
+
+    def post_for(self, intention: Intention, posted: Posted | None) -> None:
+        """Queue what an intention continues with, if it does."""
+        if posted is not None:
+            self.post((posted.goal, intention, posted.annotations, None))
+            if not self.running:
+                self.architecture.ready()
 
     def _admits(self, event: Event) -> bool:
         """Return whether an event may still be queued: one that an existing intention waits for may.
