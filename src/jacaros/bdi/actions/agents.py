@@ -24,7 +24,7 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.pending import set_alarm
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
-from jacaros.bdi.state.pending import AnswerWait, Waiting
+from jacaros.bdi.state.pending import ASK, AnswerWait, Waiting
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
 from jacaros.terms.text import text
@@ -178,7 +178,7 @@ def _ask(
         if not ctx.unify(rest[0], NIL):
             raise ActionError("the answer does not match", (ERROR, atom("ask_failed")))
         return None
-    waiting = AnswerWait(ctx.suspendable(), rest[0], many, len(receivers))
+    waiting = AnswerWait(ctx.suspendable(), ASK, target=rest[0], many=many, expected=len(receivers))
     for name in receivers:
         message_id = ctx.agent.next_message_id()
         waiting.ids.append(message_id)

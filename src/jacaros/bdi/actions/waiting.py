@@ -52,9 +52,8 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
 def _begin(ctx: Context, awaited: Term, elapsed: Term) -> Waiting:
     """Begin to wait. The reason is that of Jason: the number of the intention, and what it waits for."""
     intention = ctx.suspendable()
-    waiting = Waiting(intention, Annotated((WAIT, float(intention.id)), (awaited,)))
-    waiting.began, waiting.elapsed = now(ctx.agent), elapsed
-    return waiting
+    reason = Annotated((WAIT, float(intention.id)), (awaited,))
+    return Waiting(intention, reason, began=now(ctx.agent), elapsed=elapsed)
 
 
 _UNITS = {"": 0.001, "ms": 0.001, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}

@@ -79,8 +79,7 @@ def _numbered(agent: Circumstance) -> int:
 
 def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
     """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
-    alarm = Alarm(_numbered(agent), function, arguments)
-    alarm.due = now(agent) + delay
+    alarm = Alarm(_numbered(agent), function, arguments, now(agent) + delay)
     agent.waits.alarms[alarm.number] = alarm
     start_alarm(agent, alarm, delay)
     return alarm
@@ -107,8 +106,7 @@ def listen(
     *arguments: Any,
 ) -> Listener:
     """Call *function* with the agent and the arguments at the next event of a kind (None: of any) that matches."""
-    listener = Listener(_numbered(agent), function, arguments)
-    listener.kind, listener.pattern = kind, pattern
+    listener = Listener(_numbered(agent), function, arguments, kind, pattern)
     agent.waits.events.setdefault(kind, {})[listener.number] = listener
     return listener
 
@@ -136,13 +134,13 @@ def watch(agent: Circumstance, condition: Term, function: Callable[..., None], *
 
     Its arguments are the agent, None or the exception if it cannot be evaluated, and *arguments*.
     """
-    made = Watch(_numbered(agent), function, arguments)
-    made.condition, made.asked = condition, asked_by(condition, agent.beliefs, agent.engine.actions)
-    waits, number = agent.waits, made.number
+    asked = asked_by(condition, agent.beliefs, agent.engine.actions)
+    waits, number = agent.waits, _numbered(agent)
+    made = Watch(number, function, arguments, condition, asked)
     waits.conditions[number] = waits.due[number] = made
-    if made.asked is None:
+    if asked is None:
         waits.restless[number] = made
-    for symbol, places, values in made.asked or ():
+    for symbol, places, values in asked or ():
         waits.asked.setdefault(symbol, {}).setdefault(places, {}).setdefault(values, {})[number] = made
     agent.incoming.called = True
     return made

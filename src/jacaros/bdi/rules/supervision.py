@@ -127,9 +127,8 @@ def pause(
     agent.trail.serial += 1
     frame: Frame = [behind, *posted, agent.trail.serial, _WAITING]
     intention.frames.append(frame)
-    waiting = Waiting(intention, reason)
+    waiting = Waiting(intention, reason, began=now(agent))
     waiting.attach(frame, behind)
-    waiting.began = now(agent)
     waiting.pending.append(set_alarm(agent, delay, _resume, waiting))
     if agent.features.meta:
         meta_events.top_goal_state(agent, intention, "waiting", reason)

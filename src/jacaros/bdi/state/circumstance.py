@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Final, Literal, NamedTuple, Protocol
 
@@ -55,6 +56,7 @@ NO_FUNCTIONS: Final = _NoFunctions()
 Sleep = Literal["awake", "drowsy", "asleep"]
 
 
+@dataclass(slots=True, eq=False)
 class Functions:
     """The arithmetic functions that an agent knows beside those of the language.
 
@@ -63,13 +65,11 @@ class Functions:
         project: those of the project.
     """
 
-    __slots__ = ("own", "project")
-
-    def __init__(self) -> None:
-        self.own: dict[str, Any] = {}
-        self.project: ProjectFunctions = NO_FUNCTIONS
+    own: dict[str, Any] = field(default_factory=dict)
+    project: ProjectFunctions = NO_FUNCTIONS
 
 
+@dataclass(slots=True, eq=False)
 class Incoming:
     """Input that has not been taken in yet.
 
@@ -82,13 +82,10 @@ class Incoming:
             that are not plain. Code that adds to one of them sets it.
     """
 
-    __slots__ = ("called", "messages", "percepts", "tasks")
-
-    def __init__(self) -> None:
-        self.messages: deque[SpeechAct] = deque()
-        self.percepts: deque[list[Percept]] = deque()
-        self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
-        self.called = False
+    messages: deque[SpeechAct] = field(default_factory=deque)
+    percepts: deque[list[Percept]] = field(default_factory=deque)
+    tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = field(default_factory=deque)
+    called: bool = False
 
     def __bool__(self) -> bool:
         return bool(self.messages or self.percepts or self.tasks)
@@ -133,6 +130,7 @@ class HeldEvent(NamedTuple):
     ends_cycle: bool
 
 
+@dataclass(slots=True, eq=False)
 class Observers:
     """Observers of an agent's goals and reasons.
 
@@ -146,17 +144,16 @@ class Observers:
         usual_events: the feature of this name before `step` was set.
     """
 
-    __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step", "usual_events")
-
-    def __init__(self) -> None:
-        self.goal: Callable[[str, Goal, int, int, str], None] | None = None
-        self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
-        self.step: StepObserver | None = None
-        self.mind: MindObserver | None = None
-        self.derived: BeliefObserver | None = None
-        self.hear_beliefs = self.usual_events = False
+    goal: Callable[[str, Goal, int, int, str], None] | None = None
+    lost: Callable[[str, Sequence[str], Span | None], None] | None = None
+    step: StepObserver | None = None
+    mind: MindObserver | None = None
+    derived: BeliefObserver | None = None
+    hear_beliefs: bool = False
+    usual_events: bool = False
 
 
+@dataclass(slots=True, eq=False)
 class Counts:
     """How much an agent has done.
 
@@ -168,13 +165,13 @@ class Counts:
         next_look: number of the cycle in which percepts and messages are looked at next.
     """
 
-    __slots__ = ("cycles", "intentions", "next_check", "next_look")
+    cycles: int = 0
+    intentions: int = 0
+    next_check: int = INTERVAL
+    next_look: int = 0
 
-    def __init__(self) -> None:
-        self.cycles = self.intentions = self.next_look = 0
-        self.next_check = INTERVAL
 
-
+@dataclass(slots=True, eq=False)
 class Features:
     """What is true of all plans and observers of an agent together.
 
@@ -186,11 +183,10 @@ class Features:
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    __slots__ = ("edges", "meta", "meta_plans", "usual_events")
-
-    def __init__(self, options: Options) -> None:
-        self.meta = self.meta_plans = self.edges = False
-        self.usual_events = options.events == "discard" and not options.new_focus
+    usual_events: bool
+    meta: bool = False
+    meta_plans: bool = False
+    edges: bool = False
 
 
 class Circumstance:
@@ -301,7 +297,7 @@ class Circumstance:
         self.incoming = Incoming()
         self.observers = Observers()
         self.waits = Waits()
-        self.features = Features(options)
+        self.features = Features(options.events == "discard" and not options.new_focus)
         self.functions = Functions()
         self.counts = Counts()
         self.sleep: Sleep = "awake"

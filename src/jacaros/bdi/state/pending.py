@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.bdi.architecture import Timer
@@ -24,6 +25,7 @@ def is_action(reason: Term) -> bool:
     return reason.__class__ is tuple and reason[0] is ACTION
 
 
+@dataclass(slots=True, eq=False)
 class Pending:
     """A call that is made later.
 
@@ -32,12 +34,12 @@ class Pending:
         function, arguments: called with the agent and the arguments; a function of a module, so that it has a name.
     """
 
-    __slots__ = ("arguments", "function", "number")
+    number: int
+    function: Callable[..., None]
+    arguments: tuple[Any, ...]
 
-    def __init__(self, number: int, function: Callable[..., None], arguments: tuple[Any, ...]) -> None:
-        self.number, self.function, self.arguments = number, function, arguments
 
-
+@dataclass(slots=True, eq=False)
 class Alarm(Pending):
     """A call that is due at a moment.
 
@@ -46,12 +48,11 @@ class Alarm(Pending):
         timer: of the host, which rings.
     """
 
-    __slots__ = ("due", "timer")
-
     due: float
-    timer: Timer
+    timer: Timer = field(init=False)
 
 
+@dataclass(slots=True, eq=False)
 class Listener(Pending):
     """A call at the next event that matches.
 
@@ -59,8 +60,6 @@ class Listener(Pending):
         kind: of the events; None for all.
         pattern: unified with the literal of the event.
     """
-
-    __slots__ = ("kind", "pattern")
 
     kind: Trigger | None
     pattern: Term
@@ -70,6 +69,7 @@ Asked = tuple[Functor, tuple[int, ...], tuple[Term, ...]]
 """The beliefs that a literal asks for: their functor, the places of the arguments that are known, and these."""
 
 
+@dataclass(slots=True, eq=False)
 class Watch(Pending):
     """A call when a condition holds. None precedes the arguments, or the exception if it cannot be evaluated.
 
@@ -78,12 +78,11 @@ class Watch(Pending):
         asked: the beliefs that the condition depends on; None when it may depend on anything.
     """
 
-    __slots__ = ("asked", "condition")
-
     condition: Term
     asked: list[Asked] | None
 
 
+@dataclass(slots=True, eq=False)
 class Waiting:
     """A suspended step.
 
@@ -100,28 +99,16 @@ class Waiting:
         elapsed: unified with the milliseconds waited, or None.
     """
 
-    __slots__ = (
-        "act",
-        "began",
-        "elapsed",
-        "ended",
-        "failure",
-        "frame",
-        "intention",
-        "next_step",
-        "pending",
-        "reason",
-    )
-
-    def __init__(self, intention: Intention, reason: Term, act: int | None = None) -> None:
-        self.intention, self.reason, self.act = intention, reason, act
-        self.frame: Frame | None = None
-        self.next_step: NextStep = None
-        self.ended = False
-        self.failure: tuple[str, tuple[Term, ...]] | None = None
-        self.pending: list[Pending] = []
-        self.began: float | None = None
-        self.elapsed: Term = None
+    intention: Intention
+    reason: Term
+    act: int | None = None
+    frame: Frame | None = None
+    next_step: NextStep = None
+    ended: bool = False
+    failure: tuple[str, tuple[Term, ...]] | None = None
+    pending: list[Pending] = field(default_factory=list)
+    began: float | None = None
+    elapsed: Term = None
 
     def attach(self, frame: Frame, next_step: NextStep) -> None:
         """Suspend the step in *frame*, which continues with *next_step*."""
@@ -129,6 +116,7 @@ class Waiting:
         self.intention.waiting = self
 
 
+@dataclass(slots=True, eq=False)
 class AnswerWait(Waiting):
     """Waits for the answers to a question.
 
@@ -140,23 +128,21 @@ class AnswerWait(Waiting):
         ids: of the messages that asked.
     """
 
-    __slots__ = ("answers", "expected", "ids", "many", "target")
-
-    def __init__(self, intention: Intention, target: Term, many: bool, expected: int) -> None:
-        super().__init__(intention, ASK)
-        self.target, self.many, self.expected = target, many, expected
-        self.answers: list[Term] = []
-        self.ids: list[str] = []
+    target: Term = None
+    many: bool = False
+    expected: int = 1
+    answers: list[Term] = field(default_factory=list)
+    ids: list[str] = field(default_factory=list)
 
 
+@dataclass(slots=True, eq=False)
 class CoroutineWait(Waiting):
     """Waits for a coroutine of the project. It is a live object: a mind that waits for one cannot be stored."""
 
-    __slots__ = ("task",)
-
-    task: Timer
+    task: Timer = field(init=False)
 
 
+@dataclass(slots=True, eq=False)
 class Waits:
     """What the intentions of an agent wait for, and what has been postponed.
 
@@ -178,38 +164,21 @@ class Waits:
         latest, ahead: the latest time of the agent, and by how much it is ahead of a clock that was set back.
     """
 
-    __slots__ = (
-        "abandoned",
-        "acts",
-        "ahead",
-        "alarms",
-        "asked",
-        "conditions",
-        "due",
-        "events",
-        "latest",
-        "made",
-        "needs",
-        "preempted",
-        "questions",
-        "requeued",
-        "restless",
-        "suspended_events",
+    made: int = 0
+    alarms: dict[int, Alarm] = field(default_factory=dict)
+    events: dict[Trigger | None, dict[int, Listener]] = field(default_factory=dict)
+    conditions: dict[int, Watch] = field(default_factory=dict)
+    asked: dict[Functor, dict[tuple[int, ...], dict[tuple[Term, ...], dict[int, Watch]]]] = field(
+        default_factory=dict
     )
-
-    def __init__(self) -> None:
-        self.made = 0
-        self.alarms: dict[int, Alarm] = {}
-        self.events: dict[Trigger | None, dict[int, Listener]] = {}
-        self.conditions: dict[int, Watch] = {}
-        self.asked: dict[Functor, dict[tuple[int, ...], dict[tuple[Term, ...], dict[int, Watch]]]] = {}
-        self.restless: dict[int, Watch] = {}
-        self.due: dict[int, Watch] = {}
-        self.acts: dict[int, Waiting] = {}
-        self.questions: dict[str, AnswerWait] = {}
-        self.abandoned: set[str | None] = set()
-        self.suspended_events: list[Event] = []
-        self.needs: dict[int, Need] = {}
-        self.preempted: dict[int, tuple[Term, list[Intention]]] = {}
-        self.requeued: list[Event] = []
-        self.latest = self.ahead = 0.0
+    restless: dict[int, Watch] = field(default_factory=dict)
+    due: dict[int, Watch] = field(default_factory=dict)
+    acts: dict[int, Waiting] = field(default_factory=dict)
+    questions: dict[str, AnswerWait] = field(default_factory=dict)
+    abandoned: set[str | None] = field(default_factory=set)
+    suspended_events: list[Event] = field(default_factory=list)
+    needs: dict[int, Need] = field(default_factory=dict)
+    preempted: dict[int, tuple[Term, list[Intention]]] = field(default_factory=dict)
+    requeued: list[Event] = field(default_factory=list)
+    latest: float = 0.0
+    ahead: float = 0.0

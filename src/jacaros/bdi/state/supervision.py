@@ -4,6 +4,7 @@ A frame of its own holds it on the stack of the intention, right below the frame
 That frame is reached when the goal or plan has ended.
 """
 
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.bdi.state.intention import FIRST_SLOT, GOAL, PLAN, Frame, Intention
@@ -19,6 +20,7 @@ SUPERVISION = FIRST_SLOT
 """The place of the supervision in such a frame; the arguments of a supervised goal follow."""
 
 
+@dataclass(slots=True, eq=False)
 class Supervision:
     """Supervises a goal, ``!g[within(Ms), retry(N, Ms), every(Ms)]``, or a plan, ``@p[while(C), within(Ms), cleanup(G)]``.
 
@@ -38,32 +40,19 @@ class Supervision:
         lost: why a plan is about to fail (`FailureReason`), once it has been interrupted.
     """
 
-    __slots__ = (
-        "back_off",
-        "began",
-        "cleanup",
-        "failed",
-        "hard",
-        "kind",
-        "lost",
-        "missed",
-        "number",
-        "pending",
-        "period",
-        "retries",
-        "within",
-    )
-
-    def __init__(self, kind: Trigger | None = None) -> None:
-        self.kind = kind
-        self.pending: list[Pending] = []
-        self.within: float | None = None
-        self.hard = False
-        self.retries = self.failed = self.number = self.missed = 0
-        self.back_off = self.began = 0.0
-        self.period: float | None = None
-        self.cleanup: Term = None
-        self.lost: Any = None
+    kind: Trigger | None = None
+    pending: list[Pending] = field(default_factory=list)
+    within: float | None = None
+    hard: bool = False
+    retries: int = 0
+    back_off: float = 0.0
+    failed: int = 0
+    period: float | None = None
+    began: float = 0.0
+    number: int = 0
+    missed: int = 0
+    cleanup: Term = None
+    lost: Any = None
 
 
 def is_supervision(frame: Frame) -> bool:
