@@ -364,7 +364,7 @@ def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
     """Return why the goal of a test failed."""
     if reason is None:
         return Problem("the goal of the test failed", (), test.span)
-    place = reason.span() or test.span
+    place = reason.place.span() or test.span
     message = filter(None, (reason.message(), *details(reason)))
     return Problem(f"the goal of the test failed: {reason.error()}", tuple(message), place)
 

@@ -275,7 +275,7 @@ class Goal(PursuedGoal):
         reason = self._watched.reason
         if reason is None:
             return GoalFailed(f"{who} failed", self._written)
-        message, where = reason.message(), reason.where()
+        message, where = reason.message(), reason.place.where()
         others = ", ".join(text(term) for term in reason.terms if not _is_message(term))
         told = f"{who} failed{f': {message}' * bool(message)}{f' ({others})' * bool(others)}"
         told += f", in {where}" * bool(where and where != _RUN_TIME)
