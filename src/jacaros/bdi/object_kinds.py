@@ -21,7 +21,7 @@ from jacaros.bdi.rules.plan_terms import plan_of_body
 from jacaros.bdi.rules.searching import Remaining
 from jacaros.bdi.rules.watched import WatchedCondition, WatchedGoal
 from jacaros.bdi.state.pending import CoroutineWait
-from jacaros.bdi.state.plan import Plan, label_of, position_of, with_subplans
+from jacaros.bdi.state.plan import Plan, label_of, position_of, with_inner, with_subplans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.errors import JacarosError
@@ -64,7 +64,7 @@ class ProgramParts:
 
     def __init__(self, mind: Mind) -> None:
         self.mind = mind
-        self._plans = list(_with_inner(mind.library.program.plans))
+        self._plans = list(with_inner(mind.library.program.plans))
         self._beliefs = mind.program.beliefs
         self._places = {id(part): place for place, part in enumerate(self._plans)}
         self._places |= {id(node): place for place, node in enumerate(self._beliefs)}
@@ -92,16 +92,9 @@ class ProgramParts:
         """Restore a plan that was added at run time."""
         node, *labels = parts
         plan = with_subplans(Plan(node, label_of(node, 0), self.mind.library.by_name), 0)
-        for inner, label in zip(_with_inner([plan]), labels, strict=True):
+        for inner, label in zip(with_inner([plan]), labels, strict=True):
             inner.label = label
         return plan
-
-
-def _with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
-    """Yield plans and their sub-plans, in a fixed order."""
-    for plan in plans:
-        yield plan
-        yield from _with_inner(plan.subplans)
 
 
 def _digest(part: Plan | nodes.Node) -> int:
@@ -275,7 +268,7 @@ KINDS: dict[str, Kind] = {_KIND_OF[each]: kind for each, kind in _CLASSES.items(
     ),
     "plan": Kind(ProgramParts.written, ProgramParts.plan),
     "own_plan": Kind(
-        lambda _, plan: ([], (plan.node, *(each.label for each in _with_inner([plan])))),
+        lambda _, plan: ([], (plan.node, *(each.label for each in with_inner([plan])))),
         ProgramParts.own_plan,
     ),
     "subplan": Kind(

@@ -4,8 +4,6 @@ Changes are collected until the next cycle, and then get the time of the run's c
 one cycle (a property with a new value) has not ended in between.
 """
 
-import heapq
-import itertools
 import math
 from collections.abc import Iterable
 from typing import Any
@@ -134,8 +132,6 @@ class DerivedBeliefs:
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
         self._settling = False
-        self._queue: list[tuple[float, int, Derived]] = []
-        self._numbers = itertools.count()
         self._alarm: Alarm | None = None
         self._due = math.inf
 
@@ -157,7 +153,7 @@ class DerivedBeliefs:
                 stream = Stream(name, streams[name])
                 stream = self._streams.setdefault(stream.symbol, {}).setdefault(name, stream)
                 stream.listeners.append((derived, number))
-            self._schedule(derived)
+            derived.scheduled = derived.pattern.deadline
         self._wait()
 
     def replace(self, old: nodes.Program, new: nodes.Program) -> None:
@@ -174,8 +170,6 @@ class DerivedBeliefs:
                 stream.listeners = [each for each in stream.listeners if each[0] is not derived]
                 if not stream.listeners:
                     del streams[name]
-        self._queue = [each for each in self._queue if each[2] is not derived]
-        heapq.heapify(self._queue)
         derived.forget()
 
     def stored(self, program: nodes.Program) -> dict[str, Any]:
@@ -208,10 +202,8 @@ class DerivedBeliefs:
         kept = [each for each in self.agent.waits.alarms.values() if each.function is ring]
         self._alarm = kept[0] if kept else None
         self._due = kept[0].arguments[0] if kept else math.inf
-        self._queue = []
         for derived in self._all.values():
-            derived.scheduled = math.inf
-            self._schedule(derived)
+            derived.scheduled = derived.pattern.deadline
         self._wait()
 
     @property
@@ -237,8 +229,10 @@ class DerivedBeliefs:
         time = now(self.agent)
         self._settling = True
         try:
-            while self._queue and self._queue[0][0] <= time:
-                self._advance(time)
+            while (derived := self._next()) is not None and derived.scheduled <= time:
+                if derived.pattern.deadline <= time:
+                    derived.pattern.advance(time)
+                derived.scheduled = derived.pattern.deadline
             while self._pending:
                 pending, self._pending = self._pending, []
                 for place, (stream, values, cause) in enumerate(pending):
@@ -247,8 +241,7 @@ class DerivedBeliefs:
                     self.cause = cause
                     for derived, number in stream.listeners:
                         derived.pattern.take(number, time, values)
-                        if derived.pattern.deadline < derived.scheduled:
-                            self._schedule(derived)
+                        derived.scheduled = min(derived.scheduled, derived.pattern.deadline)
         finally:
             self._settling, self.cause = False, None
         self._wait()
@@ -262,22 +255,14 @@ class DerivedBeliefs:
         self.agent.do_soon(settle)
         self.agent.architecture.ready()
 
-    def _advance(self, time: float) -> None:
-        _, _, derived = heapq.heappop(self._queue)
-        derived.scheduled = math.inf
-        if derived.pattern.deadline <= time:
-            derived.pattern.advance(time)
-        self._schedule(derived)
-
-    def _schedule(self, derived: Derived) -> None:
-        due = derived.pattern.deadline
-        if due < derived.scheduled:
-            derived.scheduled = due
-            heapq.heappush(self._queue, (due, next(self._numbers), derived))
+    def _next(self) -> Derived | None:
+        """Return the declaration that is looked at first; None without any."""
+        return min(self._all.values(), key=lambda each: each.scheduled, default=None)
 
     def _wait(self) -> None:
         """Set one alarm for all; one that rings earlier serves as well."""
-        due = self._queue[0][0] if self._queue else math.inf
+        derived = self._next()
+        due = math.inf if derived is None else derived.scheduled
         if self._alarm is not None:
             if self._due <= due:
                 return
@@ -299,9 +284,7 @@ def _begun(agent: Circumstance) -> DerivedBeliefs:
     observers = agent.observers
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
-        observers.hear_beliefs = True
-        # The fast paths do not notify observers of changes that no plan handles.
-        agent.features.usual_events = observers.usual_events = False
+        agent.look_at_observers()
     return _derived(agent)
 
 

@@ -8,13 +8,8 @@ from jacaros.bdi.state.intention import Intention
 
 def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
     """Ask *observer* before each event and each step; None ends this, and lets a held agent continue."""
-    observers, features = agent.observers, agent.features
-    if observers.step is None:
-        observers.usual_events = features.usual_events
-    observers.step = observer
-    observers.hear_beliefs = any(each is not None for each in (observer, observers.mind, observers.derived))
-    # The fast paths do not notify observers of changes that no plan handles.
-    features.usual_events = observers.usual_events and not observers.hear_beliefs
+    agent.observers.step = observer
+    agent.look_at_observers()
     if observer is None:
         agent.held = None
     look_at_plans(agent)

@@ -21,7 +21,7 @@ unrelated events one table lookup each.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Generic, TypeVar
 
 from jacaros.bdi.rules.proc_msg import RECEIVED
@@ -29,7 +29,7 @@ from jacaros.bdi.rules.selections import Fair
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import PLAN, Intention
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import Plan, with_inner
 from jacaros.bdi.state.plan_library import concerns
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Trigger, trigger
@@ -214,7 +214,7 @@ class _OfKinds(dict[Trigger, int]):
         self._urgent = urgent
 
     def __missing__(self, kind: Trigger) -> int:
-        plans = _with_inner(self._urgent.agent.library.plans)
+        plans = with_inner(self._urgent.agent.library.plans)
         self[kind] = max((self._urgent.of_plan(plan) for plan in plans if concerns(plan, kind)), default=0)
         return self[kind]
 
@@ -264,15 +264,9 @@ def _holds_urgent(queue: "deque[Event] | deque[Intention]") -> bool:
     return isinstance(queue, UrgentQueue) and queue.first_urgency() > 0
 
 
-def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
-    for plan in plans:
-        yield plan
-        yield from _with_inner(plan.subplans)
-
-
 def has_urgent_plans(agent: Circumstance) -> bool:
     """Return whether a plan, or the agent's option, makes something urgent."""
-    return bool(agent.options.urgency) or any(plan.urgency for plan in _with_inner(agent.library.plans))
+    return bool(agent.options.urgency) or any(plan.urgency for plan in with_inner(agent.library.plans))
 
 
 def plans_changed(agent: Circumstance) -> None:

@@ -3,8 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Any, Final, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.asl.source import Span
 from jacaros.bdi.architecture import Architecture
@@ -31,7 +30,8 @@ INTERVAL = 1_000
 """Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
 
 
-class ProjectFunctions(Protocol):
+@dataclass(frozen=True)
+class ProjectFunctions:
     """The arithmetic functions of a project.
 
     Attributes:
@@ -39,19 +39,9 @@ class ProjectFunctions(Protocol):
         evaluators: what computes them, by name; None stands for a value that is not known yet.
     """
 
-    @property
-    def functions(self) -> Mapping[str, tuple[int, int | None]]: ...
+    functions: Mapping[str, tuple[int, int | None]] = field(default_factory=dict)
+    evaluators: Mapping[str, Callable[..., Term]] = field(default_factory=dict)
 
-    @property
-    def evaluators(self) -> Mapping[str, Callable[..., Term]]: ...
-
-
-class _NoFunctions(NamedTuple):
-    functions: Mapping[str, tuple[int, int | None]] = MappingProxyType({})
-    evaluators: Mapping[str, Callable[..., Term]] = MappingProxyType({})
-
-
-NO_FUNCTIONS: Final = _NoFunctions()
 
 Sleep = Literal["awake", "drowsy", "asleep"]
 
@@ -66,7 +56,7 @@ class Functions:
     """
 
     own: dict[str, Any] = field(default_factory=dict)
-    project: ProjectFunctions = NO_FUNCTIONS
+    project: ProjectFunctions = field(default_factory=ProjectFunctions)
 
 
 @dataclass(slots=True, eq=False)
@@ -141,7 +131,6 @@ class Observers:
         mind: observes plans, beliefs and messages, or None; see `jacaros.bdi.rules.meta_events.observe_mind`.
         derived: derives beliefs from others, or None; see `jacaros.bdi.rules.deriving`.
         hear_beliefs: whether one of the last three is set.
-        usual_events: the feature of this name before `step` was set.
     """
 
     goal: Callable[[str, Goal, int, int, str], None] | None = None
@@ -150,7 +139,6 @@ class Observers:
     mind: MindObserver | None = None
     derived: BeliefObserver | None = None
     hear_beliefs: bool = False
-    usual_events: bool = False
 
 
 @dataclass(slots=True, eq=False)
@@ -183,7 +171,7 @@ class Features:
             intentions that made them, and no agent class is asked about these changes.
     """
 
-    usual_events: bool
+    usual_events: bool = False
     meta: bool = False
     meta_plans: bool = False
     edges: bool = False
@@ -297,7 +285,7 @@ class Circumstance:
         self.incoming = Incoming()
         self.observers = Observers()
         self.waits = Waits()
-        self.features = Features(options.events == "discard" and not options.new_focus)
+        self.features = Features()
         self.functions = Functions()
         self.counts = Counts()
         self.sleep: Sleep = "awake"
@@ -306,6 +294,14 @@ class Circumstance:
         self.held: HeldEvent | Intention | None = None
         self.running = False
         self.stopped = False
+        self.look_at_observers()
+
+    def look_at_observers(self) -> None:
+        """Note whether anything observes beliefs: the fast paths notify nobody of changes that no plan handles."""
+        each = self.observers
+        each.hear_beliefs = not (each.mind is None and each.step is None and each.derived is None)
+        usual = self.options.events == "discard" and not self.options.new_focus
+        self.features.usual_events = usual and not each.hear_beliefs
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Warn of an operand that is not a number."""

@@ -1,6 +1,6 @@
 """A plan: its syntax, its label, the places of its variables in a frame, and the ways in which its steps may end."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -194,6 +194,13 @@ def with_subplans(plan: Plan, number: int) -> Plan:
         inner.scope, inner.nested = plan, True
         plan.subplans.append(with_subplans(inner, number))
     return plan
+
+
+def with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
+    """Yield plans and their sub-plans, in a fixed order."""
+    for plan in plans:
+        yield plan
+        yield from with_inner(plan.subplans)
 
 
 def label_of(node: nodes.Plan, number: int) -> Term:

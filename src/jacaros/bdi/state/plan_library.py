@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.asl import nodes
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.engine import Engine, Every, Select
-from jacaros.bdi.state.plan import Plan, label_of, with_subplans
+from jacaros.bdi.state.plan import Plan, label_of, with_inner, with_subplans
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.triggers import trigger as trigger_of_kind
 from jacaros.terms.values import SELF, Term, bare
@@ -74,21 +74,13 @@ class Reactions(dict[Trigger, Sequence[Plan]]):
 
     def __init__(self, plans: Iterable[Plan]) -> None:
         super().__init__()
-        self.of = list(with_inner(plans))
+        self.of = [plan for plan in with_inner(plans) if plan.subplans]
 
     def __missing__(self, kind: Trigger) -> Sequence[Plan]:
         if len(self) >= MANY_NAMES:
             self.clear()
         self[kind] = [plan for plan in self.of if any(concerns(inner, kind) for inner in plan.subplans)]
         return self[kind]
-
-
-def with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
-    """Yield the plans that have sub-plans: among these plans, and inside them."""
-    for plan in plans:
-        if plan.subplans:
-            yield plan
-            yield from with_inner(plan.subplans)
 
 
 class Selects(dict[Trigger, Select | None]):

@@ -8,7 +8,7 @@ from jacaros.asl.formatter import format_term
 from jacaros.asl.source import SourceFile
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import Plan, with_inner
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import Rule
 from jacaros.mas.history.words import named
@@ -41,7 +41,7 @@ class ProgramRecords:
         if library.plans is library.program.plans and numbers.count_from_one(library.plans):
             plans = self._of_program(library.program)
         else:
-            plans = [_plan(plan, numbers[plan]) for plan in _with_inner(library.plans)]
+            plans = [_plan(plan, numbers[plan]) for plan in with_inner(library.plans)]
         rules = list(_rules(mind))
         for span in (each.span for each in (*(plan.node for plan in library.plans), *rules)):
             if span is not None:
@@ -53,7 +53,7 @@ class ProgramRecords:
         known = self._known.get(id(program))
         if known is None:
             numbers = PlanNumbers(program.plans)
-            known = program, [_plan(plan, numbers[plan]) for plan in _with_inner(program.plans)]
+            known = program, [_plan(plan, numbers[plan]) for plan in with_inner(program.plans)]
             self._known[id(program)] = known
         return known[1]
 
@@ -68,7 +68,7 @@ class PlanNumbers(dict[Plan, int]):
 
     def __init__(self, plans: Sequence[Plan]) -> None:
         super().__init__()
-        for plan in _with_inner(plans):
+        for plan in with_inner(plans):
             self[plan]  # numbered on access
 
     def count_from_one(self, plans: Sequence[Plan]) -> bool:
@@ -78,12 +78,6 @@ class PlanNumbers(dict[Plan, int]):
     def __missing__(self, plan: Plan) -> int:
         self[plan] = number = len(self) + 1
         return number
-
-
-def _with_inner(plans: Sequence[Plan]) -> Iterator[Plan]:
-    for plan in plans:
-        yield plan
-        yield from _with_inner(plan.subplans)
 
 
 def _plan(plan: Plan, number: int) -> dict[str, Any]:
