@@ -1,6 +1,6 @@
 """Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final
 
 from jacaros.asl import nodes
@@ -56,52 +56,39 @@ _OF_GOALS: Final[dict[str, _Check]] = {
 _OF_LABELS: Final[dict[str, _Check]] = {"within": _is_time, "while": _is_single, "cleanup": _is_goal}
 
 
+_TEST_HELP: Final = "write it at a goal that asks: `!ask[within(5000)]`"
+_GOAL_HELP: Final = "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"
+
+
 def wrong_supervision(goals: Sequence[nodes.Literal], found: Sequence[nodes.Node]) -> Iterator[Diagnostic]:
     """Warn of supervising annotations of goals and labels that have no effect."""
-    for goal in goals:
-        yield from _of_goal(goal)
+    for goal in (*goals, *(node.goal for node in found if isinstance(node, nodes.Achieve))):
+        yield from _wrong(_annotations(goal), "goals", _OF_GOALS, {"while": _GOAL_HELP})
     for node in found:
-        if isinstance(node, nodes.Achieve):
-            yield from _of_goal(node.goal)
-        elif isinstance(node, nodes.Test):
-            yield from _of_test(node.formula)
+        if isinstance(node, nodes.Test):
+            others = dict.fromkeys(("within", "every", "retry"), _TEST_HELP)
+            yield from _wrong(_annotations(node.formula), "test goals", {}, others)
         elif isinstance(node, nodes.Plan):
-            yield from _of_label(node)
+            others = {word: _example(word) for word in _OF_GOALS if word not in _OF_LABELS}
+            yield from _wrong(labelled(node), "plans", _OF_LABELS, others)
 
 
-def _of_goal(goal: nodes.Term) -> Iterator[Diagnostic]:
-    for item in _annotations(goal):
-        if item.functor in _OF_GOALS:
-            if not _OF_GOALS[item.functor](item.arguments):
-                yield _invalid(item)
-        elif item.functor == "while":
-            yield _misplaced(item, "goals", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`")
+def _wrong(
+    annotations: Iterable[nodes.Literal], where: str, checks: dict[str, _Check], others: dict[str, str]
+) -> Iterator[Diagnostic]:
+    """Warn of annotations with invalid arguments, and of *others* that have no effect there, with their help."""
+    for item in annotations:
+        word, code = item.functor, "wrong-supervision"
+        if word in checks and not checks[word](item.arguments):
+            yield Diagnostic("warning", f"invalid `{word}`", item.span, _HELP[word], code)
+        elif word in others and (item.arguments or word == "while"):
+            yield Diagnostic("warning", f"`{word}` has no effect on {where}", item.span, others[word], code)
+        elif word == "while" and word in checks and (why := contradiction(item.arguments[0])) is not None:
+            told = f"this plan always fails: {why}"
+            yield Diagnostic("warning", told, item.span, None, "context-never-true")
 
 
-def _of_test(formula: nodes.Term) -> Iterator[Diagnostic]:
-    for item in _annotations(formula):
-        if item.functor in ("within", "every", "retry") and item.arguments:
-            yield _misplaced(item, "test goals", "write it at a goal that asks: `!ask[within(5000)]`")
-
-
-def _of_label(plan: nodes.Plan) -> Iterator[Diagnostic]:
-    for item in labelled(plan):
-        if item.functor in _OF_LABELS:
-            if not _OF_LABELS[item.functor](item.arguments):
-                yield _invalid(item)
-            elif item.functor == "while":
-                yield from _never_true(item)
-        elif item.functor in ("every", "retry", "hard_deadline") and item.arguments:
-            yield _misplaced(item, "plans", f"write it at the goal: `!g[{_example(item.functor)}]`")
-
-
-def _never_true(item: nodes.Literal) -> Iterator[Diagnostic]:
-    why = contradiction(item.arguments[0])
-    if why is not None:
-        yield Diagnostic("warning", f"this plan always fails: {why}", item.span, None, "context-never-true")
-
-
-def _annotations(goal: nodes.Term) -> Iterator[nodes.Literal]:
+def _annotations(goal: nodes.Node) -> Iterator[nodes.Literal]:
     annotations = goal.annotations if isinstance(goal, nodes.Literal | nodes.Variable) else None
     for item in () if annotations is None else annotations.items:
         if isinstance(item, nodes.Literal):
@@ -109,16 +96,6 @@ def _annotations(goal: nodes.Term) -> Iterator[nodes.Literal]:
 
 
 def _example(word: str) -> str:
-    return _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
-
-
-def _invalid(item: nodes.Literal) -> Diagnostic:
-    return Diagnostic(
-        "warning", f"invalid `{item.functor}`", item.span, _HELP[item.functor], "wrong-supervision"
-    )
-
-
-def _misplaced(item: nodes.Literal, where: str, help: str) -> Diagnostic:
-    return Diagnostic(
-        "warning", f"`{item.functor}` has no effect on {where}", item.span, help, "wrong-supervision"
-    )
+    """Return where to write an annotation of goals, with an example."""
+    example = _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
+    return f"write it at the goal: `!g[{example}]`"

@@ -240,7 +240,7 @@ def drop_all_events(ctx: Context) -> None:
 @internal_action(".drop_all_desires", arity=0, suspends=True)
 def drop_all_desires(ctx: Context) -> None:
     """``.drop_all_desires`` drops all events, and all intentions except the calling one."""
-    goals.drop_all_goal_events(ctx.agent)
+    goals.drop_all_events(ctx.agent, goals_only=True)
     goals.drop_all_intentions(ctx.agent)
 
 

@@ -107,14 +107,14 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     """Return matching events of new goals (without intention)."""
     return [
         e
-        for e in (*agent.events, *agent.waits.suspended_events)
+        for e in _pending_events(agent)
         if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
     ]
 
 
 def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
     """Yield all goals: of pending events and of intentions, with the id of the intention."""
-    for event in (*agent.events, *agent.waits.suspended_events):
+    for event in _pending_events(agent):
         if _is_goal(event):
             owner = event[EVENT_INTENTION]
             yield event_literal(event), owner.id if owner else None
@@ -144,19 +144,30 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     agent.finish(intention)
 
 
+def _pending_events(agent: Circumstance) -> list[Event]:
+    """Return the events that are queued, and those of suspended goals and intentions."""
+    return [*agent.events, *agent.waits.suspended_events]
+
+
 def drop_events(agent: Circumstance, goal: Term) -> None:
     """Drop events of matching goals, with the intentions that posted them."""
     for event in goal_events(agent, goal):
-        remove_event(agent, event)
+        _drop_event(agent, event)
         _event_state(agent, event, "dropped", "finished")
-    for event in (*agent.events, *agent.waits.suspended_events):
+    for event in _pending_events(agent):
         if (
-            (intention := event[EVENT_INTENTION]) is not None
+            event[EVENT_INTENTION] is not None
             and _is_goal(event)
             and matches(agent, goal, event_literal(event))
         ):
-            remove_event(agent, event)
-            drop_intention(agent, intention)
+            _drop_event(agent, event)
+
+
+def _drop_event(agent: Circumstance, event: Event) -> None:
+    """Drop an event, with the intention that posted it."""
+    remove_event(agent, event)
+    if event[EVENT_INTENTION] is not None:
+        drop_intention(agent, event[EVENT_INTENTION])
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
@@ -181,23 +192,13 @@ def drop_all_intentions(agent: Circumstance) -> None:
             drop_intention(agent, intention)
 
 
-def drop_all_goal_events(agent: Circumstance) -> None:
-    """Drop all pending events of goals, with the intentions that posted them."""
-    for event in (*agent.events, *agent.waits.suspended_events):
-        if _is_goal(event):
-            remove_event(agent, event)
-            if (intention := event[EVENT_INTENTION]) is not None:
-                drop_intention(agent, intention)
-
-
-def drop_all_events(agent: Circumstance) -> None:
-    """Drop all pending events, with the intentions that posted them."""
-    for event in (*agent.events, *agent.waits.suspended_events):
-        if (intention := event[EVENT_INTENTION]) is not None:
-            drop_intention(agent, intention)
-    agent.events.clear()
-    agent.waits.requeued.clear()
-    agent.waits.suspended_events.clear()
+def drop_all_events(agent: Circumstance, goals_only: bool = False) -> None:
+    """Drop all pending events, or those of goals, with the intentions that posted them."""
+    for event in _pending_events(agent):
+        if not goals_only or _is_goal(event):
+            _drop_event(agent, event)
+    if not goals_only:
+        agent.waits.requeued.clear()
 
 
 def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
