@@ -438,11 +438,13 @@ class Mind(Circumstance):
 
     def preempted(self, act_id: int, resource: str) -> None:
         """Handle that a more urgent claim takes a resource away from an act, or from a plan that needs it."""
-        preemption.preempted(self, act_id, resource)
+        self.do_soon(preemption.suspend, act_id, resource)
+        self.architecture.ready()
 
     def regained(self, act_id: int) -> None:
         """Handle that the act, or the plan, has the resource again, or no longer waits for it."""
-        preemption.regained(self, act_id)
+        self.do_soon(preemption.resume, act_id)
+        self.architecture.ready()
 
     def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
         """Handle the result of an internal action that may suspend: continue, fail, or wait."""

@@ -17,7 +17,6 @@ from jacaros.asl.source import Span
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.explaining.lost_goals import details
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.goals import describe
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
 from jacaros.bdi.state.pending import is_action
@@ -374,11 +373,12 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
     if not intentions:
         return Problem(f"{message}: its intention was dropped", (), test.span)
     intention = intentions[-1]
-    state, reason = describe(intention)
+    state = intention.state
     frame = intention.frames[-1]
     info = getattr(frame[STEP], "info", None)
     place = info.node.span if info is not None else frame[PLAN].node.span
     if state == "waiting":
+        reason = intention.waiting.reason
         what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
         return Problem(message, (what,), place)
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)

@@ -100,11 +100,11 @@ def intention(
 
 
 def _state(candidate: Intention) -> Term:
-    name, reason = goals.describe(candidate)
-    if name != "waiting":
-        return atom(name)
-    inner = bare(reason)
-    return Annotated(atom("waiting"), (inner if is_action(inner) else (REASON, reason),))
+    if candidate.state != "waiting":
+        return atom(candidate.state)
+    inner = bare(candidate.waiting.reason)
+    reason = inner if is_action(inner) else (REASON, candidate.waiting.reason)
+    return Annotated(atom("waiting"), (reason,))
 
 
 def _stack(ctx: Context, intention: Intention) -> Term:

@@ -385,12 +385,3 @@ def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
     _, arguments, annotations = parts(rename(literal))
     agent.post(((kind, *arguments), None, own_annotations(annotations), None))
     agent.architecture.ready()
-
-
-def describe(intention: Intention) -> tuple[str, Term]:
-    """Return the state of an intention for ``.intention``: (name, reason)."""
-    if intention.suspended is not None:
-        return "suspended", None
-    if intention.waiting is not None:
-        return "waiting", intention.waiting.reason
-    return "running", None

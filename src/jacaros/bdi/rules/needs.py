@@ -5,7 +5,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.need import Need, Wanted, wanted_in
 from jacaros.bdi.state.pending import Waiting
-from jacaros.terms.values import String, Term, atom, make_list, structure
+from jacaros.terms.values import String, atom, make_list, structure
 
 
 def acquire(agent: Circumstance, intention: Intention) -> bool:
@@ -82,8 +82,3 @@ def sweep(agent: Circumstance) -> None:
         del agent.waits.needs[need.number]
         agent.waits.preempted.pop(need.number, None)
         agent.architecture.cancel_act(need.number)
-
-
-def reason_of(resource: str) -> Term:
-    """Return the reason of an intention that is suspended because it has lost a resource."""
-    return structure("preempted", atom(resource))

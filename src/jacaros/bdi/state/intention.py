@@ -70,6 +70,25 @@ class Intention:
         self.on_failed: tuple[Callable[..., None], tuple[Any, ...]] | None = None
         self.on_end: tuple[Callable[..., None], tuple[Any, ...]] | None = None
 
+    @property
+    def state(self) -> str:
+        """One of four states, the first of these that applies.
+
+        ==============  ======================  ================================================================
+        state           it has                  and ends with
+        ==============  ======================  ================================================================
+        ``over``        been dropped            nothing: it has no frames, and is not among those alive
+        ``suspended``   a reason (`suspended`)  ``.resume``, or the resource that it lost; in no queue meanwhile
+        ``waiting``     a wait (`waiting`)      the end of the wait, also while it is suspended
+        ``running``     a place in a queue      its next step, or the handling of the event that it has posted
+        ==============  ======================  ================================================================
+        """
+        if self.dropped:
+            return "over"
+        if self.suspended is not None:
+            return "suspended"
+        return "running" if self.waiting is None else "waiting"
+
     def is_atomic(self) -> bool:
         """Whether a plan on the stack is atomic."""
         return any(frame[PLAN].atomic for frame in self.frames)

@@ -45,7 +45,7 @@ class PursuedGoal:
         if self._watched.ended:
             return "achieved" if self.achieved else "failed"
         intentions = self._watched.intentions()
-        return str(goals.describe(intentions[-1])[0]) if intentions else "dropped"
+        return intentions[-1].state if intentions else "dropped"
 
     @property
     def reasons(self) -> list[Term]:
