@@ -26,8 +26,12 @@ _Terms = tuple[Term, ...]
 _REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FailureReason:
     """The annotations of a failure event, composed when a plan first asks for them.
+
+    The first two arguments are ``error(..)``, ``error_msg(..)`` and other given terms, or a function that returns them; and
+    the place, or the frame whose step failed, which is kept as it is: its plan does not continue.
 
     Attributes:
         goal_annotations: those of the goal whose failure event it is for; None before there is one.
@@ -37,30 +41,13 @@ class FailureReason:
             recorded at the same time.
     """
 
-    __slots__ = ("_at", "_made", "_terms", "candidates", "goal_annotations", "goal_number", "goals")
-
-    def __init__(
-        self,
-        terms: _Terms | Callable[[], _Terms],
-        at: "Place | Frame",
-        goal_annotations: EventAnnotations | None = None,
-        goal_number: int | None = None,
-    ) -> None:
-        """Make a reason.
-
-        Args:
-            terms: ``error(..)``, ``error_msg(..)`` and other given terms; or a function that returns them.
-            at: the place; or the frame whose step failed, which is kept as it is: its plan does not continue.
-            goal_annotations: of the goal that failed, if it is already known.
-            goal_number: see above.
-        """
-        self._terms = terms
-        self._at = at
-        self.goal_annotations = goal_annotations
-        self.goal_number = goal_number
-        self.goals: tuple[str, ...] = ()
-        self.candidates: tuple[str, ...] = ()
-        self._made: _Terms | None = None
+    _terms: _Terms | Callable[[], _Terms]
+    _at: "Place | Frame"
+    goal_annotations: EventAnnotations | None = None
+    goal_number: int | None = None
+    goals: tuple[str, ...] = ()
+    candidates: tuple[str, ...] = ()
+    _made: _Terms | None = None
 
     def for_goal(self, annotations: EventAnnotations, number: int | None = None) -> "FailureReason":
         """Return the reason for the failure event of a goal: this object, unless it already belongs to another goal."""

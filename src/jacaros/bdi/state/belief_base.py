@@ -3,13 +3,14 @@
 import itertools
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from math import inf
 from typing import Any, TypeVar
 
 from jacaros.bdi.state.budget import Budget, SearchBudget
 from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.rule import Answers, Entry, OpenFact
-from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.terms import values
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, is_key, resolve
@@ -46,6 +47,7 @@ _NONE: tuple[Row, ...] = ()
 _NOTHING: tuple[Item, ...] = ()
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Table:
     """All beliefs and rules of one functor, newest first.
 
@@ -67,35 +69,23 @@ class Table:
         deep: those that need no Python recursion.
     """
 
-    __slots__ = (
-        "_base",
-        "_parted",
-        "added",
-        "deep",
-        "deleted",
-        "functor",
-        "indexes",
-        "late",
-        "late_facts",
-        "others",
-        "plain",
-        "rows",
-        "searches",
-        "unwritten",
-    )
+    functor: Functor
+    _base: "BeliefTables | None" = None
+    added: Trigger = field(init=False)
+    deleted: Trigger = field(init=False)
+    rows: dict[Any, tuple[Term, ...]] = field(default_factory=dict)
+    late: OrderedDict[Entry, tuple[Term, ...]] = field(default_factory=lambda: _NO_LATE)
+    late_facts: int = 0
+    others: int = 0
+    unwritten: int = 0
+    plain: bool = True
+    searches: Any = None
+    deep: Any = None
+    indexes: dict[tuple[int, ...], Index] = field(default_factory=dict)
+    _parted: int = 0
 
-    def __init__(self, functor: Functor, base: "BeliefTables | None" = None) -> None:
-        self.functor = functor
-        self.added, self.deleted = trigger("+", "", functor), trigger("-", "", functor)
-        self.rows: dict[Any, tuple[Term, ...]] = {}
-        self.late = _NO_LATE
-        self.others = self.late_facts = self.unwritten = 0
-        self.plain = True
-        self.searches: Any = None
-        self.deep: Any = None
-        self.indexes: dict[tuple[int, ...], Index] = {}
-        self._base = base
-        self._parted = 0
+    def __post_init__(self) -> None:
+        self.added, self.deleted = trigger("+", "", self.functor), trigger("-", "", self.functor)
 
     @property
     def budget(self) -> SearchBudget | None:

@@ -2,14 +2,15 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.asl.source import Span
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
-from jacaros.bdi.state.budget import SearchBudget, budgets
+from jacaros.bdi.state.budget import Budget, SearchBudget, budgets
+from jacaros.bdi.state.engine import Engine
 from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event, Posted
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
 from jacaros.bdi.state.need import Wanted
@@ -177,7 +178,23 @@ class Features:
     edges: bool = False
 
 
-class Circumstance:
+class _Rules:
+    """Rules that the state calls; `jacaros.bdi.mind.Mind` has them."""
+
+    __slots__ = ()
+
+    accepts: Callable[[SpeechAct], bool]
+    call_own: Callable[[Term], Term]
+    observe_rest: Callable[[Intention], None]
+    drop_wait: Callable[[Waiting], None]
+    end_above: Callable[[Intention, int], None]
+    end_wait: Callable[[Waiting], None]
+    begin_need: Callable[[Intention, Frame, Wanted], bool]
+    notify_listeners: Callable[[Event], None]
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class Circumstance(_Rules):
     """All that an agent holds.
 
     Attributes:
@@ -213,87 +230,44 @@ class Circumstance:
             have run.
     """
 
-    __slots__ = (
-        "alive",
-        "architecture",
-        "atomic",
-        "atomic_over",
-        "beliefs",
-        "budgets",
-        "conditioned",
-        "context",
-        "counts",
-        "current",
-        "engine",
-        "events",
-        "features",
-        "functions",
-        "held",
-        "holders",
-        "incoming",
-        "intentions",
-        "library",
-        "name",
-        "observers",
-        "options",
-        "outer_frame",
-        "running",
-        "selections",
-        "sleep",
-        "stopped",
-        "trail",
-        "waits",
-    )
+    name: str
+    architecture: Architecture
+    options: Options
+    plans: InitVar[ProgramPlans]
+    trail: Trail = field(default_factory=Trail)
+    current: Intention | None = None
+    budgets: dict[str, Budget] = field(init=False)
+    engine: Engine = field(init=False)
+    beliefs: BeliefTables = field(init=False)
+    library: PlanLibrary = field(init=False)
+    events: deque[Event] = field(default_factory=deque)
+    intentions: deque[Intention] = field(default_factory=deque)
+    alive: dict[int, Intention] = field(default_factory=dict)
+    holders: dict[Plan, dict[int, Intention]] = field(default_factory=dict)
+    conditioned: dict[int, Intention] = field(default_factory=dict)
+    selections: Selections = field(init=False)
+    atomic: Intention | None = None
+    atomic_over: bool = False
+    incoming: Incoming = field(default_factory=Incoming)
+    observers: Observers = field(default_factory=Observers)
+    waits: Waits = field(default_factory=Waits)
+    features: Features = field(default_factory=Features)
+    functions: Functions = field(default_factory=Functions)
+    counts: Counts = field(default_factory=Counts)
+    sleep: Sleep = "awake"
+    outer_frame: Any = None
+    context: Any = None
+    held: HeldEvent | Intention | None = None
+    running: bool = False
+    stopped: bool = False
 
-    selections: Selections
-    accepts: Callable[[SpeechAct], bool]
-    call_own: Callable[[Term], Term]
-    observe_rest: Callable[[Intention], None]
-    drop_wait: Callable[[Waiting], None]
-    end_above: Callable[[Intention, int], None]
-    end_wait: Callable[[Waiting], None]
-    begin_need: Callable[[Intention, Frame, Wanted], bool]
-    notify_listeners: Callable[[Event], None]
-
-    def __init__(
-        self,
-        name: str,
-        architecture: Architecture,
-        options: Options,
-        plans: ProgramPlans,
-    ) -> None:
-        self.name = name
-        self.architecture = architecture
-        self.options = options
-        self.trail = Trail()
-        self.current: Intention | None = None
+    def __post_init__(self, plans: ProgramPlans) -> None:
         self.budgets = budgets(self)
         self.engine = plans.engine
-        self.beliefs: BeliefTables = BeliefTables(
-            plans.engine, options.belief_limit, self.budgets["belief_limit"]
-        )
-        if options.search_limit:
-            self.beliefs.budget = SearchBudget(options.search_limit)
+        self.beliefs = BeliefTables(plans.engine, self.options.belief_limit, self.budgets["belief_limit"])
+        if self.options.search_limit:
+            self.beliefs.budget = SearchBudget(self.options.search_limit)
         self.library = PlanLibrary(plans)
-        self.events: deque[Event] = deque()
-        self.intentions: deque[Intention] = deque()
-        self.alive: dict[int, Intention] = {}
-        self.holders: dict[Plan, dict[int, Intention]] = {}
-        self.conditioned: dict[int, Intention] = {}
-        self.atomic: Intention | None = None
-        self.atomic_over = False
-        self.incoming = Incoming()
-        self.observers = Observers()
-        self.waits = Waits()
-        self.features = Features()
-        self.functions = Functions()
-        self.counts = Counts()
-        self.sleep: Sleep = "awake"
-        self.outer_frame: Any = None
-        self.context: Any = None
-        self.held: HeldEvent | Intention | None = None
-        self.running = False
-        self.stopped = False
         self.look_at_observers()
 
     def look_at_observers(self) -> None:

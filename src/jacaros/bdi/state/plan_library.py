@@ -1,6 +1,7 @@
 """The plans of a program, made once for all agents that run it, and those of one agent."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.asl import nodes
@@ -151,6 +152,7 @@ def concerns(plan: Plan, trigger: Trigger) -> bool:
     )
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class PlanLibrary:
     """The plans of one agent, in the order in which they are tried.
 
@@ -164,32 +166,21 @@ class PlanLibrary:
         blamed: plans whose goal condition could not be evaluated, and has been reported.
     """
 
-    __slots__ = (
-        "_every",
-        "_sources",
-        "blamed",
-        "bodies",
-        "own",
-        "plans",
-        "plans_made",
-        "program",
-        "reactions",
-        "removed",
-        "selects",
-    )
+    program: ProgramPlans
+    plans: list[Plan] = field(init=False)
+    plans_made: int = field(init=False)
+    selects: Selects = field(init=False)
+    reactions: Reactions = field(init=False)
+    bodies: dict[int, tuple[Term, Plan]] = field(default_factory=dict)
+    blamed: set[Plan] = field(default_factory=set)
+    own: list[Plan] = field(default_factory=list)
+    removed: list[Plan] = field(default_factory=list)
+    _sources: dict[Plan, tuple[Term, ...]] = field(default_factory=dict)
+    _every: dict[Trigger, Every] = field(default_factory=dict)
 
-    def __init__(self, program: ProgramPlans) -> None:
-        self.program = program
-        self.plans: list[Plan] = program.plans
-        self.plans_made = len(program.plans)
-        self.bodies: dict[int, tuple[Term, Plan]] = {}
-        self.blamed: set[Plan] = set()
-        self.own: list[Plan] = []
-        self.removed: list[Plan] = []
-        self.selects: Selects = program.selects
-        self.reactions = program.reactions
-        self._sources: dict[Plan, tuple[Term, ...]] = {}
-        self._every: dict[Trigger, Every] = {}
+    def __post_init__(self) -> None:
+        self.plans, self.selects = self.program.plans, self.program.selects
+        self.plans_made, self.reactions = len(self.plans), self.program.reactions
 
     @property
     def by_name(self) -> frozenset[str]:
