@@ -66,7 +66,7 @@ def wrong_supervision(goals: Sequence[nodes.Literal], found: Sequence[nodes.Node
         yield from _wrong(_annotations(goal), "goals", _OF_GOALS, {"while": _GOAL_HELP})
     for node in found:
         if isinstance(node, nodes.Test):
-            others = dict.fromkeys(("within", "every", "retry"), _TEST_HELP)
+            others: dict[str, str] = dict.fromkeys(("within", "every", "retry"), _TEST_HELP)
             yield from _wrong(_annotations(node.formula), "test goals", {}, others)
         elif isinstance(node, nodes.Plan):
             others = {word: _example(word) for word in _OF_GOALS if word not in _OF_LABELS}

@@ -26,7 +26,7 @@ from jacaros.bdi.rules.pending import set_alarm
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
 from jacaros.bdi.state.pending import ASK, AnswerWait, Waiting
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.terms.substitution import ATOMIC, is_flat, rename, resolve
+from jacaros.terms.substitution import is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
     FALSE,
@@ -98,39 +98,9 @@ def _direct(written: Written) -> Function | None:
     act, to = _known_name(written[1]), _known_name(written[0])
     if act is None or (to is None and written[0] is not None):
         return None
-    if to is None or to == "self":
-        return _sender_to_some(act)
-    return _sender_to_one(act, to, written[2] is not None and is_flat(written[2]))
-
-
-def _sender_to_one(act: str, to: str, flat: bool) -> Function:
-    """Send to one agent named in the program; *flat* if the content is known to be flat."""
-
-    def send_on(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        # `_say` and `is_flat` inlined for the most frequent messages; the others are left to it.
-        if not flat:
-            if content.__class__ is not tuple or content[0].kind:
-                _say(agent, to, act, content)
-                return
-            for part in content:
-                if part.__class__ not in ATOMIC:
-                    _say(agent, to, act, content)
-                    return
-        if to == agent.name:
-            _say(agent, to, act, content)
-            return
-        agent.messages = number = agent.messages + 1
-        if not agent.architecture.send(SpeechAct(act, agent.name, to, content, number, None, True)):
-            raise _nobody(to)
-
-    return send_on
-
-
-def _sender_to_some(act: str) -> Function:
-    """Send to one or several agents known only at run time, or to the agent itself."""
 
     def send_to(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        for name in _receivers(resolve(receiver)):
+        for name in (to,) if to is not None else _receivers(resolve(receiver)):
             _say(agent, name, act, content)
 
     return send_to

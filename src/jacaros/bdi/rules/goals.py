@@ -166,8 +166,9 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
 def _drop_event(agent: Circumstance, event: Event) -> None:
     """Drop an event, with the intention that posted it."""
     remove_event(agent, event)
-    if event[EVENT_INTENTION] is not None:
-        drop_intention(agent, event[EVENT_INTENTION])
+    intention = event[EVENT_INTENTION]
+    if intention is not None:
+        drop_intention(agent, intention)
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:

@@ -1,6 +1,5 @@
 """Supervised goals and plans end or fail; a goal with ``retry`` is tried again."""
 
-from jacaros.asl import nodes
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.rules import meta_events
 from jacaros.bdi.rules.pending import cancel, now, set_alarm
@@ -9,7 +8,7 @@ from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.bdi.state.literals import EventAnnotations
 from jacaros.bdi.state.pending import Waiting
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import hidden_plan
 from jacaros.bdi.state.supervision import (
     PAUSE,
     SUPERVISED,
@@ -19,20 +18,13 @@ from jacaros.bdi.state.supervision import (
     supervisions_below,
 )
 from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.values import BY_SELF, Functor, Term, atom, functor, structure
+from jacaros.terms.values import BY_SELF, Term, atom, functor, structure
 
 ATTEMPTS = functor("attempts", 1)
 
 
-def _plan(label: Functor) -> Plan:
-    """A plan without a body, for the frames between the plans of a goal."""
-    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(label.name)), None, nodes.Body())
-    plan = Plan(node, label)
-    plan.nested = True  # it stands between a goal and the plan that posted it
-    return plan
-
-
-_SUPERVISING, _WAITING = _plan(SUPERVISED.functor), _plan(PAUSE)
+_SUPERVISING, _WAITING = hidden_plan(SUPERVISED.functor), hidden_plan(PAUSE)
+_SUPERVISING.nested = _WAITING.nested = True  # they stand between a goal and the plan that posted it
 
 
 def supervising(

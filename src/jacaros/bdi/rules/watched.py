@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.rules.deadlines import supervised
@@ -11,12 +10,13 @@ from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import GOAL, Frame, Intention
 from jacaros.bdi.state.literals import own_annotations
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import hidden_plan
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.substitution import rename
 from jacaros.terms.values import BY_SELF, Term, atom, functor
 
 _WATCHED = trigger("+", "", functor("watched", 0, namespace="jacaros"))
+_BOTTOM = hidden_plan(atom("watched"))
 
 
 def _nothing() -> None:
@@ -63,7 +63,7 @@ class WatchedGoal:
         self._bottom = (_WATCHED, float(id(self)))
         intention = agent.new_intention()
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
-        frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _bottom_plan()]
+        frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _BOTTOM]
         intention.frames.append(frame)
         given = own_annotations(annotations)
         agent.post((supervised(agent, intention, self._goal, given), intention, given, None))
@@ -114,8 +114,3 @@ class WatchedCondition:
     def forget(self) -> None:
         """End the watch; no effect if it has ended."""
         cancel(self._agent, self._watch)
-
-
-def _bottom_plan() -> Plan:
-    node = nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("watched")), None, nodes.Body())
-    return Plan(node, atom("watched"))

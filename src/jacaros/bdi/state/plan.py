@@ -15,6 +15,7 @@ from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
     SOURCE,
     Annotated,
+    Functor,
     String,
     Term,
     annotations_of,
@@ -158,6 +159,13 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def hidden_plan(label: Functor) -> Plan:
+    """Make a plan without a body, for frames that stand for something else on the stack of an intention."""
+    return Plan(
+        nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(label.name)), None, nodes.Body()), label
+    )
 
 
 def position_of(step: Any) -> str:

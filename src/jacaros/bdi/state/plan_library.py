@@ -46,7 +46,7 @@ class ProgramPlans:
             self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
         self.reactions = Reactions(self.plans)
         self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
-        self.selects = ProgramSelects(self)
+        self.selects = Selects(self, self)
 
     def kinds(self) -> Iterator[Trigger]:
         """The kinds of events that plans are for, in the order of the program."""
@@ -85,17 +85,30 @@ class Reactions(dict[Trigger, Sequence[Plan]]):
 
 
 class Selects(dict[Trigger, Select | None]):
-    """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it."""
+    """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it.
 
-    __slots__ = ("_general", "_unnamed")
+    Args:
+        plans: those of a program, or of one agent.
+        program: those of the program, which an agent shares for events that none of its own plans concerns.
+    """
 
-    def __init__(self) -> None:
+    __slots__ = ("_general", "_plans", "_program", "_unnamed")
+
+    def __init__(self, plans: "ProgramPlans | PlanLibrary", program: "ProgramPlans") -> None:
         super().__init__()
+        self._plans, self._program = plans, program
         self._general: dict[tuple[Any, ...], Select | None] = {}
         self._unnamed: list[Trigger] = []
 
-    def made(self, trigger: Trigger, plans: Sequence[Plan], engine: Engine) -> Select | None:
-        """What chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        if isinstance(self._plans, PlanLibrary) and self._plans.is_as_written(trigger):
+            return self._keep(trigger, self._program.selects[trigger], self._program.relevant(trigger))
+        plans = self._plans.relevant(trigger)
+        return self._keep(trigger, self._made(trigger, plans), plans)
+
+    def _made(self, trigger: Trigger, plans: Sequence[Plan]) -> Select | None:
+        """Make what chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
+        engine = self._program.engine
         if not plans:
             return None
         if _name(plans, trigger):
@@ -105,7 +118,7 @@ class Selects(dict[Trigger, Select | None]):
             self._general[key] = engine.select(trigger, plans)
         return self._general[key]
 
-    def keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
+    def _keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
         """Keep the function of an event kind, for ever if a plan names it; of others, only MANY_NAMES are kept."""
         if not _name(plans, trigger):
             if len(self._unnamed) >= MANY_NAMES:
@@ -116,20 +129,11 @@ class Selects(dict[Trigger, Select | None]):
         self[trigger] = select
         return select
 
-
-class ProgramSelects(Selects):
-    """What chooses among the plans of a program."""
-
-    __slots__ = ("_program",)
-
-    def __init__(self, program: ProgramPlans) -> None:
-        super().__init__()
-        self._program = program
-
-    def __missing__(self, trigger: Trigger) -> Select | None:
-        program = self._program
-        plans = program.relevant(trigger)
-        return self.keep(trigger, self.made(trigger, plans, program.engine), plans)
+    def forget(self, plan: Plan) -> None:
+        """A plan came or went: the functions it concerns are made anew."""
+        self._general.clear()
+        for trigger in [each for each in self if concerns(plan, each)]:
+            del self[trigger]
 
 
 def _name(plans: Sequence[Plan], trigger: Trigger) -> bool:
@@ -212,13 +216,12 @@ class PlanLibrary:
         if self.plans is self.program.plans:
             self.plans = list(self.plans)
         if self.selects is self.program.selects:
-            self.selects = OwnSelects(self)
+            self.selects = Selects(self, self.program)
 
     def _forget_selects(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""
         self._every.clear()
-        if isinstance(self.selects, OwnSelects):
-            self.selects.forget(plan)
+        self.selects.forget(plan)
 
     def parts(self) -> tuple[Any, ...] | None:
         """What makes it differ from the plans of the program, for `take_parts`; None when it does not."""
@@ -281,33 +284,3 @@ class PlanLibrary:
         if not self.own and not self.removed:
             return self.program.has_meta_plans
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
-
-
-class OwnSelects(Selects):
-    """The same for an agent whose plans are not all those of its program; or one that chooses among them itself."""
-
-    __slots__ = ("library",)
-
-    def __init__(self, library: PlanLibrary) -> None:
-        super().__init__()
-        self.library = library
-
-    def __missing__(self, trigger: Trigger) -> Select | None:
-        library = self.library
-        if library.is_as_written(trigger):
-            return self.keep(trigger, library.program.selects[trigger], library.program.relevant(trigger))
-        plans = library.relevant(trigger)
-        return self.keep(trigger, self.made(trigger, plans, library.program.engine), plans)
-
-    def forget(self, plan: Plan) -> None:
-        """A plan came or went: the functions it concerns are made anew."""
-        self._general.clear()
-        head = plan.node.trigger
-        functor = plan.trigger_functor()
-        for trigger in list(self):
-            if (
-                trigger.operator == head.operator
-                and trigger.kind == head.kind
-                and functor in (None, trigger.functor)
-            ):
-                del self[trigger]
