@@ -423,7 +423,7 @@ class Mind(Circumstance):
         self._acts += 1
         number = self._beginning = self._acts
         act = needs.act_for(self, number, intention, frame, wanted)
-        self.waits.needs[number] = Need(number, intention, len(intention.frames) - 1)
+        self.waits.needs[number] = Need(number, intention)
         try:
             self.architecture.act(act)
         finally:

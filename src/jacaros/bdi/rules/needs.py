@@ -65,11 +65,6 @@ def of(agent: Circumstance, intention: Intention) -> list[Need]:
     return [need for need in agent.waits.needs.values() if need.is_on(intention)]
 
 
-def is_of(agent: Circumstance, intention: Intention, index: int) -> bool:
-    """Return whether the frame at *index* holds resources."""
-    return any(need.index == index and need.is_on(intention) for need in agent.waits.needs.values())
-
-
 def sweep(agent: Circumstance) -> None:
     """Release resources of frames that are gone, however they ended."""
     for need in list(agent.waits.needs.values()):
