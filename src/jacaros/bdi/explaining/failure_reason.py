@@ -1,6 +1,6 @@
 """Why a goal failed: the annotations of its failure event, and the description in logs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from jacaros.asl import nodes
@@ -89,17 +89,14 @@ class FailureReason:
 
     def known_error(self) -> str:
         """Return the id of the error, or an empty string: failures by ``.fail_goal`` have none."""
-        for term in self.terms:
-            if term.__class__ is tuple and term[0] is ERROR:
-                return text(term[1])
-        return ""
+        return next((text(value) for value in self._values(ERROR)), "")
 
     def message(self) -> str:
         """Return the message, or an empty string."""
-        for term in self.terms:
-            if term.__class__ is tuple and term[0] is ERROR_MSG:
-                return str(term[1])
-        return self.place.told
+        return next((str(value) for value in self._values(ERROR_MSG)), self.place.told)
+
+    def _values(self, symbol: Functor) -> Iterator[Term]:
+        return (term[1] for term in self.terms if term.__class__ is tuple and term[0] is symbol)
 
     def others(self) -> list[Term]:
         """Return the terms other than ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""

@@ -64,15 +64,7 @@ def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
 
 def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
     """Return the intentions that pursue the goal at any depth, or are about to."""
-    found = []
-    for intention in list(agent.alive.values()):
-        if frame_of(agent, intention, goal) is not None:
-            found.append(intention)
-            continue
-        event = pending_event(agent, intention)
-        if event is not None and _is_goal(event) and matches(agent, goal, event_literal(event)):
-            found.append(intention)
-    return found
+    return [each for each in list(agent.alive.values()) if goal_of(agent, each, goal) is not None]
 
 
 def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | None:

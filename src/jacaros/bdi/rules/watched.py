@@ -59,14 +59,14 @@ class WatchedGoal:
         self.failed = False
         self.reason: FailureReason | None = None
         self._on_end, self._on_dropped = on_end, on_dropped
-        self._goal = (trigger("+", "!", symbol), *arguments)
+        posted = (trigger("+", "!", symbol), *arguments)
         self._bottom = (_WATCHED, float(id(self)))
         intention = agent.new_intention()
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
         frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _BOTTOM]
         intention.frames.append(frame)
         given = own_annotations(annotations)
-        agent.post((supervised(agent, intention, self._goal, given), intention, given, None))
+        agent.post((supervised(agent, intention, posted, given), intention, given, None))
         agent.architecture.ready()
 
     @property
