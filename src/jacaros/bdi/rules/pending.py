@@ -34,7 +34,7 @@ from jacaros.terms.values import (
 
 
 def now(agent: Circumstance) -> float:
-    """Return the time of the agent: that of the run's clock, which goes on from its latest value if it was set back."""
+    """Return the time of the agent: that of the run's clock, continued from its latest value if it was set back."""
     waits = agent.waits
     time = agent.architecture.now() + waits.ahead
     if time < waits.latest:

@@ -271,7 +271,7 @@ class Circumstance(_Rules):
         self.look_at_observers()
 
     def look_at_observers(self) -> None:
-        """Note whether anything observes beliefs: the fast paths notify nobody of changes that no plan handles."""
+        """Note whether anything observes beliefs: the fast paths do not report changes that no plan handles."""
         each = self.observers
         each.hear_beliefs = not (each.mind is None and each.step is None and each.derived is None)
         usual = self.options.events == "discard" and not self.options.new_focus
