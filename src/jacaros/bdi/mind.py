@@ -12,18 +12,19 @@ from jacaros.bdi.engines import new_engine
 from jacaros.bdi.rules import (
     belief_update,
     cycle,
+    deadlines,
     forks,
     functions,
     goals,
     meta_events,
     needs,
+    pending,
     perceiving,
     plan_changes,
     plan_terms,
     preemption,
     query,
     subplans,
-    supervised_goals,
     supervision,
     waits,
 )
@@ -39,12 +40,12 @@ from jacaros.bdi.state.intention import Frame, Intention, NextStep
 from jacaros.bdi.state.literals import EventAnnotations, apart, own_annotations
 from jacaros.bdi.state.need import Need, Wanted
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.pending import ACTION, Waiting
 from jacaros.bdi.state.plan import FAILED, SUSPENDED, Fail, Failure
 from jacaros.bdi.state.plan_library import ProgramPlans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.speech_act import SpeechAct, message_id
 from jacaros.bdi.state.triggers import Goal, Trigger, trigger
-from jacaros.bdi.state.waiting import ACTION, ActWait, Waiting
 from jacaros.terms import functions as _functions  # noqa: F401 - fills the table of arithmetic functions
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.plans import is_body
@@ -209,7 +210,7 @@ class Mind(Circumstance):
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
         event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
-        supervised_goals.adopt(self, event)
+        deadlines.adopt(self, event)
         self.architecture.ready()
 
     def run(self, fuel: int) -> bool:
@@ -291,7 +292,7 @@ class Mind(Circumstance):
     drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
     end_above = supervision.end_above  # pyright: ignore[reportAssignmentType]
     end_wait = waits.come_true  # pyright: ignore[reportAssignmentType]
-    notify_event_waits = waits.notify_event_waits  # pyright: ignore[reportAssignmentType]
+    notify_listeners = pending.notify_listeners  # pyright: ignore[reportAssignmentType]
 
     # --- called by generated code --------------------------------------------------------------------------
 
@@ -338,7 +339,9 @@ class Mind(Circumstance):
     ) -> Posted:
         """Return a posted goal with annotations."""
         annotations = own_annotations(items, tail)
-        return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
+        if not separate:
+            goal = deadlines.supervised(self, self.current, goal, annotations)
+        return Posted(goal, annotations)
 
     def goal_from(self, operator: str, kind: str, term: Term, separate: bool = False) -> Goal | Posted:
         """Return the goal that a term denotes.
@@ -353,10 +356,7 @@ class Mind(Circumstance):
         goal = (trigger(operator, kind, symbol), *arguments_of(term))
         if not annotations_of(term):
             return goal
-        annotations = own_annotations(annotations_of(term))
-        if kind != "!":
-            return Posted(goal, annotations)
-        return Posted(goal, annotations) if separate else supervised_goals.posted(self, goal, annotations)
+        return self.annotated_goal(goal, annotations_of(term), None, separate)
 
     def test_goal_from(self, term: Term) -> Goal | Posted:
         """Return the test goal for a query known only at run time; fail if no plan handles it."""
@@ -382,7 +382,7 @@ class Mind(Circumstance):
             annotations, goal = goal.annotations, goal.goal
         current = self.current
         cause = self.cause_now() or (current.cause if current else None)
-        adopt = meta_events.post_new_goal if annotations is BY_SELF else supervised_goals.adopt
+        adopt = meta_events.post_new_goal if annotations is BY_SELF else deadlines.adopt
         adopt(self, (apart(goal), None, annotations, cause))
 
     def begin_act(
@@ -412,7 +412,7 @@ class Mind(Circumstance):
             # It would become ready in the next cycle before all others, so make it ready now.
             intention.frames[-1][0] = next_step
             return None
-        waiting = ActWait(intention, (ACTION, (symbol, *arguments) if arguments else symbol), number)
+        waiting = Waiting(intention, (ACTION, (symbol, *arguments) if arguments else symbol), number)
         waiting.attach(intention.frames[-1], next_step)
         self.waits.acts[number] = waiting
         if completion is not None:
@@ -424,7 +424,7 @@ class Mind(Circumstance):
         self._acts += 1
         number = self._beginning = self._acts
         act = needs.act_for(self, number, intention, frame, wanted)
-        self.waits.needs[number] = Need(number, intention, len(intention.frames) - 1)
+        self.waits.needs[number] = Need(number, intention)
         try:
             self.architecture.act(act)
         finally:
@@ -439,11 +439,13 @@ class Mind(Circumstance):
 
     def preempted(self, act_id: int, resource: str) -> None:
         """Handle that a more urgent claim takes a resource away from an act, or from a plan that needs it."""
-        preemption.preempted(self, act_id, resource)
+        self.do_soon(preemption.suspend, act_id, resource)
+        self.architecture.ready()
 
     def regained(self, act_id: int) -> None:
         """Handle that the act, or the plan, has the resource again, or no longer waits for it."""
-        preemption.regained(self, act_id)
+        self.do_soon(preemption.resume, act_id)
+        self.architecture.ready()
 
     def finish_call(self, result: Any, frame: Frame, next_step: NextStep) -> Any:
         """Handle the result of an internal action that may suspend: continue, fail, or wait."""

@@ -19,12 +19,11 @@ from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.body_steps import interpreted
 from jacaros.bdi.rules.plan_terms import plan_of_body
 from jacaros.bdi.rules.searching import Remaining
-from jacaros.bdi.rules.watched import WatchedGoal
-from jacaros.bdi.state.condition_waits import ConditionObserver
+from jacaros.bdi.rules.watched import WatchedCondition, WatchedGoal
+from jacaros.bdi.state.pending import CoroutineWait
 from jacaros.bdi.state.plan import Plan, every_plan, label_of, position_of, with_subplans
 from jacaros.bdi.state.rule import OpenFact, Rule
 from jacaros.bdi.state.triggers import Trigger, trigger
-from jacaros.bdi.state.waiting import CoroutineWait
 from jacaros.errors import JacarosError
 from jacaros.terms.collections import QueueValue
 from jacaros.terms.values import Annotated, Functor, List, Reference, Var, functor, list_items, make_list
@@ -36,7 +35,7 @@ _PACKAGES = ("jacaros.asl.", "jacaros.bdi.", "jacaros.terms.")
 """Packages of the classes and functions of a mind."""
 _LIVE = {
     CoroutineWait: "it waits for a coroutine",
-    ConditionObserver: "Python code awaits a condition",
+    WatchedCondition: "Python code awaits a condition",
     WatchedGoal: "Python code awaits a goal",
     Reference: "a term holds a Python object",
 }
@@ -123,10 +122,18 @@ def _name_of(value: Value) -> Data:
     Raises:
         NotStorable: it cannot be found by name.
     """
+    _refuse_live(value)
     module, name = getattr(value, "__module__", None) or "", getattr(value, "__qualname__", "")
     if module.startswith(_PACKAGES) and getattr(sys.modules.get(module), name, None) is value:
         return [module, name]
     raise NotStorable(f"the mind cannot be stored: it holds {value!r}")
+
+
+def _refuse_live(value: Value) -> None:
+    """Refuse a live object, or a method of one."""
+    for live, why in _LIVE.items():
+        if isinstance(getattr(value, "__self__", value), live):
+            raise NotStorable(f"the mind cannot be stored: {why}")
 
 
 def _named(data: Data, wanted: type) -> Value:
@@ -161,9 +168,7 @@ def _fill_queue(made: QueueValue, parts: Data) -> None:
 
 
 def _written_object(_: ProgramParts, value: Value) -> tuple[Data, Data]:
-    for live, why in _LIVE.items():
-        if isinstance(value, live):
-            raise NotStorable(f"the mind cannot be stored: {why}")
+    _refuse_live(value)
     if isinstance(value, FailureReason):
         value.terms  # noqa: B018 - puts them together
     return _name_of(value.__class__), [part for item in _attributes(value) for part in item]
@@ -209,28 +214,58 @@ def _kind_of_plan(program: ProgramParts, plan: Plan) -> str:
     return "own_plan" if plan.scope is None else "subplan"
 
 
-KINDS: dict[str, Kind] = {
+def _of_parts(make: Callable[..., Value], *names: str) -> Kind:
+    """Return a kind of immutable objects that are made of the values of their attributes."""
+    return Kind(
+        lambda _, value: ([], [getattr(value, name) for name in names]), lambda _, __, parts: make(*parts)
+    )
+
+
+def _filled(make: Callable[[], Value], fill: Callable[[Value, Data], None]) -> Kind:
+    """Return a kind of mutable collections."""
+    return Kind(lambda _, value: ([], value), lambda _, __, ___: make(), fill)
+
+
+_CLASSES: dict[type, Kind] = {
     # immutable
-    "tuple": Kind(lambda _, value: ([], value), lambda _, __, parts: tuple(parts)),
-    "list": Kind(lambda _, value: ([], list_items(value)), lambda _, __, parts: make_list(parts)),
-    "functor": Kind(
-        lambda _, value: ([value.name, value.arity, value.negated, value.namespace, value.kind], ()),
-        lambda _, data, __: functor(*data),
+    tuple: Kind(lambda _, value: ([], value), lambda _, __, parts: tuple(parts)),
+    List: Kind(lambda _, value: ([], list_items(value)), lambda _, __, parts: make_list(parts)),
+    Functor: _of_parts(functor, "name", "arity", "negated", "namespace", "kind"),
+    Trigger: _of_parts(trigger, "operator", "kind", "functor"),
+    Annotated: _of_parts(Annotated, "term", "annotations", "tail"),
+    SourceFile: _of_parts(SourceFile, "name", "text"),
+    Rule: _of_parts(Rule, "written", "of_program"),
+    OpenFact: _of_parts(OpenFact, "literal", "annotations", "written"),
+    # mutable
+    list: _filled(list, list.extend),
+    deque: _filled(deque, deque.extend),
+    set: _filled(set, set.update),
+    dict: Kind(
+        lambda _, value: ([], [part for item in value.items() for part in item]),
+        lambda _, __, ___: {},
+        fill_dict,
     ),
-    "trigger": Kind(
-        lambda _, value: ([value.operator, value.kind], (value.functor,)),
-        lambda _, data, parts: trigger(*data, *parts),
+    Var: Kind(
+        lambda _, var: ([var.name], (var.ref, getattr(var, "at", None), getattr(var, "number", None))),
+        lambda _, data, __: Var(*data),
+        _fill_variable,
     ),
-    "annotated": Kind(
-        lambda _, value: ([], (value.term, value.annotations, value.tail)),
-        lambda _, __, parts: Annotated(*parts),
+    QueueValue: Kind(
+        lambda _, queue: ([queue.priority], queue), lambda _, data, __: QueueValue(*data), _fill_queue
     ),
+    Remaining: Kind(
+        lambda _, value: ([], value.copy()),
+        lambda _, __, ___: Remaining(iter(())),
+        lambda made, parts: Remaining.__init__(made, iter(parts), parts),
+    ),
+}
+_KIND_OF = {each: each.__name__ for each in _CLASSES}
+KINDS: dict[str, Kind] = {_KIND_OF[each]: kind for each, kind in _CLASSES.items()} | {
     "function": Kind(lambda _, value: (_name_of(value), ()), lambda _, data, __: _named(data, FunctionType)),
     "named": Kind(
         lambda _, value: (_name_of(value.__class__), value),
         lambda _, data, parts: _named(data, tuple)(*parts),
     ),
-    # plans and rules
     "plan": Kind(ProgramParts.written, ProgramParts.plan),
     "own_plan": Kind(
         lambda _, plan: ([], (plan.node, *(each.label for each in every_plan([plan])))),
@@ -241,64 +276,16 @@ KINDS: dict[str, Kind] = {
         lambda _, data, parts: parts[0].subplans[data[0]],
     ),
     "body": Kind(
-        lambda _, plan: ([], (plan.body_term,)),
-        lambda program, _, parts: plan_of_body(program.mind, *parts),
+        lambda _, plan: ([], (plan.body_term,)), lambda program, _, parts: plan_of_body(program.mind, *parts)
     ),
     "step": Kind(
         lambda _, step: ([position_of(step)], (step.plan,)),
         lambda program, data, parts: program.mind.engine.step_at(*parts, *data),
     ),
     "belief": Kind(ProgramParts.written, ProgramParts.belief),
-    "rule": Kind(
-        lambda _, rule: ([rule.of_program], (rule.written,)), lambda _, data, parts: Rule(*parts, *data)
-    ),
-    "open_fact": Kind(
-        lambda _, fact: ([], (fact.literal, fact.annotations, fact.written)),
-        lambda _, __, parts: OpenFact(*parts),
-    ),
     "node": Kind(
         lambda _, node: (_name_of(node.__class__), (*node.parts(), node.span)),
         lambda _, data, parts: _named(data, nodes.Node)(*parts[:-1], span=parts[-1]),
     ),
-    "file": Kind(lambda _, file: ([file.name, file.text], ()), lambda _, data, __: SourceFile(*data)),
-    # mutable
-    "array": Kind(lambda _, value: ([], value), lambda _, __, ___: [], list.extend),
-    "deque": Kind(lambda _, value: ([], value), lambda _, __, ___: deque(), deque.extend),
-    "set": Kind(lambda _, value: ([], value), lambda _, __, ___: set(), set.update),
-    "dict": Kind(
-        lambda _, value: ([], [part for item in value.items() for part in item]),
-        lambda _, __, ___: {},
-        fill_dict,
-    ),
-    "var": Kind(
-        lambda _, var: ([var.name], (var.ref, getattr(var, "at", None), getattr(var, "number", None))),
-        lambda _, data, __: Var(*data),
-        _fill_variable,
-    ),
-    "queue": Kind(
-        lambda _, queue: ([queue.priority], queue), lambda _, data, __: QueueValue(*data), _fill_queue
-    ),
-    "remaining": Kind(
-        lambda _, value: ([], value.copy()),
-        lambda _, __, ___: Remaining(iter(())),
-        lambda made, parts: Remaining.__init__(made, iter(parts), parts),
-    ),
     "object": Kind(_written_object, _empty_object, _fill_object),
-}
-_KIND_OF: dict[type, str] = {
-    tuple: "tuple",
-    List: "list",
-    Functor: "functor",
-    Trigger: "trigger",
-    Annotated: "annotated",
-    SourceFile: "file",
-    Rule: "rule",
-    OpenFact: "open_fact",
-    list: "array",
-    deque: "deque",
-    set: "set",
-    dict: "dict",
-    Var: "var",
-    QueueValue: "queue",
-    Remaining: "remaining",
 }

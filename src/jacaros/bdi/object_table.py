@@ -142,7 +142,7 @@ class Reader:
             assert fill is not None
             fill(made, self._all(parts))
         self._fill_nested_sets([(made, parts) for kind, made, parts in open_ones if kind == "dict"])
-        self._number_variables([made for kind, made, _ in open_ones if kind == "var"])
+        self._number_variables([made for kind, made, _ in open_ones if kind == "Var"])
 
     def _fill_nested_sets(self, filled: list[tuple[Value, Data]]) -> None:
         """Fill dictionaries again in which two keys were equal because the sets in them were still empty."""

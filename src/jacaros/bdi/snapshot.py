@@ -8,24 +8,22 @@ Live Python objects cannot be stored (`NotStorable`): coroutines of the project 
 conditions that Python code awaits, and opaque objects in terms.
 """
 
+from collections import deque
 from typing import Any
 
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_table import Reader, Writer
-from jacaros.bdi.rules import urgency
-from jacaros.bdi.rules.alarms import start_alarm
-from jacaros.bdi.rules.belief_update import look_again
+from jacaros.bdi.rules import preemption, urgency
+from jacaros.bdi.rules.pending import look_again, now, start_alarm
 from jacaros.bdi.rules.plan_changes import look_at_plans
 from jacaros.bdi.state.act import Completion
 from jacaros.bdi.state.belief_base import take_away
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION
 from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.supervision import SUPERVISION, GoalSupervision, is_supervision
-from jacaros.bdi.state.waiting import TimedWait
 from jacaros.terms.values import SOURCE_PERCEPT, String, atom, functor
 
-FORMAT = 5
+FORMAT = 6
 """Version of the format."""
 
 _FIELDS = (
@@ -34,14 +32,12 @@ _FIELDS = (
     "alive",
     "atomic",
     "atomic_over",
+    "counts",
+    "incoming",
     "messages",
     "sleep",
+    "waits",
 )
-_PARTS = {
-    "waits": ("abandoned", "acts", "alarms", "alarms_made", "questions", "requeued", "suspended_events"),
-    "incoming": ("called", "messages", "tasks"),
-    "counts": ("cycles", "intentions", "next_check", "next_look"),
-}
 _QUEUES = ("events", "intentions")
 _INTERRUPTED = (
     (functor("env_failure_reason", 1), atom("interrupted")),
@@ -57,21 +53,14 @@ def stored(mind: Mind) -> dict[str, Any]:
     """
     from jacaros.bdi.rules import deriving  # imported here and below: few minds are stored or copied
 
-    conditions = mind.waits.conditions
+    now(mind)  # the latest time is stored
     held = knowledge(mind)
     held |= {name: getattr(mind, name) for name in _FIELDS}
-    held |= {
-        part: {name: getattr(getattr(mind, part), name) for name in names} for part, names in _PARTS.items()
-    }
     held["held_percepts"], held["blamed"] = mind.beliefs.held_percepts, mind.library.blamed
     held |= {name: list(getattr(mind, name)) for name in _QUEUES}
-    held["event_waits"] = [wait for kind in mind.waits.events.values() for wait in kind.values()]
-    held["condition_waits"] = (list(conditions.values()), list(conditions.due), list(conditions.restless))
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
-    held["percepts"] = list(mind.incoming.percepts)
     held["derived"] = deriving.stored(mind, mind.program)
     held["serial"] = mind.trail.serial
-    held["time"] = mind.architecture.now()
     writer = Writer(mind)
     version, state, gauss = mind.architecture.random.getstate()
     return {
@@ -109,21 +98,21 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     mind.engine.begin(mind)
     held = Reader(mind, data["objects"]).read(data["held"])
     _learn(mind, held)
+    arrived = mind.incoming.percepts
     for name in _FIELDS:
         setattr(mind, name, held[name])
-    for part, names in _PARTS.items():
-        for name in names:
-            setattr(getattr(mind, part), name, held[part][name])
+    if not same_host:
+        signals = [[each for each in group if each.kind == "signal"] for group in mind.incoming.percepts]
+        mind.incoming.percepts = deque(signals)
+    mind.incoming.percepts.extend(arrived)
+    mind.incoming.called = mind.incoming.called or bool(arrived)
     mind.beliefs.held_percepts, mind.library.blamed = held["held_percepts"], held["blamed"]
     for name in _QUEUES:
         getattr(mind, name).extend(held[name])
     for intention in mind.alive.values():
         mind.note_plans(intention)
-    for percepts in reversed(held["percepts"]):
-        mind.incoming.percepts.appendleft(
-            percepts if same_host else [p for p in percepts if p.kind == "signal"]
-        )
-    _wait_again(mind, held)
+    for alarm in mind.waits.alarms.values():
+        start_alarm(mind, alarm, max(0.0, alarm.due - now(mind)))
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
     deriving.resume(mind, mind.program, held.get("derived"))
@@ -145,35 +134,11 @@ def _leave_host(mind: Mind) -> None:
         for entry, annotations in table.entries():
             if SOURCE_PERCEPT in annotations:
                 take_away(table, entry, annotations, (SOURCE_PERCEPT,))
-    mind.waits.conditions.due.update(mind.waits.conditions)
+    for number in list(mind.waits.preempted):
+        preemption.resume(mind, number)
+    mind.waits.needs.clear()
+    mind.waits.due.update(mind.waits.conditions)
     mind.do_soon(look_again)
-
-
-def _wait_again(mind: Mind, held: dict[str, Any]) -> None:
-    for wait in sorted(held["event_waits"], key=lambda each: each.number):
-        mind.waits.events.add(wait, wait.number)
-    conditions, due, restless = held["condition_waits"]
-    for wait in conditions:
-        mind.waits.conditions.add(wait, wait.number)
-    mind.waits.conditions.due = {number: mind.waits.conditions[number] for number in due}
-    mind.waits.conditions.restless = {number: mind.waits.conditions[number] for number in restless}
-    now = mind.architecture.now()
-    set_back = max(0.0, held["time"] - now)
-    for intention in mind.alive.values():
-        if isinstance(intention.waiting, TimedWait):
-            intention.waiting.began -= set_back
-    for supervision in _goal_supervisions(mind):
-        supervision.began -= set_back
-    for alarm in mind.waits.alarms.values():
-        alarm.due -= set_back
-        start_alarm(mind, alarm, max(0.0, alarm.due - now))
-
-
-def _goal_supervisions(mind: Mind) -> set[GoalSupervision]:
-    """Return the supervisions of goals, each once: the branches of a fork share them."""
-    frames = (frame for intention in mind.alive.values() for frame in intention.frames)
-    held = (frame[SUPERVISION] for frame in frames if is_supervision(frame))
-    return {each for each in held if isinstance(each, GoalSupervision)}
 
 
 def knowledge(agent: Circumstance) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from jacaros.bdi.actions.internal_action import ActionError, Crashed, InternalAc
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.failure import error_terms
 from jacaros.bdi.rules.waits import fail, succeed
-from jacaros.bdi.state.waiting import CoroutineWait, Waiting
+from jacaros.bdi.state.pending import CoroutineWait, Waiting
 from jacaros.body.values import Outputs, to_value
 from jacaros.env.errors import InvalidArtifact
 from jacaros.env.kernel import signature as operations
@@ -24,7 +24,7 @@ from jacaros.project_modules import place_of
 from jacaros.terms.operators import ArithmeticFault
 from jacaros.terms.substitution import free_variables, resolve
 from jacaros.terms.text import text
-from jacaros.terms.values import NUMBERS, Term, functor_of
+from jacaros.terms.values import NUMBERS, Term, atom, functor_of
 
 FAULTS = (Exception, SystemExit, CancelledError)
 """Exceptions of project code that end only the step that called it."""
@@ -112,7 +112,7 @@ class _Callee:
     def begin(self, ctx: Context, *terms: Term) -> Waiting:
         """Call a coroutine: the intention waits for its end."""
         call = _Call(self, ctx, terms)
-        agent, waiting = ctx.agent, CoroutineWait(ctx.suspendable(), self.name)
+        agent, waiting = ctx.agent, CoroutineWait(ctx.suspendable(), atom(self.name))
 
         def ended(value: object, error: BaseException | None) -> None:
             try:

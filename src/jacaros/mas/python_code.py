@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from jacaros.asl.diagnostics import Diagnostic
 from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.bdi.rules.context import Context
-from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.circumstance import Circumstance, ProjectFunctions
 from jacaros.project_modules import ModuleUnreadable, ProjectModules
 from jacaros.terms.values import Term
 
@@ -122,7 +122,7 @@ class PythonCode:
 
     def serve(self, agent: Circumstance) -> None:
         """Let an agent evaluate the functions of the project, also in run-time input."""
-        agent.functions.project = self
+        agent.functions.project = ProjectFunctions(self.functions, self.evaluators)
 
 
 def _refused(actions: Mapping[str, InternalAction]) -> dict[str, InternalAction]:

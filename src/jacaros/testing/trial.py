@@ -17,10 +17,9 @@ from jacaros.asl.source import Span
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.explaining.lost_goals import details
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.goals import describe
 from jacaros.bdi.rules.watched import WatchedGoal
 from jacaros.bdi.state.intention import PLAN, STEP, Intention
-from jacaros.bdi.state.waiting import is_action
+from jacaros.bdi.state.pending import is_action
 from jacaros.clock import Clock, VirtualClock, WallClock, run
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
@@ -329,7 +328,7 @@ def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
     """Return why the goal of a test failed."""
     if reason is None:
         return Problem("the goal of the test failed", (), test.span)
-    place = reason.span() or test.span
+    place = reason.place.span() or test.span
     message = filter(None, (reason.message(), *details(reason)))
     return Problem(f"the goal of the test failed: {reason.error()}", tuple(message), place)
 
@@ -339,11 +338,12 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
     if not intentions:
         return Problem(f"{message}: its intention was dropped", (), test.span)
     intention = intentions[-1]
-    state, reason = describe(intention)
+    state = intention.state
     frame = intention.frames[-1]
     info = getattr(frame[STEP], "info", None)
     place = info.node.span if info is not None else frame[PLAN].node.span
     if state == "waiting":
+        reason = intention.waiting.reason
         what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
         return Problem(message, (what,), place)
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)

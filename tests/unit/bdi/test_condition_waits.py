@@ -100,6 +100,6 @@ def test_ended_waits_leave_nothing_behind() -> None:
         "+!wait <- .wait(c(1, X) & not d(X) & .count(e(X), 5) & .intend(go), 10000)."
     )
     host.run(seconds=1)
-    waits = host.agent.waits.conditions
+    waits = host.agent.waits
     assert "done[source(self)]" in believed(host, "done")
-    assert (waits, waits.restless, waits.due, waits._index) == ({}, {}, {}, {})
+    assert (waits.conditions, waits.restless, waits.due, waits.asked) == ({}, {}, {}, {})

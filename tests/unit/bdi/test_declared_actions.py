@@ -48,7 +48,7 @@ def test_a_wait_follows_the_condition() -> None:
     host = mind("p(1). !g.\n+!g <- .wait(.total(X, p(X), 3)); .print(done).")
     host.run()
     assert host.agent.waits.conditions
-    assert not host.agent.waits.conditions.restless
+    assert not host.agent.waits.restless
 
 
 def test_a_failure_is_explained_with_the_value() -> None:

@@ -2,36 +2,41 @@
 
 from recording_host import mind
 
-from jacaros.bdi.state.intention import Intention
+from jacaros.bdi.mind import Mind
+from jacaros.bdi.rules.pending import cancel, listen, notify_listeners
+from jacaros.bdi.state.pending import Listener
 from jacaros.bdi.state.triggers import trigger
-from jacaros.bdi.state.waiting import EventWait, EventWaits
-from jacaros.terms.values import functor
+from jacaros.terms.values import BY_SELF, Var, functor
 
 ADDED = trigger("+", "", functor("a", 1))
 OTHER = trigger("+", "", functor("b", 1))
 
 
-def wait(waits: EventWaits, kind: object) -> EventWait:
-    made = EventWait(Intention(1), None, None, 0.0, kind, None)  # type: ignore[arg-type]
-    waits.add(made)
+def wait(agent: Mind, kind: object, heard: list[Listener]) -> Listener:
+    made = listen(agent, kind, Var(), lambda _: heard.append(made))  # type: ignore[arg-type]
     return made
 
 
 def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
-    waits = EventWaits()
-    first, any_kind, other, last = (wait(waits, kind) for kind in (ADDED, None, OTHER, ADDED))
-    assert list(waits.candidates(ADDED)) == [first, any_kind, last]
-    assert list(waits.candidates(OTHER)) == [any_kind, other]
+    agent = mind("").agent
+    heard: list[Listener] = []
+    first, any_kind, other, last = (wait(agent, kind, heard) for kind in (ADDED, None, OTHER, ADDED))
+    notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
+    assert heard == [first, any_kind, last]
+    notify_listeners(agent, ((OTHER, 1.0), None, BY_SELF, None))
+    assert heard == [first, any_kind, last, other]
+    assert not agent.waits.events
 
 
 def test_ended_waits_leave_nothing_behind() -> None:
-    waits = EventWaits()
-    first, second = wait(waits, ADDED), wait(waits, ADDED)
-    waits.remove(first)
-    waits.remove(first)
-    assert list(waits.candidates(ADDED)) == [second]
-    waits.remove(second)
-    assert not waits
+    agent = mind("").agent
+    heard: list[Listener] = []
+    first, second = wait(agent, ADDED, heard), wait(agent, ADDED, heard)
+    cancel(agent, first)
+    cancel(agent, first)
+    notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
+    assert heard == [second]
+    assert not agent.waits.events
 
 
 def test_waits_for_any_event_see_those_of_every_kind() -> None:

@@ -150,9 +150,9 @@ class Storm:
         agent = self.agent
         waits = [
             *agent.waits.acts.values(),
-            *agent.waits.conditions.values(),
+            *(each.arguments[0] for each in agent.waits.conditions.values()),
         ]
-        waits += [each for held in agent.waits.events.values() for each in held.values()]
+        waits += [each.arguments[0] for held in agent.waits.events.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
         assert len(ready) == len(set(ready))

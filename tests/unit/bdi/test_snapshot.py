@@ -11,6 +11,7 @@ from recording_host import RecordingHost, mind, plans_of
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.object_kinds import NotStorable
 from jacaros.bdi.snapshot import restore, stored
+from jacaros.bdi.state.act import Completion
 from jacaros.mas.agent_host import AgentHost
 from jacaros.terms.values import Reference, atom, structure
 from jacaros.testing import run_project
@@ -93,6 +94,42 @@ def test_a_restored_mind_is_stored_as_the_same_data():
     host.agent.run(10)
     before = stored(host.agent)
     assert stored(restored(host)) == before
+
+
+def test_a_restored_mind_keeps_what_its_plans_need_on_the_same_host():
+    host = mind("!g. @[needs(base)] +!g <- .wait(1000).", complete=lambda act: Completion(True))
+    host.agent.run(10)
+    restored(host)
+    host.agent.run(10)
+    assert host.cancelled == []
+    host.run()
+    assert host.cancelled == [1]
+
+
+def test_an_intention_that_has_lost_a_resource_goes_on_at_another_host():
+    host = mind("!g. @[needs(base)] +!g <- .wait(100); .print(done).", complete=lambda act: Completion(True))
+    host.agent.run(10)
+    host.agent.preempted(1, "base")
+    host.agent.run(10)
+    other = mind("!g. @[needs(base)] +!g <- .wait(100); .print(done).")
+    data = json.loads(json.dumps(stored(host.agent)))
+    other.agent = Mind("tester", host.agent.program, other, plans=plans_of(host.agent.program))
+    restore(other.agent, data)
+    other.run()
+    assert other.printed == ["done"]
+
+
+def test_the_time_of_an_agent_goes_on_when_the_clock_is_set_back():
+    host = mind("!g. +!g <- .wait({+never}, 1000, T); .print(T).")
+    host.agent.run(10)
+    host.time += 0.6
+    data = json.loads(json.dumps(stored(host.agent)))
+    other = mind("")
+    other.agent = Mind("tester", host.agent.program, other, plans=plans_of(host.agent.program))
+    other.time -= 3600
+    restore(other.agent, data)
+    other.run()
+    assert (other.printed, round(other.time - 1_577_836_800.0 + 3600, 3)) == (["1000"], 0.4)
 
 
 def test_a_mind_that_holds_an_object_of_python_cannot_be_stored():

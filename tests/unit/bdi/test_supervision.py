@@ -6,6 +6,8 @@ import pytest
 from recording_host import RecordingHost, mind
 from test_snapshot import printed as printed_by_stored_minds
 
+from jacaros.bdi.state.act import Completion
+
 
 @pytest.fixture(params=["fast", "plain"], autouse=True)
 def engine(request, monkeypatch):
@@ -575,6 +577,24 @@ def test_sub_plans_have_guards():
         +!t <- .wait(100); -ok.
         """
     ) == ["condition_lost", "after"]
+
+
+def test_a_plan_with_guards_keeps_what_it_needs_until_it_ends():
+    host = ran(
+        """
+        ok. !g.
+        +!g <- !h; .print(after).
+        @p[needs(base), while(ok), within(9000)] +!h <- .wait(100); .print(done).
+        """,
+        complete=lambda act: Completion(True),
+    )
+    assert (host.printed, host.cancelled) == (["done", "after"], [1])
+
+    host = mind(
+        "ok. !h. @p[needs(base), while(ok)] +!h <- .wait(100).", complete=lambda act: Completion(True)
+    )
+    host.agent.run(50)
+    assert host.cancelled == []
 
 
 # --- stored minds ------------------------------------------------------------------------------------------

@@ -21,11 +21,11 @@ from jacaros.bdi.actions.internal_action import (
     whole,
 )
 from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.alarms import set_alarm
 from jacaros.bdi.rules.context import Context
+from jacaros.bdi.rules.pending import set_alarm
 from jacaros.bdi.rules.proc_msg import nobody_there, time_out_question
+from jacaros.bdi.state.pending import ASK, AnswerWait, Waiting
 from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.waiting import AnswerWait, Waiting
 from jacaros.terms.substitution import is_flat, rename, resolve
 from jacaros.terms.text import text
 from jacaros.terms.values import (
@@ -98,25 +98,9 @@ def _direct(written: Written) -> Function | None:
     act, to = _known_name(written[1]), _known_name(written[0])
     if act is None or (to is None and written[0] is not None):
         return None
-    if to is None or to == "self":
-        return _sender_to_some(act)
-    return _sender_to_one(act, to)
-
-
-def _sender_to_one(act: str, to: str) -> Function:
-    """Send to one agent named in the program."""
-
-    def send_on(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        _say(agent, to, act, content)
-
-    return send_on
-
-
-def _sender_to_some(act: str) -> Function:
-    """Send to one or several agents known only at run time, or to the agent itself."""
 
     def send_to(agent: Mind, receiver: Term, performative: Term, content: Term) -> None:
-        for name in _receivers(resolve(receiver)):
+        for name in (to,) if to is not None else _receivers(resolve(receiver)):
             _say(agent, name, act, content)
 
     return send_to
@@ -164,7 +148,7 @@ def _ask(
         if not ctx.unify(rest[0], NIL):
             raise ActionError("the answer does not match", (ERROR, atom("ask_failed")))
         return None
-    waiting = AnswerWait(ctx.suspendable(), rest[0], many, len(receivers))
+    waiting = AnswerWait(ctx.suspendable(), ASK, target=rest[0], many=many, expected=len(receivers))
     for name in receivers:
         message_id = ctx.agent.next_message_id()
         waiting.ids.append(message_id)
@@ -173,7 +157,7 @@ def _ask(
     if len(rest) > 1:
         if rest[1].__class__ is not float:
             raise WrongArguments(f"the timeout must be a number of milliseconds, not {text(rest[1])}")
-        waiting.alarm = set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting)
+        waiting.pending.append(set_alarm(ctx.agent, rest[1] / 1000.0, time_out_question, waiting))
     return waiting
 
 

@@ -4,7 +4,7 @@ The first argument is the collection; an unbound variable becomes an empty one. 
 term. Backtracking does not undo changes.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action, members
@@ -17,23 +17,22 @@ from jacaros.terms.values import Functor, Term, Var
 Collection = TypeVar("Collection", SetValue, MapValue, QueueValue)
 
 
-def _set(ctx: Context, term: Term) -> SetValue:
-    return term if isinstance(term, SetValue) else _created(ctx, term, SetValue(), "set")
+def _of_kind(kind: type[Collection], name: str) -> Callable[[Context, Term], Collection]:
+    """Return a function that finds a collection in an argument; an unbound variable becomes an empty one."""
+
+    def find(ctx: Context, term: Term) -> Collection:
+        if isinstance(term, kind):
+            return term
+        if term.__class__ is not Var:
+            raise WrongArguments(f"the first argument must be a {name}, not {text(term)}")
+        made = kind()
+        ctx.unify(term, made)
+        return made
+
+    return find
 
 
-def _map(ctx: Context, term: Term) -> MapValue:
-    return term if isinstance(term, MapValue) else _created(ctx, term, MapValue(), "map")
-
-
-def _queue(ctx: Context, term: Term) -> QueueValue:
-    return term if isinstance(term, QueueValue) else _created(ctx, term, QueueValue(), "queue")
-
-
-def _created(ctx: Context, term: Term, made: Collection, name: str) -> Collection:
-    if term.__class__ is not Var:
-        raise WrongArguments(f"the first argument must be a {name}, not {text(term)}")
-    ctx.unify(term, made)
-    return made
+_set, _map, _queue = _of_kind(SetValue, "set"), _of_kind(MapValue, "map"), _of_kind(QueueValue, "queue")
 
 
 def _each(ctx: Context, pattern: Term, values: Iterable[Term]) -> Iterator[None]:

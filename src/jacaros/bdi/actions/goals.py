@@ -15,10 +15,10 @@ from jacaros.bdi.rules.plan_terms import bindings_of, is_body_frame, variables_o
 from jacaros.bdi.state.event import EVENT_GOAL
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
+from jacaros.bdi.state.pending import is_action
 from jacaros.bdi.state.plan import SUSPENDED, Failure
 from jacaros.bdi.state.supervision import is_supervision
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import is_action
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import BODY_TERM, make_body, trigger
 from jacaros.terms.substitution import resolve
@@ -100,11 +100,11 @@ def intention(
 
 
 def _state(candidate: Intention) -> Term:
-    name, reason = goals.describe(candidate)
-    if name != "waiting":
-        return atom(name)
-    inner = bare(reason)
-    return Annotated(atom("waiting"), (inner if is_action(inner) else (REASON, reason),))
+    if candidate.state != "waiting":
+        return atom(candidate.state)
+    inner = bare(candidate.waiting.reason)
+    reason = inner if is_action(inner) else (REASON, candidate.waiting.reason)
+    return Annotated(atom("waiting"), (reason,))
 
 
 def _stack(ctx: Context, intention: Intention) -> Term:
@@ -240,7 +240,7 @@ def drop_all_events(ctx: Context) -> None:
 @internal_action(".drop_all_desires", arity=0, suspends=True)
 def drop_all_desires(ctx: Context) -> None:
     """``.drop_all_desires`` drops all events, and all intentions except the calling one."""
-    goals.drop_all_goal_events(ctx.agent)
+    goals.drop_all_events(ctx.agent, goals_only=True)
     goals.drop_all_intentions(ctx.agent)
 
 

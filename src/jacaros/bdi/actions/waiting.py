@@ -5,13 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.bdi.actions.internal_action import WrongArguments, internal_action
 from jacaros.bdi.rules import waits
-from jacaros.bdi.rules.alarms import set_alarm
 from jacaros.bdi.rules.context import Context
 from jacaros.bdi.rules.goals import post_external
+from jacaros.bdi.rules.pending import listen, now, set_alarm, watch
 from jacaros.bdi.rules.plan_terms import trigger_of
-from jacaros.bdi.state.condition_waits import ConditionWait, asked_by
-from jacaros.bdi.state.intention import Intention
-from jacaros.bdi.state.waiting import EventWait, TimedWait
+from jacaros.bdi.state.pending import Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.text import text
 from jacaros.terms.values import Annotated, String, Term, functor, make_list
@@ -32,31 +30,30 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     """
     if limit is not None and limit.__class__ is not float:
         raise WrongArguments(f"the timeout must be a number of milliseconds, not {text(limit)}")
-    agent, intention, began = ctx.agent, ctx.suspendable(), ctx.architecture.now()
+    agent = ctx.agent
     if what.__class__ is float:
-        timed = TimedWait(intention, _reason(intention, (TIME, what)), elapsed, began)
-        timed.alarm = set_alarm(agent, what / 1000.0, waits.come_true, timed)
+        timed = _begin(ctx, (TIME, what), elapsed)
+        timed.pending.append(set_alarm(agent, what / 1000.0, waits.come_true, timed))
         return timed
     found = trigger_of(what)
-    waiting: EventWait | ConditionWait
     if found is not None:
-        waiting = EventWait(intention, _reason(intention, rename(found[1])), elapsed, began, *found[:2])
-        agent.waits.events.add(waiting)
+        waiting = _begin(ctx, rename(found[1]), elapsed)
+        waiting.pending.append(listen(agent, *found[:2], waits.come_true, waiting))
     elif ctx.succeeds(what):
         return None if elapsed is None else ctx.unify(elapsed, 0.0)
     else:
-        asked = asked_by(what, agent.beliefs, agent.engine.actions)
-        waiting = ConditionWait(intention, _reason(intention, rename(what)), elapsed, began, what, asked)
-        agent.waits.conditions.add(waiting)
-        agent.incoming.called = True
+        waiting = _begin(ctx, rename(what), elapsed)
+        waiting.pending.append(watch(agent, what, waits.see_condition, waiting))
     if limit is not None:
-        waiting.alarm = set_alarm(agent, limit / 1000.0, waits.time_out, waiting)
+        waiting.pending.append(set_alarm(agent, limit / 1000.0, waits.time_out, waiting))
     return waiting
 
 
-def _reason(intention: Intention, awaited: Term) -> Term:
-    """Return the reason as Jason does: the number of the intention, and what it waits for."""
-    return Annotated((WAIT, float(intention.id)), (awaited,))
+def _begin(ctx: Context, awaited: Term, elapsed: Term) -> Waiting:
+    """Begin to wait. The reason is that of Jason: the number of the intention, and what it waits for."""
+    intention = ctx.suspendable()
+    reason = Annotated((WAIT, float(intention.id)), (awaited,))
+    return Waiting(intention, reason, began=now(ctx.agent), elapsed=elapsed)
 
 
 _UNITS = {"": 0.001, "ms": 0.001, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0}

@@ -109,38 +109,35 @@ class _Search:
         self._agent, self._view, self._names = agent, view, names
         self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
         self._deepest: _Stop | None = None
+        self._depth = 0
 
     def outcome(self) -> str:
         """Search until the context holds or nothing is left to search."""
-        searches = [self._answers(0)]
-        answered = [False]
         try:
-            while searches:
-                depth = len(searches) - 1
-                if next(searches[-1], None) is None:
-                    searches.pop()
-                    if not answered.pop():
-                        self._note(depth)
-                elif depth + 1 == len(self._conjuncts):
-                    return ""  # it holds by now
-                else:
-                    answered[-1] = True
-                    searches.append(self._answers(depth + 1))
-                    answered.append(False)
+            return "" if self._holds(0) else f"stops at {self._deepest}"  # it may hold by now
         except Impure:
-            return f"not examined from `{self._text(len(searches) - 1)}` on, which may have effects"
+            return f"not examined from `{self._text(self._depth)}` on, which may have effects"
         except SearchLimit:
             found = self._deepest
             return "" if found is None else f"stops at {found}; not searched to the end"
-        finally:
-            while searches:
-                searches.pop().close()
-        return f"stops at {self._deepest}"
+
+    def _holds(self, depth: int) -> bool:
+        """Return whether the conjuncts from *depth* on hold with the present values."""
+        if depth == len(self._conjuncts):
+            return True
+        answered = False
+        for _ in self._answers(depth):
+            answered = True
+            if self._holds(depth + 1):
+                return True
+        if not answered:
+            self._note(depth)
+        return False
 
     def _answers(self, depth: int) -> Generator[bool, None, None]:
         """Yield the answers of one conjunct; an error inside ends them."""
         view = self._view
-        mark = len(view.trail)
+        self._depth, mark = depth, len(view.trail)
         try:
             formula = lower(self._conjuncts[depth], self._names.__getitem__)
             for _ in view.answers(formula):

@@ -1,6 +1,7 @@
 """Why a goal failed: the annotations of its failure event, and the description in logs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 from jacaros.asl import nodes
 from jacaros.asl.formatter import format_term
@@ -9,7 +10,7 @@ from jacaros.asl.source import Span
 from jacaros.bdi.explaining.step_text import step_text
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame
 from jacaros.bdi.state.literals import EventAnnotations, annotations_of_event, literal_of
-from jacaros.bdi.state.plan import Plan, StepInfo
+from jacaros.bdi.state.plan import StepInfo
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.excerpt import excerpt
 from jacaros.terms.operators import ArithmeticFault
@@ -25,8 +26,12 @@ _Terms = tuple[Term, ...]
 _REASONS = frozenset({ERROR, ERROR_MSG, CODE, CODE_LINE, CODE_SRC})
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FailureReason:
     """The annotations of a failure event, composed when a plan first asks for them.
+
+    The first two arguments are ``error(..)``, ``error_msg(..)`` and other given terms, or a function that returns them; and
+    the place, or the frame whose step failed, which is kept as it is: its plan does not continue.
 
     Attributes:
         goal_annotations: those of the goal whose failure event it is for; None before there is one.
@@ -36,30 +41,13 @@ class FailureReason:
             recorded at the same time.
     """
 
-    __slots__ = ("_at", "_made", "_terms", "candidates", "goal_annotations", "goal_number", "goals")
-
-    def __init__(
-        self,
-        terms: _Terms | Callable[[], _Terms],
-        at: "_Nowhere | Frame",
-        goal_annotations: EventAnnotations | None = None,
-        goal_number: int | None = None,
-    ) -> None:
-        """Make a reason.
-
-        Args:
-            terms: ``error(..)``, ``error_msg(..)`` and other given terms; or a function that returns them.
-            at: the place; or the frame whose step failed, which is kept as it is: its plan does not continue.
-            goal_annotations: of the goal that failed, if it is already known.
-            goal_number: see above.
-        """
-        self._terms = terms
-        self._at = at
-        self.goal_annotations = goal_annotations
-        self.goal_number = goal_number
-        self.goals: tuple[str, ...] = ()
-        self.candidates: tuple[str, ...] = ()
-        self._made: _Terms | None = None
+    _terms: _Terms | Callable[[], _Terms]
+    _at: "Place | Frame"
+    goal_annotations: EventAnnotations | None = None
+    goal_number: int | None = None
+    goals: tuple[str, ...] = ()
+    candidates: tuple[str, ...] = ()
+    _made: _Terms | None = None
 
     def for_goal(self, annotations: EventAnnotations, number: int | None = None) -> "FailureReason":
         """Return the reason for the failure event of a goal: this object, unless it already belongs to another goal."""
@@ -70,9 +58,10 @@ class FailureReason:
         return FailureReason(self._terms, self._at, annotations, number)
 
     @property
-    def _place(self) -> "_Nowhere":
+    def place(self) -> "Place":
+        """Return where the goal failed."""
         if isinstance(self._at, list):
-            self._at = StepPlace(self._at, self._at[STEP].info)
+            self._at = Place(self._at, self._at[STEP].info)
         return self._at
 
     @property
@@ -91,7 +80,7 @@ class FailureReason:
         if self._made is None:
             goal = self.goal_annotations
             own = goal if isinstance(goal, tuple) else goal.annotations() if goal is not None else ()
-            self._made = annotation_set((*self.terms, *self._place.annotations(), *own))
+            self._made = annotation_set((*self.terms, *self.place.annotations(), *own))
         return self._made
 
     def error(self) -> str:
@@ -100,127 +89,109 @@ class FailureReason:
 
     def known_error(self) -> str:
         """Return the id of the error, or an empty string: failures by ``.fail_goal`` have none."""
-        for term in self.terms:
-            if term.__class__ is tuple and term[0] is ERROR:
-                return text(term[1])
-        return ""
+        return next((text(value) for value in self._values(ERROR)), "")
 
     def message(self) -> str:
         """Return the message, or an empty string."""
-        for term in self.terms:
-            if term.__class__ is tuple and term[0] is ERROR_MSG:
-                return str(term[1])
-        return str(self._place.told())
+        return next((str(value) for value in self._values(ERROR_MSG)), self.place.told)
+
+    def _values(self, symbol: Functor) -> Iterator[Term]:
+        return (term[1] for term in self.terms if term.__class__ is tuple and term[0] is symbol)
 
     def others(self) -> list[Term]:
         """Return the terms other than ``error`` and ``error_msg``, such as ``env_failure_reason(..)``."""
         return [t for t in self.terms if not (t.__class__ is tuple and t[0] in (ERROR, ERROR_MSG))]
 
-    def step(self) -> str:
-        """Return the step that failed, with the values of its variables; empty if a goal without plan is the reason."""
-        return str(self._place.step())
-
-    def inner_goals(self) -> tuple[Goal, ...]:
-        """Return the goals of the step that are no longer on the stack."""
-        found: tuple[Goal, ...] = self._place.inner_goals()
-        return found
-
-    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
-        """Return the goal that no plan fits and its annotations; None if that is not the reason."""
-        found: tuple[Goal, EventAnnotations] | None = self._place.unplanned()
-        return found
-
     def interrupted(self, frames: list[Frame]) -> "FailureReason":
         """Return the reason for goals that were ended from outside: *frames* served them, the last one was running."""
-        return FailureReason(self.terms, _Interrupted(self._place.told(), frames), self.goal_annotations)
-
-    def where(self) -> str:
-        """Return ``file:line``, or an empty string."""
-        return str(self._place.where())
-
-    def span(self) -> Span | None:
-        """Return the place of the formula that failed, or of the call of the goal without plan, if there is one."""
-        found: Span | None = self._place.span()
-        return found
+        inner = tuple(frame[GOAL] for frame in reversed(frames[1:]))
+        info: StepInfo | None = getattr(frames[-1][STEP], "info", None)
+        frame = None if info is None else frames[-1]
+        place = Place(frame, info, told=self.place.told, inner_goals=inner, for_plans=False)
+        return FailureReason(self.terms, place, self.goal_annotations)
 
 
-class _Nowhere:
-    """No formula: something from outside ended the goal; *told* describes it in place of an ``error_msg``."""
+@dataclass(slots=True, eq=False)
+class Place:
+    """Where a goal failed: at the formula of a step, at the call of a goal without plan, or nowhere.
 
-    __slots__ = ("_told",)
+    Attributes:
+        frame: of the step, or of the plan that called the goal; None if something from outside ended the goal.
+        info: of the step.
+        unplanned: the goal that no plan fits and its annotations; None if that is not the reason.
+        told: describes what ended the goal, in place of an ``error_msg``.
+        inner_goals: the goals of the step that are no longer on the stack.
+        for_plans: whether failure events show the place, too.
+    """
 
-    def __init__(self, told: str = "") -> None:
-        self._told = told
-
-    def told(self) -> str:
-        return self._told
-
-    def step(self) -> str:
-        return ""
-
-    def inner_goals(self) -> tuple[Goal, ...]:
-        return ()
-
-    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
-        return None
+    frame: Frame | None = None
+    info: StepInfo | None = None
+    unplanned: tuple[Goal, EventAnnotations] | None = None
+    told: str = ""
+    inner_goals: tuple[Goal, ...] = ()
+    for_plans: bool = True
 
     def annotations(self) -> tuple[Term, ...]:
-        return ()
-
-    def span(self) -> Span | None:
-        return None
-
-    def where(self) -> str:
-        return ""
-
-
-class StepPlace(_Nowhere):
-    """The formula of a step that failed."""
-
-    __slots__ = ("frame", "info")
-
-    def __init__(self, frame: Frame, info: StepInfo) -> None:
-        super().__init__()
-        self.frame, self.info = frame, info
-
-    @property
-    def node(self) -> nodes.Node:
-        return _failed_formula(self.info.node)
-
-    @property
-    def plan(self) -> Plan:
-        plan: Plan = self.frame[PLAN]
-        return plan
-
-    def annotations(self) -> tuple[Term, ...]:
-        return _code(self._resolved(lower(self.node, self._value)), self.node.span, self.plan.file)
+        """Return ``code(..)`` with its source."""
+        if self.unplanned is not None:
+            term = _shown_call(*self.unplanned)
+        elif self.info is not None and self.for_plans:
+            term = self._resolved(lower(_failed_formula(self.info.node), self._value))
+        else:
+            return ()
+        return (CODE, term), *code_place(self.span(), "" if self.frame is None else self.frame[PLAN].file)
 
     def step(self) -> str:
-        term = lower(self.node, lambda name: UNNAMED if name[0] == "_" else self._value(name))
+        """Return the step that failed, with the values of its variables; empty if a goal without plan is the reason."""
+        if self.info is None:
+            return ""
+        formula = _failed_formula(self.info.node)
+        term = lower(formula, lambda name: UNNAMED if name[0] == "_" else self._value(name))
         return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
         """Return the formula, with the values of its variables."""
-        node = self.node
+        assert self.info is not None
+        formula = _failed_formula(self.info.node)
         try:
-            term = resolve(term)
+            return resolve(term)
         except (ArithmeticFault, RecursionError):
             # The formula contains the very expression that has no value: show it as written.
-            term = String(format_term(node)) if isinstance(node, nodes.Term) else String("")
-        return term
+            return String(format_term(formula)) if isinstance(formula, nodes.Term) else String("")
 
     def _value(self, name: str) -> Term:
         """Return the value of a variable, as far as it is bound."""
-        slot = self.plan.slots.get(name, len(self.frame))
+        assert self.frame is not None
+        slot = self.frame[PLAN].slots.get(name, len(self.frame))
         value = self.frame[slot] if slot < len(self.frame) else None
         return Var(name) if value is None else value
 
     def span(self) -> Span | None:
-        return self.node.span
+        """Return the place of the formula that failed, or of the call of the goal without plan, if there is one."""
+        if self.info is not None:
+            return _failed_formula(self.info.node).span
+        if self.frame is None or self.unplanned is None:
+            return None
+        return place_of_call(self.frame, self.unplanned[0][0].functor)
 
     def where(self) -> str:
-        span = self.node.span
-        return f"{span.file.name}:{span.line}" if span is not None else self.plan.file
+        """Return ``file:line``, or an empty string."""
+        if self.frame is None:
+            return ""
+        span = self.span()
+        return self.frame[PLAN].file if span is None else f"{span.file.name}:{span.line}"
+
+
+def _shown_call(goal: Goal, annotations: EventAnnotations) -> Term:
+    """Return a goal without plan as a term.
+
+    A goal that its handler posted again has the reasons of its last failure: they would double each time.
+    """
+    shown = tuple(a for a in annotations_of_event(annotations) if functor_of(a) not in _REASONS)
+    try:
+        return resolve(literal_of(goal, shown))
+    except (ArithmeticFault, RecursionError):
+        return String(goal_text(goal))
 
 
 def _failed_formula(node: nodes.Node) -> nodes.Node:
@@ -238,63 +209,6 @@ def _failed_formula(node: nodes.Node) -> nodes.Node:
     if isinstance(node, nodes.BeliefChange):
         return node.operand
     return node
-
-
-class _Interrupted(_Nowhere):
-    """The running plans of an intention when a goal of it was ended from outside; only for logs, not for plans."""
-
-    def __init__(self, told: str, frames: list[Frame]) -> None:
-        super().__init__(told)
-        self._frames = frames
-        info: StepInfo | None = getattr(frames[-1][STEP], "info", None)
-        self._step = StepPlace(frames[-1], info) if info is not None else _Nowhere()
-
-    def step(self) -> str:
-        return self._step.step()
-
-    def inner_goals(self) -> tuple[Goal, ...]:
-        return tuple(frame[GOAL] for frame in reversed(self._frames[1:]))
-
-    def span(self) -> Span | None:
-        return self._step.span()
-
-    def where(self) -> str:
-        return self._step.where()
-
-
-class GoalPlace(_Nowhere):
-    """A goal without plan: ``code`` is the goal, the line is that of the call."""
-
-    def __init__(self, goal: Goal, annotations: EventAnnotations, caller: Frame | None) -> None:
-        super().__init__()
-        self.goal, self.goal_annotations = goal, annotations
-        self.caller = caller
-
-    def annotations(self) -> tuple[Term, ...]:
-        # A goal that its handler posted again has the reasons of its last failure: they would double each
-        # time.
-        shown = tuple(a for a in annotations_of_event(self.goal_annotations) if functor_of(a) not in _REASONS)
-        try:
-            term = resolve(literal_of(self.goal, shown))
-        except (ArithmeticFault, RecursionError):
-            term = String(goal_text(self.goal))
-        span, file = self._call()
-        return _code(term, span, file)
-
-    def span(self) -> Span | None:
-        return self._call()[0]
-
-    def unplanned(self) -> tuple[Goal, EventAnnotations] | None:
-        return self.goal, self.goal_annotations
-
-    def _call(self) -> tuple[Span | None, str]:
-        if self.caller is None:
-            return None, ""
-        return place_of_call(self.caller, self.goal[0].functor), self.caller[PLAN].file
-
-    def where(self) -> str:
-        span, file = self._call()
-        return f"{file}:{span.line}" if span is not None else file
 
 
 def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
@@ -320,10 +234,6 @@ def place_of_call(caller: Frame, symbol: Functor | None) -> Span | None:
         ):
             return node.span
     return calls[0].span if calls else plan.node.span
-
-
-def _code(term: Term, span: Span | None, file: str) -> tuple[Term, ...]:
-    return (CODE, term), *code_place(span, file)
 
 
 def code_place(span: Span | None, file: str) -> tuple[Term, ...]:
@@ -353,4 +263,4 @@ def shown_goal(goal: Goal) -> str:
 
 def nowhere(*terms: Term, told: str = "") -> FailureReason:
     """Return a reason without a formula, as for ``.fail_goal``; *told* is its description in logs."""
-    return FailureReason(terms, _Nowhere(told))
+    return FailureReason(terms, Place(told=told))

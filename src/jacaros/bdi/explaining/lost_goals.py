@@ -74,9 +74,9 @@ def note_goals(
     Returns:
         the goals that failed with the step, the inner ones first.
     """
-    stack = [*reason.inner_goals(), *([] if goal is None else [goal]), *goals_below(intention)]
+    stack = [*reason.place.inner_goals, *([] if goal is None else [goal]), *goals_below(intention)]
     reason.goals = _shown(stack)
-    unplanned = reason.unplanned()
+    unplanned = reason.place.unplanned
     reason.candidates = () if unplanned is None else _candidates(agent, *unplanned)
     return stack
 
@@ -84,7 +84,7 @@ def note_goals(
 def loss_of(what: str, reason: FailureReason) -> Loss:
     """Describe *what*, such as ``the goal !go``, whose goals were recorded in the reason."""
     told = f"{what} failed and has no plan for its failure{_why(reason)}{_place(reason)}"
-    return Loss(told, details(reason, what), reason.span())
+    return Loss(told, details(reason, what), reason.place.span())
 
 
 def lost_in_handler(
@@ -96,7 +96,7 @@ def lost_in_handler(
         return Loss(told, (), None)
     reason.goals = _shown(list(goals_below(intention)))
     reason.candidates = _candidates(agent, goal, reason)
-    return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.span())
+    return Loss(f"{told}{_why(reason)}{_place(reason)}", details(reason), reason.place.span())
 
 
 def inapplicable(agent: Circumstance, event: Goal, annotations: EventAnnotations) -> Loss:
@@ -109,7 +109,7 @@ def lost_question(asker: str, goal: Goal, reason: FailureReason) -> Loss | None:
 
     Return None if no plan was applicable: that is an answer, for example of a plan whose context checks the asker.
     """
-    unplanned = reason.unplanned()
+    unplanned = reason.place.unplanned
     if unplanned is not None and unplanned[0] is goal:
         return None
     told = f"the question {shown_goal(goal)} from {asker} is answered false, because its plan failed"
@@ -148,7 +148,7 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
 
 
 def _step(reason: FailureReason) -> str:
-    step = reason.step()
+    step = reason.place.step()
     # The reason that it passes on is in the other lines.
     return ".fail(...)" if step.startswith(".fail(") else _short(step)
 
@@ -197,7 +197,7 @@ def _error(reason: FailureReason) -> str:
 
 
 def _place(reason: FailureReason) -> str:
-    where = reason.where()
+    where = reason.place.where()
     return f" ({where})" if where else ""
 
 

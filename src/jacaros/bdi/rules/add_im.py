@@ -67,7 +67,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
         and caller[PLAN].replaceable
         and kind.on_fail is not None
         and agent.options.tail_calls
-        and not (agent.waits.needs and needs.is_of(agent, intention, len(frames) - 1))
+        and not any(need.is_of(caller) for need in agent.waits.needs.values())
     ):
         frames[-1] = frame
         if agent.features.meta:
@@ -118,7 +118,7 @@ def go_without(
         return False
     agent.note(posted.goal[0])
     if agent.waits.events:
-        agent.notify_event_waits(event)
+        agent.notify_listeners(event)
     return push(agent, intention, posted.goal, posted.annotations)
 
 

@@ -2,14 +2,13 @@
 
 from typing import Any
 
-from jacaros.asl import nodes
 from jacaros.bdi.explaining.failure_reason import FailureReason
 from jacaros.bdi.explaining.lost_goals import lost_question
 from jacaros.bdi.rules.proc_msg import answer
 from jacaros.bdi.state.belief_base import without_sources
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import FIRST_SLOT, STEP, Frame
-from jacaros.bdi.state.plan import Plan
+from jacaros.bdi.state.plan import hidden_plan
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import trigger
 from jacaros.terms.substitution import resolve
@@ -58,7 +57,5 @@ def _answer_failure(
     answer(agent, message, None)
 
 
-ANSWER_PLAN = Plan(
-    nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal("answer")), None, nodes.Body()), atom("answer")
-)
+ANSWER_PLAN = hidden_plan(atom("answer"))
 """The plan of the bottom frame."""

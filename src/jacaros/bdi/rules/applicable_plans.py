@@ -11,7 +11,7 @@ from jacaros.asl import nodes
 from jacaros.asl.lowering import Names, lower
 from jacaros.asl.walk import names_in
 from jacaros.bdi.rules.body_steps import interpreted
-from jacaros.bdi.rules.plan_guards import begin_guarded
+from jacaros.bdi.rules.deadlines import begin_guarded
 from jacaros.bdi.rules.query import answers
 from jacaros.bdi.rules.searching import run, unify_rows
 from jacaros.bdi.state.circumstance import Circumstance

@@ -5,6 +5,7 @@ The functions for body formulae return the event to be handled by the same inten
 
 from typing import Any
 
+from jacaros.bdi.rules.pending import note_change, note_rule
 from jacaros.bdi.rules.searching import unify_rows
 from jacaros.bdi.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.bdi.state.circumstance import Circumstance
@@ -132,16 +133,6 @@ def is_quiet(agent: Circumstance) -> bool:
     )
 
 
-def note_change(agent: Circumstance, symbol: Functor, row: Row) -> None:
-    """Note that a belief changed: awaited conditions on such beliefs are tested again."""
-    if agent.waits.conditions and agent.waits.conditions.changed(symbol, row):
-        agent.do_soon(look_again)
-
-
-def look_again(_: Circumstance) -> None:
-    """Do nothing: a task that makes the agent test awaited conditions again."""
-
-
 def insert(
     agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
 ) -> Annotations | None:
@@ -183,7 +174,8 @@ def delete_belief(
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
-    note_change(agent, symbol, removed)
+    if agent.waits.conditions:
+        note_change(agent, symbol, removed)
     if agent.observers.hear_beliefs:
         _tell_change(agent, "-", symbol, removed, annotations, agent.cause_now())
     return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
@@ -355,6 +347,5 @@ def _abolish_entry(
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
     """Add a rule at run time; rules raise no events."""
     if agent.waits.conditions:
-        agent.waits.conditions.depend_on_rules(head)
-        agent.do_soon(look_again)
+        note_rule(agent, head)
     agent.beliefs[head].add(rule, rule.head_annotations(), last)

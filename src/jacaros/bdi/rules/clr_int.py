@@ -6,7 +6,7 @@ from jacaros.bdi.rules.supervision import end_above
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import EVENT_INTENTION, Event
 from jacaros.bdi.state.intention import GOAL, PLAN, Frame, Intention
-from jacaros.bdi.state.waiting import GoalConditionWait
+from jacaros.bdi.state.pending import GOAL_CONDITION, Waiting
 from jacaros.errors import InternalError
 from jacaros.terms.text import text
 from jacaros.terms.unifier import undo
@@ -20,7 +20,7 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         if frame[0] is not None:
             return True
         if frame[PLAN].special and frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
-            GoalConditionWait(intention).attach(frame, None)
+            Waiting(intention, GOAL_CONDITION).attach(frame, None)
             return False
         trigger = frame[GOAL][0]
         if trigger.failing:
@@ -105,6 +105,12 @@ def cut(agent: Circumstance, intention: Intention, index: int) -> None:
         intention.handlers.pop()
     if agent.atomic is intention and not intention.is_atomic():
         agent.atomic, agent.atomic_over = None, False
+
+
+def cut_out(agent: Circumstance, intention: Intention, index: int) -> None:
+    """Cut a stack whose intention may be queued; it does not run until it is queued again."""
+    cut(agent, intention, index)
+    agent.take_out(intention)
 
 
 def achieve(agent: Circumstance, intention: Intention, index: int) -> None:

@@ -133,7 +133,7 @@ class Context:
         self.architecture.log("warning", f"cannot evaluate the context of plan {text(plan.label)}: {fault}")
 
     def suspendable(self) -> Intention:
-        """The calling intention, for an action that returns what it waits for (`jacaros.bdi.state.waiting.Waiting`)."""
+        """The calling intention, for an action that returns what it waits for (`jacaros.bdi.state.pending.Waiting`)."""
         current = self.intention
         if current is None:
             raise RuntimeError("only the step of an intention can be suspended")

@@ -3,10 +3,11 @@
 Each cycle takes in new input, handles one event, and lets one intention run one step.
 """
 
-from jacaros.bdi.rules import failure, meta_events, waits
+from jacaros.bdi.rules import failure, meta_events
 from jacaros.bdi.rules.clr_int import end_achieved_goals
 from jacaros.bdi.rules.exec_int import execute, select_intention
 from jacaros.bdi.rules.holding import is_held_before_step, take_held_event, take_held_intention
+from jacaros.bdi.rules.pending import check_conditions
 from jacaros.bdi.rules.perceiving import take_percepts
 from jacaros.bdi.rules.proc_msg import read_message
 from jacaros.bdi.rules.sel_ev import (
@@ -127,15 +128,15 @@ def has_work(agent: Circumstance) -> bool:
 
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in new input: percepts, ends of waits, one message."""
-    incoming, conditions = agent.incoming, agent.waits.conditions
+    incoming, waits = agent.incoming, agent.waits
     agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
     if looks and incoming.percepts:
         take_percepts(agent)
     if incoming.tasks:
         do_tasks(agent)
-    if conditions:
-        waits.check_conditions(agent)
+    if waits.conditions:
+        check_conditions(agent)
         do_tasks(agent)
     if looks and incoming.messages:
         for message in agent.selections.select_messages():
@@ -144,7 +145,8 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         incoming.percepts
         or incoming.messages
         or incoming.tasks
-        or (conditions and conditions.want_a_look())
+        or waits.due
+        or waits.restless
         or agent.conditioned
         or agent.observers.step is not None
         or not agent.selections.plain

@@ -4,8 +4,6 @@ Changes are collected until the next cycle, and then get the time of the run's c
 one cycle (a property with a new value) has not ended in between.
 """
 
-import heapq
-import itertools
 import math
 from collections.abc import Iterable
 from typing import Any
@@ -14,10 +12,10 @@ from jacaros.asl import nodes
 from jacaros.asl.directives.derive import format_derivation, streams_of, values_of
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.rules import belief_update
-from jacaros.bdi.rules.alarms import cancel_alarm, set_alarm
+from jacaros.bdi.rules.pending import cancel, now, set_alarm
 from jacaros.bdi.state.belief_base import Row, take_away
 from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.waiting import Alarm
+from jacaros.bdi.state.pending import Alarm
 from jacaros.streams.operator import HIDE, OCCUR, Values
 from jacaros.streams.pattern import Pattern
 from jacaros.streams.schema import Spec
@@ -134,11 +132,8 @@ class DerivedBeliefs:
         self._streams: dict[Functor, dict[str, Stream]] = {}
         self._pending: list[tuple[Stream, Values | None, Cause | None]] = []
         self._settling = False
-        self._queue: list[tuple[float, int, Derived]] = []
-        self._numbers = itertools.count()
         self._alarm: Alarm | None = None
         self._due = math.inf
-        self._latest, self._offset = agent.architecture.now(), 0.0
 
     @property
     def directives(self) -> list[nodes.Derivation]:
@@ -147,7 +142,7 @@ class DerivedBeliefs:
 
     def declare(self, declared: Iterable[nodes.Derivation]) -> None:
         """Start declarations that are not active yet."""
-        start = self._now()
+        start = now(self.agent)
         for each in declared:
             derived = Derived(self, each, start)
             if derived.text in self._all:
@@ -158,7 +153,7 @@ class DerivedBeliefs:
                 stream = Stream(name, streams[name])
                 stream = self._streams.setdefault(stream.symbol, {}).setdefault(name, stream)
                 stream.listeners.append((derived, number))
-            self._schedule(derived)
+            derived.scheduled = derived.pattern.deadline
         self._wait()
 
     def replace(self, old: nodes.Program, new: nodes.Program) -> None:
@@ -175,15 +170,13 @@ class DerivedBeliefs:
                 stream.listeners = [each for each in stream.listeners if each[0] is not derived]
                 if not stream.listeners:
                     del streams[name]
-        self._queue = [each for each in self._queue if each[2] is not derived]
-        heapq.heapify(self._queue)
         derived.forget()
 
     def stored(self, program: nodes.Program) -> dict[str, Any]:
         """Return the remains of the past as data, and the declarations that are not those of a program."""
         own = texts(program)
         return {
-            "latest": self._now(),
+            "latest": now(self.agent),
             "derived": [
                 (text, each.pattern.state(), None if each.row is None else (*each.row,))
                 for text, each in self._all.items()
@@ -194,7 +187,7 @@ class DerivedBeliefs:
 
     def resume(self, held: dict[str, Any]) -> None:
         """Continue from what was `stored` of an agent; undeclared patterns start anew."""
-        self._latest = held["latest"]
+        self.agent.waits.latest = max(self.agent.waits.latest, held["latest"])
         for text, state, row in held["derived"]:
             if text in self._all:
                 self._all[text].pattern.resume(state)
@@ -205,14 +198,12 @@ class DerivedBeliefs:
                 stream.last = len(self._pending)
                 self._pending.append((stream, values, None))
         if self._alarm is not None:
-            cancel_alarm(self.agent, self._alarm)
+            cancel(self.agent, self._alarm)
         kept = [each for each in self.agent.waits.alarms.values() if each.function is ring]
         self._alarm = kept[0] if kept else None
         self._due = kept[0].arguments[0] if kept else math.inf
-        self._queue = []
         for derived in self._all.values():
-            derived.scheduled = math.inf
-            self._schedule(derived)
+            derived.scheduled = derived.pattern.deadline
         self._wait()
 
     @property
@@ -235,11 +226,13 @@ class DerivedBeliefs:
 
     def settle(self) -> None:
         """Process pending changes and their consequences."""
-        now = self._now()
+        time = now(self.agent)
         self._settling = True
         try:
-            while self._queue and self._queue[0][0] <= now:
-                self._advance(now)
+            while (derived := self._next()) is not None and derived.scheduled <= time:
+                if derived.pattern.deadline <= time:
+                    derived.pattern.advance(time)
+                derived.scheduled = derived.pattern.deadline
             while self._pending:
                 pending, self._pending = self._pending, []
                 for place, (stream, values, cause) in enumerate(pending):
@@ -247,9 +240,8 @@ class DerivedBeliefs:
                         continue
                     self.cause = cause
                     for derived, number in stream.listeners:
-                        derived.pattern.take(number, now, values)
-                        if derived.pattern.deadline < derived.scheduled:
-                            self._schedule(derived)
+                        derived.pattern.take(number, time, values)
+                        derived.scheduled = min(derived.scheduled, derived.pattern.deadline)
         finally:
             self._settling, self.cause = False, None
         self._wait()
@@ -259,43 +251,26 @@ class DerivedBeliefs:
         if self._alarm is None or due != self._due:
             return  # of a mind that was stored: it has alarms of its own now
         self._alarm = None
-        self._latest = max(self._latest, due)
+        self.agent.waits.latest = max(self.agent.waits.latest, due)
         self.agent.do_soon(settle)
         self.agent.architecture.ready()
 
-    def _now(self) -> float:
-        """Return the time of the run's clock; if that is set back, time continues from its last value."""
-        now = self.agent.architecture.now() + self._offset
-        if now < self._latest:
-            self._offset += self._latest - now
-            now = self._latest
-        self._latest = now
-        return now
-
-    def _advance(self, now: float) -> None:
-        _, _, derived = heapq.heappop(self._queue)
-        derived.scheduled = math.inf
-        if derived.pattern.deadline <= now:
-            derived.pattern.advance(now)
-        self._schedule(derived)
-
-    def _schedule(self, derived: Derived) -> None:
-        due = derived.pattern.deadline
-        if due < derived.scheduled:
-            derived.scheduled = due
-            heapq.heappush(self._queue, (due, next(self._numbers), derived))
+    def _next(self) -> Derived | None:
+        """Return the declaration that is looked at first; None without any."""
+        return min(self._all.values(), key=lambda each: each.scheduled, default=None)
 
     def _wait(self) -> None:
         """Set one alarm for all; one that rings earlier serves as well."""
-        due = self._queue[0][0] if self._queue else math.inf
+        derived = self._next()
+        due = math.inf if derived is None else derived.scheduled
         if self._alarm is not None:
             if self._due <= due:
                 return
-            cancel_alarm(self.agent, self._alarm)
+            cancel(self.agent, self._alarm)
             self._alarm = None
         if due < math.inf:
             self._due = due
-            self._alarm = set_alarm(self.agent, max(0.0, due - self._latest), ring, due)
+            self._alarm = set_alarm(self.agent, max(0.0, due - now(self.agent)), ring, due)
 
 
 def declare(agent: Circumstance, program: nodes.Program) -> None:
@@ -309,7 +284,7 @@ def _begun(agent: Circumstance) -> DerivedBeliefs:
     observers = agent.observers
     if observers.derived is None:
         observers.derived = DerivedBeliefs(agent)
-        observers.hear_beliefs = True
+        agent.look_at_observers()
     return _derived(agent)
 
 

@@ -136,7 +136,7 @@ def announce(
 ) -> None:
     """Notify waiting intentions, plans for goal states and queues that a goal or event has been posted."""
     if agent.waits.events:
-        agent.notify_event_waits((goal, intention, annotations, None))
+        agent.notify_listeners((goal, intention, annotations, None))
     if agent.atomic is not intention:
         agent.note(goal[0])
     if agent.features.meta and goal[0].operator == "+" and goal[0].kind:

@@ -9,7 +9,7 @@ from functools import partial
 
 from jacaros.asl import nodes
 from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
-from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, GoalPlace, goal_text
+from jacaros.bdi.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, Place, goal_text
 from jacaros.bdi.rules import subplans, supervision
 from jacaros.bdi.state.budget import SearchLimit
 from jacaros.bdi.state.circumstance import Circumstance
@@ -146,13 +146,13 @@ def no_plan(
 
     # The values of variables are shown as they are now: they are released before a plan may ask.
     at_once = not ATOMIC.issuperset(map(type, goal[1:]))
-    return FailureReason(terms() if at_once else terms, GoalPlace(goal, annotations, caller))
+    return FailureReason(terms() if at_once else terms, Place(caller, unplanned=(goal, annotations)))
 
 
 def too_deep(goal: Goal, annotations: EventAnnotations, caller: Frame, depth: int) -> FailureReason:
     """Return the reason of a goal whose plan would exceed the maximum stack of its intention."""
     message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
-    return FailureReason(error_terms("too_deep", message), GoalPlace(goal, annotations, caller))
+    return FailureReason(error_terms("too_deep", message), Place(caller, unplanned=(goal, annotations)))
 
 
 _MAY_BE_BOUND = frozenset({Var, tuple, List})

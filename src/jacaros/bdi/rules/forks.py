@@ -5,6 +5,7 @@ last (``|&|``) or first (``|||``) continues with the rest of the plan.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from jacaros.bdi.rules.searching import Loop, release
 from jacaros.bdi.state.circumstance import Circumstance
@@ -16,6 +17,7 @@ from jacaros.terms.values import Var
 _HOLDERS = HOLDERS | {Var}
 
 
+@dataclass(slots=True, eq=False)
 class Fork:
     """A running fork.
 
@@ -26,11 +28,10 @@ class Fork:
         open: numbers of the branches that have neither finished nor failed.
     """
 
-    __slots__ = ("depth", "joins_all", "next_step", "open")
-
-    def __init__(self, joins_all: bool, depth: int, next_step: NextStep, branches: int) -> None:
-        self.joins_all, self.depth, self.next_step = joins_all, depth, next_step
-        self.open = set(range(branches))
+    joins_all: bool
+    depth: int
+    next_step: NextStep
+    open: set[int]
 
 
 def fork(
@@ -41,14 +42,14 @@ def fork(
     assert parent is not None
     if len(agent.alive) + len(firsts) > agent.options.intention_limit:
         agent.budgets["intention_limit"].refuse(len(agent.alive))
-    point = Fork(operator == "and", len(parent.frames) - 1, next_step, len(firsts))
+    point = Fork(operator == "and", len(parent.frames) - 1, next_step, set(range(len(firsts))))
     del frame
     for number, first in enumerate(firsts):
         branch = agent.new_intention(agent.cause_now() or parent.cause)
         branch.frames = copied(parent.frames)
         branch.frames[-1][STEP] = first
         branch.handlers = list(parent.handlers)
-        branch.on_failed = parent.on_failed
+        branch.on_failed, branch.on_end = parent.on_failed, parent.on_end
         branch.forks = (*parent.forks, (point, number))
         agent.note_plans(branch)
         agent.make_ready(branch)

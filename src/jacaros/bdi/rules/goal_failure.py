@@ -10,7 +10,7 @@ from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import Posted
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Frame, Intention
 from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.supervision import caller_of
+from jacaros.bdi.state.supervision import caller_of, supervisions_below
 from jacaros.bdi.state.triggers import Goal
 from jacaros.terms.values import atom
 
@@ -69,7 +69,8 @@ def fail_goal(
     *number* is that of the frame that it had, by which observers know it.
     """
     trigger = goal[0]
-    supervision.end_below(agent, intention, len(intention.frames))
+    for each in supervisions_below(intention, len(intention.frames)):
+        supervision.end(agent, each)
     if number < 0:
         agent.trail.serial += 1
         number = agent.trail.serial

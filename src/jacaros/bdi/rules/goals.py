@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 from jacaros.bdi.explaining.failure_reason import FailureReason, nowhere
 from jacaros.bdi.rules import goal_failure, meta_events, needs, waits
-from jacaros.bdi.rules.alarms import cancel_alarm
-from jacaros.bdi.rules.clr_int import achieve, cut, pending_event, pop_finished, remove_event
+from jacaros.bdi.rules.clr_int import achieve, cut_out, pending_event, pop_finished, remove_event
 from jacaros.bdi.rules.exec_int import announce
 from jacaros.bdi.rules.failure import release_bindings
-from jacaros.bdi.rules.supervision import end_periods
+from jacaros.bdi.rules.pending import cancel
 from jacaros.bdi.state.belief_base import parts
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.event import (
@@ -17,13 +16,12 @@ from jacaros.bdi.state.event import (
     EVENT_GOAL,
     EVENT_INTENTION,
     Event,
-    Posted,
     event_literal,
 )
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, SERIAL, Intention
 from jacaros.bdi.state.literals import literal_of, own_annotations
+from jacaros.bdi.state.supervision import supervisions_below
 from jacaros.bdi.state.triggers import Trigger
-from jacaros.bdi.state.waiting import ActWait, Waiting
 from jacaros.terms.substitution import rename
 from jacaros.terms.unifier import undo, unify
 from jacaros.terms.values import Term, atom, functor
@@ -66,15 +64,7 @@ def matches(agent: Circumstance, pattern: Term, literal: Term) -> bool:
 
 def intentions_for(agent: Circumstance, goal: Term) -> list[Intention]:
     """Return the intentions that pursue the goal at any depth, or are about to."""
-    found = []
-    for intention in list(agent.alive.values()):
-        if frame_of(agent, intention, goal) is not None:
-            found.append(intention)
-            continue
-        event = pending_event(agent, intention)
-        if event is not None and _is_goal(event) and matches(agent, goal, event_literal(event)):
-            found.append(intention)
-    return found
+    return [each for each in list(agent.alive.values()) if goal_of(agent, each, goal) is not None]
 
 
 def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | None:
@@ -109,14 +99,14 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     """Return matching events of new goals (without intention)."""
     return [
         e
-        for e in (*agent.events, *agent.waits.suspended_events)
+        for e in _pending_events(agent)
         if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
     ]
 
 
 def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
     """Yield all goals: of pending events and of intentions, with the id of the intention."""
-    for event in (*agent.events, *agent.waits.suspended_events):
+    for event in _pending_events(agent):
         if _is_goal(event):
             owner = event[EVENT_INTENTION]
             yield event_literal(event), owner.id if owner else None
@@ -146,19 +136,31 @@ def drop_intention(agent: Circumstance, intention: Intention) -> None:
     agent.finish(intention)
 
 
+def _pending_events(agent: Circumstance) -> list[Event]:
+    """Return the events that are queued, and those of suspended goals and intentions."""
+    return [*agent.events, *agent.waits.suspended_events]
+
+
 def drop_events(agent: Circumstance, goal: Term) -> None:
     """Drop events of matching goals, with the intentions that posted them."""
     for event in goal_events(agent, goal):
-        remove_event(agent, event)
+        _drop_event(agent, event)
         _event_state(agent, event, "dropped", "finished")
-    for event in (*agent.events, *agent.waits.suspended_events):
+    for event in _pending_events(agent):
         if (
-            (intention := event[EVENT_INTENTION]) is not None
+            event[EVENT_INTENTION] is not None
             and _is_goal(event)
             and matches(agent, goal, event_literal(event))
         ):
-            remove_event(agent, event)
-            drop_intention(agent, intention)
+            _drop_event(agent, event)
+
+
+def _drop_event(agent: Circumstance, event: Event) -> None:
+    """Drop an event, with the intention that posted it."""
+    remove_event(agent, event)
+    intention = event[EVENT_INTENTION]
+    if intention is not None:
+        drop_intention(agent, intention)
 
 
 def drop_goal(agent: Circumstance, goal: Term) -> None:
@@ -177,29 +179,19 @@ def drop_all_intentions(agent: Circumstance) -> None:
     """Drop all intentions except the running one, and cancel pending events of ``.at``."""
     for alarm in list(agent.waits.alarms.values()):
         if alarm.function is post_external:
-            cancel_alarm(agent, alarm)
+            cancel(agent, alarm)
     for intention in list(agent.alive.values()):
         if intention is not agent.current:
             drop_intention(agent, intention)
 
 
-def drop_all_goal_events(agent: Circumstance) -> None:
-    """Drop all pending events of goals, with the intentions that posted them."""
-    for event in (*agent.events, *agent.waits.suspended_events):
-        if _is_goal(event):
-            remove_event(agent, event)
-            if (intention := event[EVENT_INTENTION]) is not None:
-                drop_intention(agent, intention)
-
-
-def drop_all_events(agent: Circumstance) -> None:
-    """Drop all pending events, with the intentions that posted them."""
-    for event in (*agent.events, *agent.waits.suspended_events):
-        if (intention := event[EVENT_INTENTION]) is not None:
-            drop_intention(agent, intention)
-    agent.events.clear()
-    agent.waits.requeued.clear()
-    agent.waits.suspended_events.clear()
+def drop_all_events(agent: Circumstance, goals_only: bool = False) -> None:
+    """Drop all pending events, or those of goals, with the intentions that posted them."""
+    for event in _pending_events(agent):
+        if not goals_only or _is_goal(event):
+            _drop_event(agent, event)
+    if not goals_only:
+        agent.waits.requeued.clear()
 
 
 def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
@@ -250,13 +242,10 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = 
     if event is not None and event in agent.events:
         agent.events.remove(event)
         agent.waits.suspended_events.append(event)
-    if intention.waiting is not None and (reason is BY_SUSPEND or not _lost(agent, intention.waiting)):
-        waits.suspend(agent, intention.waiting)
-
-
-def _lost(agent: Circumstance, waiting: Waiting) -> bool:
-    """Return whether the wait is for an action that has lost a resource: it is paused until it regains it."""
-    return isinstance(waiting, ActWait) and waiting.number in agent.waits.preempted
+    act = None if intention.waiting is None else intention.waiting.act
+    # An action that has lost a resource is paused already, until it regains it; other waits go on.
+    if act is not None and (reason is BY_SUSPEND or act not in agent.waits.preempted):
+        agent.architecture.suspend_act(act)
 
 
 def resume_goal(agent: Circumstance, goal: Term) -> None:
@@ -315,7 +304,7 @@ def succeed_goal(agent: Circumstance, goal: Term) -> bool:
         index = frame_of(agent, intention, goal)
         running = intention is agent.current
         queued = intention in agent.intentions
-        end_periods(intention, len(intention.frames) if index is None else index)
+        _end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
             event = pending_event(agent, intention)
             if event is not None:
@@ -350,43 +339,38 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         if intention.dropped:  # the branch of a fork above the goal, which has ended with another branch
             continue
         index = frame_of(agent, intention, goal)
-        end_periods(intention, len(intention.frames) if index is None else index)
+        _end_periods(intention, len(intention.frames) if index is None else index)
         if index is None:
-            _fail_pending(agent, intention, reason)
+            event = pending_event(agent, intention)
+            if event is not None:
+                _fail_event(agent, intention, event, reason)
             continue
         own = own or intention is agent.current
         frame = intention.frames[index]
         ended = reason.interrupted(intention.frames[index:])
         release_bindings(frame[GOAL], frame[SERIAL])
         goal_failure.observe_failed(agent, intention, index + 1, ended)
-        cut(agent, intention, index)
-        agent.take_out(intention)
-        _post(
-            agent,
-            intention,
-            goal_failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL]),
+        cut_out(agent, intention, index)
+        posted = goal_failure.fail_goal(
+            agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL]
         )
+        agent.post_for(intention, posted)
     for event in goal_events(agent, goal):
-        remove_event(agent, event)
-        intention = agent.new_intention(event[EVENT_CAUSE])
-        _post(
-            agent,
-            intention,
-            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
-        )
+        _fail_event(agent, agent.new_intention(event[EVENT_CAUSE]), event, reason)
     return own
 
 
-def _fail_pending(agent: Circumstance, intention: Intention, reason: FailureReason) -> None:
-    """Fail a sub-goal that was posted and not handled yet, in its place."""
-    event = pending_event(agent, intention)
-    if event is not None:
-        remove_event(agent, event)
-        _post(
-            agent,
-            intention,
-            goal_failure.fail_goal(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], reason),
-        )
+def _fail_event(agent: Circumstance, intention: Intention, event: Event, reason: FailureReason) -> None:
+    """Fail a goal that was posted and not handled yet."""
+    goal, _, annotations, _ = event
+    remove_event(agent, event)
+    agent.post_for(intention, goal_failure.fail_goal(agent, intention, goal, annotations, reason))
+
+
+def _end_periods(intention: Intention, index: int) -> None:
+    """End the periods of the goal at *index* (or of one about to get a frame there) after the present one."""
+    for supervision in supervisions_below(intention, index):
+        supervision.period = None
 
 
 def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
@@ -394,18 +378,3 @@ def post_external(agent: Circumstance, kind: Trigger, literal: Term) -> None:
     _, arguments, annotations = parts(rename(literal))
     agent.post(((kind, *arguments), None, own_annotations(annotations), None))
     agent.architecture.ready()
-
-
-def _post(agent: Circumstance, intention: Intention, posted: Posted | None) -> None:
-    if posted is not None:
-        agent.post((posted.goal, intention, posted.annotations, None))
-        agent.architecture.ready()
-
-
-def describe(intention: Intention) -> tuple[str, Term]:
-    """Return the state of an intention for ``.intention``: (name, reason)."""
-    if intention.suspended is not None:
-        return "suspended", None
-    if intention.waiting is not None:
-        return "waiting", intention.waiting.reason
-    return "running", None

@@ -8,9 +8,8 @@ from jacaros.bdi.state.intention import Intention
 
 def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
     """Ask *observer* before each event and each step; None ends this, and lets a held agent continue."""
-    observers = agent.observers
-    observers.step = observer
-    observers.hear_beliefs = any(each is not None for each in (observer, observers.mind, observers.derived))
+    agent.observers.step = observer
+    agent.look_at_observers()
     if observer is None:
         agent.held = None
     look_at_plans(agent)

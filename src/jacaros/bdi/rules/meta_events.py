@@ -138,8 +138,7 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
 def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:
     """Notify an observer of selected plans, beliefs and messages; None ends that."""
     agent.observers.mind = observer
-    observers = agent.observers
-    observers.hear_beliefs = any(each is not None for each in (observer, observers.step, observers.derived))
+    agent.look_at_observers()
 
 
 SLEEPING = trigger("+", "", functor("jag_sleeping", 0))

@@ -4,8 +4,8 @@ from jacaros.bdi.state.act import NEEDS, Act
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import ANNOTATIONS, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.need import Need, Wanted, wanted_in
-from jacaros.bdi.state.waiting import ActWait
-from jacaros.terms.values import String, Term, atom, make_list, structure
+from jacaros.bdi.state.pending import Waiting
+from jacaros.terms.values import String, atom, make_list, structure
 
 
 def acquire(agent: Circumstance, intention: Intention) -> bool:
@@ -51,10 +51,10 @@ def claim(agent: Circumstance, intention: Intention, act: Act) -> None:
         act.within = tuple(each.number for each in of(agent, intention))
 
 
-def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> ActWait:
+def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, wanted: Wanted) -> Waiting:
     """Let an intention wait for what it has requested."""
     reason = structure("needs", *(atom(name) for name in wanted.names))
-    waiting = ActWait(intention, reason, number)
+    waiting = Waiting(intention, reason, number)
     waiting.attach(frame, frame[STEP])
     agent.waits.acts[number] = waiting
     return waiting
@@ -63,11 +63,6 @@ def wait(agent: Circumstance, intention: Intention, frame: Frame, number: int, w
 def of(agent: Circumstance, intention: Intention) -> list[Need]:
     """Return what an intention needs, the lowest on its stack first."""
     return [need for need in agent.waits.needs.values() if need.is_on(intention)]
-
-
-def is_of(agent: Circumstance, intention: Intention, index: int) -> bool:
-    """Return whether the frame at *index* holds resources."""
-    return any(need.index == index and need.is_on(intention) for need in agent.waits.needs.values())
 
 
 def sweep(agent: Circumstance) -> None:
@@ -82,8 +77,3 @@ def sweep(agent: Circumstance) -> None:
         del agent.waits.needs[need.number]
         agent.waits.preempted.pop(need.number, None)
         agent.architecture.cancel_act(need.number)
-
-
-def reason_of(resource: str) -> Term:
-    """Return the reason of an intention that is suspended because it has lost a resource."""
-    return structure("preempted", atom(resource))

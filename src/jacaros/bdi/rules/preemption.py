@@ -1,34 +1,25 @@
 """Intentions that have lost a resource to a more urgent claim: suspended, and resumed when they regain it."""
 
-from jacaros.bdi.rules import goals, needs
+from jacaros.bdi.rules import goals
 from jacaros.bdi.state.circumstance import Circumstance
 from jacaros.bdi.state.intention import Intention
-from jacaros.terms.values import Term
+from jacaros.terms.values import Term, atom, structure
 
 
-def preempted(agent: Circumstance, number: int, resource: str) -> None:
-    """Note that an act, or what a plan needs, has lost a resource; its intention is suspended in the next cycle."""
-    agent.do_soon(_suspend, number, needs.reason_of(resource))
-    agent.architecture.ready()
-
-
-def regained(agent: Circumstance, number: int) -> None:
-    """Note that the act, or the plan, has it again, or no longer waits for it."""
-    agent.do_soon(_resume, number)
-    agent.architecture.ready()
-
-
-def _suspend(agent: Circumstance, number: int, reason: Term) -> None:
+def suspend(agent: Circumstance, number: int, resource: str) -> None:
+    """Suspend the intentions with an act, or with a plan that needs something, which has lost a resource."""
     owners = _owners(agent, number)
     if not owners:
         return
+    reason = structure("preempted", atom(resource))
     agent.waits.preempted[number] = (reason, owners)
     for intention in owners:
         if intention.suspended is None:
             goals.suspend_intention(agent, intention, reason)
 
 
-def _resume(agent: Circumstance, number: int) -> None:
+def resume(agent: Circumstance, number: int) -> None:
+    """Resume the intentions that were suspended because an act had lost a resource."""
     known = agent.waits.preempted.pop(number, None)
     if known is None:
         return

@@ -6,15 +6,15 @@ from functools import lru_cache
 from jacaros.asl.diagnostics import AslError
 from jacaros.asl.lowering import fresh_names, lower_plan
 from jacaros.bdi.rules import belief_update, failure, waits
+from jacaros.bdi.rules.deadlines import adopt
 from jacaros.bdi.rules.plan_terms import relevant_plans
 from jacaros.bdi.rules.query import solve_formula
 from jacaros.bdi.rules.searching import run
-from jacaros.bdi.rules.supervised_goals import adopt
 from jacaros.bdi.state.belief_base import is_source, parts
 from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.bdi.state.pending import AnswerWait
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger, trigger
-from jacaros.bdi.state.waiting import AnswerWait
 from jacaros.errors import InternalError
 from jacaros.terms.order import annotation_set
 from jacaros.terms.plans import PLAN

@@ -36,16 +36,15 @@ class Impure(Exception):
 
 
 @contextmanager
-def reading(agent: Circumstance, steps: int, look_up: bool = False) -> Iterator["ReadOnly"]:
+def reading(agent: Circumstance, steps: int) -> Iterator["ReadOnly"]:
     """Give a view of an agent in which formulae can be evaluated; it raises `Impure` and `SearchLimit`.
 
     Args:
         agent: the agent.
         steps: maximum number of steps of about ten microseconds: answers of rules and internal actions, or `FACTS_PER_STEP`
             beliefs.
-        look_up: whether a belief base of the project may look up beliefs elsewhere.
     """
-    view = ReadOnly(agent, SearchBudget(steps), look_up)
+    view = ReadOnly(agent, SearchBudget(steps))
     budget = agent.beliefs.budget
     running = RUNNING.set(cast("Circumstance", view))  # pyright: ignore[reportArgumentType]
     agent.beliefs.budget = view.beliefs.budget  # for pure actions that search, too
@@ -65,8 +64,8 @@ class ReadOnly:
         trail: the bindings of the search.
     """
 
-    def __init__(self, agent: Circumstance, budget: SearchBudget, look_up: bool) -> None:
-        self.beliefs = _Beliefs(self, agent.beliefs, budget, look_up)
+    def __init__(self, agent: Circumstance, budget: SearchBudget) -> None:
+        self.beliefs = _Beliefs(agent.beliefs, budget)
         self.engine = _Actions(agent)
         self.trail = Trail()
         self.trail.serial = agent.trail.serial
@@ -127,7 +126,7 @@ class _Silent(Context):
 
 
 class _Actions:
-    """The internal actions that are declared pure."""
+    """An engine that interprets rules, since compiled ones do not count their steps, and has the pure internal actions."""
 
     def __init__(self, agent: Circumstance) -> None:
         self._actions = agent.engine.actions
@@ -146,20 +145,21 @@ class _Actions:
             raise Impure(name)
         return action
 
+    def answers(self, view: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
+        """Return a generator of the answers of a rule, see `jacaros.bdi.rules.searching.run`."""
+        return interpret_rule(view, rule.node, arguments, trail)
+
 
 class _Beliefs:
     """The tables of a belief base; each entry that is read counts."""
 
-    def __init__(self, view: ReadOnly, beliefs: BeliefTables, budget: SearchBudget, look_up: bool) -> None:
-        self._view, self._beliefs, self.budget, self._look_up = view, beliefs, budget, look_up
+    def __init__(self, beliefs: BeliefTables, budget: SearchBudget) -> None:
+        self._beliefs, self.budget = beliefs, budget
 
     def __getitem__(self, symbol: Functor) -> "_Table":
-        table = self._beliefs.get(symbol)  # not [symbol], which would create it
-        if table is None:
-            table = Table(symbol)
-        if not self._look_up and type(table).candidates is not Table.candidates:
-            raise Impure(symbol.name)  # a project's class looks up beliefs elsewhere
-        return _Table(self._view, table, self.budget)
+        return _Table(
+            self._beliefs.get(symbol) or Table(symbol), self.budget
+        )  # not [symbol], which would create it
 
     def __iter__(self) -> Iterator[Functor]:
         return iter(list(self._beliefs))
@@ -170,36 +170,23 @@ class _Beliefs:
 
 
 class _Table:
-    def __init__(self, view: ReadOnly, table: Table, budget: SearchBudget) -> None:
-        self._view, self._table, self._budget = view, table, budget
-        self.functor = table.functor
+    def __init__(self, table: Table, budget: SearchBudget) -> None:
+        self._table, self._budget = table, budget
 
     def still_holds(self, _entry: object) -> bool:
         """True: nothing changes while a question is answered."""
         return True
 
     def entries(self) -> Iterator[Item]:
-        """Yield all beliefs, each with its annotations."""
-        return (each for each in self._counted(self._table.entries()) if not isinstance(each[0], Rule))
+        """Yield all beliefs and rules, each with its annotations."""
+        return self._counted(self._table.entries())
 
-    def candidates(self, arguments: tuple[Term, ...]) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+    def candidates(self, arguments: tuple[Term, ...]) -> Iterator[Item]:
         """Yield the beliefs and rules that may match, each with its annotations."""
-        for entry, annotations in self._counted(self._table.candidates(arguments)):
-            yield (_Interpreted(self._view, entry) if isinstance(entry, Rule) else entry), annotations
+        return self._counted(self._table.candidates(arguments))
 
     def _counted(self, entries: Iterable[Item]) -> Iterator[Item]:
         for number, item in enumerate(entries):
-            if isinstance(item[0], Rule) or number % FACTS_PER_STEP == 0:
+            if number % FACTS_PER_STEP == 0:
                 self._budget.spend()
             yield item
-
-
-class _Interpreted:
-    """A rule whose body is searched as a term: compiled rules call what they name, and do not count their steps."""
-
-    def __init__(self, view: ReadOnly, rule: Rule) -> None:
-        self._view, self._rule = view, rule.node
-
-    def search(self, _agent: object, arguments: tuple[Term, ...], trail: Trail) -> Answers:
-        """Return a generator of the answers, see `jacaros.bdi.rules.searching.run`."""
-        return interpret_rule(cast("Circumstance", self._view), self._rule, arguments, trail)

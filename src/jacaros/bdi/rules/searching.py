@@ -1,6 +1,7 @@
 """Searches that generated code makes among facts and rules."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from operator import length_hint
 from typing import Any, NoReturn
 
@@ -222,6 +223,7 @@ class Remaining:
         return Remaining(other, found)
 
 
+@dataclass(slots=True, eq=False)
 class Loop:
     """What a loop gives back at the beginning of each round, kept in a frame behind the variables.
 
@@ -232,11 +234,10 @@ class Loop:
         answers: those of a ``for`` that are still to come.
     """
 
-    __slots__ = ("answers", "free", "inner", "round")
-
-    def __init__(self, free: Sequence[Var], inner: Sequence[int], answers: Remaining | None = None) -> None:
-        self.free, self.inner, self.answers = free, inner, answers
-        self.round: Sequence[Var] = ()
+    free: Sequence[Var]
+    inner: Sequence[int]
+    answers: Remaining | None = None
+    round: Sequence[Var] = ()
 
     def begin_round(self, frame: list[Any]) -> None:
         """Take back what the last round bound."""

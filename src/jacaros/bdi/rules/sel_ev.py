@@ -140,9 +140,7 @@ def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> boo
         receive_event(agent, goal)
         return True
     intention = agent.new_intention(cause)
-    posted = unplanned(agent, intention, goal, annotations)
-    if posted is not None:
-        agent.post((posted.goal, intention, posted.annotations, None))
+    agent.post_for(intention, unplanned(agent, intention, goal, annotations))
     return True
 
 

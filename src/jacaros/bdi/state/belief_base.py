@@ -1,15 +1,16 @@
 """Beliefs and rules, indexed by functor and, where programs ask for it, by arguments."""
 
 import itertools
+from collections import OrderedDict
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from math import inf
-from typing import Any
+from typing import Any, TypeVar
 
 from jacaros.bdi.state.budget import Budget, SearchBudget
 from jacaros.bdi.state.engine import Engine
-from jacaros.bdi.state.mixed_beliefs import FEW, Late, Mixed, discard, key_of
 from jacaros.bdi.state.rule import Answers, Entry, OpenFact
-from jacaros.bdi.state.triggers import trigger
+from jacaros.bdi.state.triggers import Trigger, trigger
 from jacaros.terms import values
 from jacaros.terms.order import annotation_set
 from jacaros.terms.substitution import ATOMIC, equal, free_variables, is_key, resolve
@@ -37,13 +38,16 @@ MANY_NAMES = 1_000
 """Names of which an agent keeps what it found out about them, although it has no such belief or plan."""
 SELECT_OPTION = values.functor("select__option", 4)
 """The predicate that filters applicable plans; the mind holds its table."""
-_NO_LATE = Late()
+FEW = 8
+"""Fewer entries are looked through one by one."""
+_NO_LATE: OrderedDict[Entry, tuple[Term, ...]] = OrderedDict()
 """Of all tables without any: most never have one."""
 _ONE = ((),)
 _NONE: tuple[Row, ...] = ()
 _NOTHING: tuple[Item, ...] = ()
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Table:
     """All beliefs and rules of one functor, newest first.
 
@@ -54,8 +58,10 @@ class Table:
         added: the event kind of beliefs that come.
         deleted: that of beliefs that go.
         rows: annotations by row; newest last.  Keys that are not tuples are rules and beliefs with variables.
-        late: those added behind all others, in order.
+        late: those added behind all others, in order; ordered, since a queue is emptied from the side on which a dictionary
+            would keep gaps.
         others: how many of `rows` are rules and beliefs with variables.
+        late_facts: how many of `late` are neither.
         unwritten: how many of `rows` and `late` are beliefs with variables that are not in the program.
         indexes: the rows by the arguments at some places.
         plain: holds only facts without variables, in `rows` alone: compiled queries may read it directly.
@@ -63,37 +69,23 @@ class Table:
         deep: those that need no Python recursion.
     """
 
-    __slots__ = (
-        "_base",
-        "_mixed",
-        "_parted",
-        "added",
-        "deep",
-        "deleted",
-        "functor",
-        "indexes",
-        "late",
-        "others",
-        "plain",
-        "rows",
-        "searches",
-        "unwritten",
-    )
+    functor: Functor
+    _base: "BeliefTables | None" = None
+    added: Trigger = field(init=False)
+    deleted: Trigger = field(init=False)
+    rows: dict[Any, tuple[Term, ...]] = field(default_factory=dict)
+    late: OrderedDict[Entry, tuple[Term, ...]] = field(default_factory=lambda: _NO_LATE)
+    late_facts: int = 0
+    others: int = 0
+    unwritten: int = 0
+    plain: bool = True
+    searches: Any = None
+    deep: Any = None
+    indexes: dict[tuple[int, ...], Index] = field(default_factory=dict)
+    _parted: int = 0
 
-    def __init__(self, functor: Functor, base: "BeliefTables | None" = None) -> None:
-        self.functor = functor
-        self.added, self.deleted = trigger("+", "", functor), trigger("-", "", functor)
-        self.rows: dict[Any, tuple[Term, ...]] = {}
-        self.late = _NO_LATE
-        self.others = 0
-        self.unwritten = 0
-        self.plain = True
-        self.searches: Any = None
-        self.deep: Any = None
-        self.indexes: dict[tuple[int, ...], Index] = {}
-        self._mixed: Mixed | None = None
-        self._base = base
-        self._parted = 0
+    def __post_init__(self) -> None:
+        self.added, self.deleted = trigger("+", "", self.functor), trigger("-", "", self.functor)
 
     @property
     def budget(self) -> SearchBudget | None:
@@ -151,7 +143,7 @@ class Table:
 
     def holds_facts_only(self) -> bool:
         """Whether nothing but a change of this table changes its answers.  False may be wrong."""
-        return self.others + self.late.others == self.unwritten
+        return self.others + len(self.late) - self.late_facts == self.unwritten
 
     def get(self, row: Entry) -> tuple[Term, ...] | None:
         """The annotations of a row, None when it is not held."""
@@ -180,9 +172,9 @@ class Table:
                 self._part(base.searching)
         if last:
             if not self.late:
-                self.late = Late()
-            self.late.put(row, annotations)
-            self._note(row, 1)
+                self.late = OrderedDict()
+            self.late[row] = annotations
+            self._note_late(row, 1)
             return annotations
         self.rows[row] = annotations
         if not self.plain or row.__class__ is not tuple:
@@ -193,8 +185,6 @@ class Table:
 
     def _add_among_others(self, row: Any) -> None:
         """The newest entry is not a fact, or there are entries that are not facts."""
-        if self._mixed is not None:
-            self._mixed.add(row)
         if row.__class__ is not tuple:
             self.others += 1
             self._note(row, 1)
@@ -204,15 +194,21 @@ class Table:
             self._changed()  # no rule answers before the newest fact
 
     def _note(self, entry: Entry, change: int) -> None:
-        """A rule, a belief with variables, or an entry of `late` came (*change* is 1) or went (-1)."""
-        if isinstance(entry, tuple):
-            if len(self.late) - self.late.others > (change > 0):
-                return  # searches take the general way as long as there are facts in `late`
-        elif entry.node is None:
+        """A rule or a belief with variables came (*change* is 1) or went (-1)."""
+        if not isinstance(entry, tuple) and entry.node is None:
             self.unwritten += change
             if self.unwritten > (change > 0):
-                return  # the same for beliefs with variables that are not in the program
+                return  # searches take the general way as long as there are some that are not in the program
         self._changed()
+
+    def _note_late(self, entry: Entry, change: int) -> None:
+        """An entry of `late` came (*change* is 1) or went (-1)."""
+        if not isinstance(entry, tuple):
+            self._note(entry, change)
+            return
+        self.late_facts += change
+        if self.late_facts == (change > 0):  # else searches take the general way, as before
+            self._changed()
 
     def _add_to_indexes(self, row: Row) -> None:
         for positions, index in self.indexes.items():
@@ -223,12 +219,10 @@ class Table:
         if self._base is not None and self._base.searching:
             self._part(self._base.searching)
         if row in self.late:
-            self.late.take(row)
-            self._note(row, -1)
+            del self.late[row]
+            self._note_late(row, -1)
             return
         discard(self.rows, row)
-        if self._mixed is not None:
-            self._mixed.remove(row)
         if row.__class__ is not tuple:
             self.others -= 1
             self._note(row, -1)
@@ -247,22 +241,20 @@ class Table:
         engine = None if self.plain or self._base is None else self._base.engine
         made = None if engine is None else engine.searches(self)
         self.searches, self.deep = (None, None) if made is None else made
-        if not self.others:
-            self._mixed = None
 
     def _part(self, serial: int) -> None:
         """An internal action in a condition changes beliefs: what the search is reading stays as it is."""
         if self._parted != serial:
             self._parted = serial
-            self.rows, self.late = dict(self.rows), Late(self.late) if self.late else _NO_LATE
-            self.indexes, self._mixed = {}, None
+            self.rows, self.late = dict(self.rows), OrderedDict(self.late) if self.late else _NO_LATE
+            self.indexes = {}
 
     def around(self) -> tuple[list[Entry], list[Entry]] | None:
         """The rules and beliefs with variables that answer before all facts, and those behind all facts.
 
         None when they are mixed, or when there is a belief with variables that no function can be written for.
         """
-        if self.unwritten or len(self.late) > self.late.others:
+        if self.unwritten or self.late_facts:
             return None
         sides = self._sides()
         return None if sides is None else (sides[0], [*sides[1], *self.late])
@@ -290,28 +282,13 @@ class Table:
         helps."""
         if self.plain:
             return self._rows_for(arguments)
-        if len(self) < FEW:
+        if len(self) < FEW or (sides := self._sides()) is None:
             return self.entries()
-        places, keys = _known(arguments)
-        return itertools.chain(self._newest_first(arguments, places, keys), self.late.like(places, keys))
-
-    def _newest_first(self, arguments: Row, places: list[int], keys: list[Term]) -> Iterable[Item]:
-        """The entries of `rows` that may unify with the arguments."""
+        before, after = sides
+        facts = (row for row in self.rows_like(arguments) if row.__class__ is tuple)
         held = self.rows
-        if not keys:
-            return reversed(held.items())
-        if not self.others:
-            return self._rows_for(arguments)
-        facts = (row for row in self._rows_with(places, keys, len(arguments)) if row.__class__ is tuple)
-        entries: Iterator[Entry]
-        sides = self._sides() if self._mixed is None and self.others < FEW else None
-        if sides is not None:
-            entries = itertools.chain(sides[0], facts, sides[1])
-        else:
-            if self._mixed is None:
-                self._mixed = Mixed(held, self.functor.arity)
-            entries = self._mixed.like(places, keys, facts)
-        return ((entry, held[entry]) for entry in entries)
+        entries = ((entry, held[entry]) for entry in itertools.chain(before, facts, after))
+        return itertools.chain(entries, self.late.items())
 
     def _rows_for(self, arguments: Row) -> Iterable[Item]:
         """The rows that may unify with the arguments, with their annotations; perhaps others too."""
@@ -321,11 +298,7 @@ class Table:
     def rows_like(self, arguments: Row) -> Iterable[Row]:
         """The rows that may unify with the arguments, newest first, until something changes."""
         places, keys = _known(arguments)
-        return self._rows_with(places, keys, len(arguments))
-
-    def _rows_with(self, places: list[int], keys: list[Term], arity: int) -> Iterable[Row]:
-        """The rows that may have *keys* at *places*, newest first."""
-        if len(keys) == arity:
+        if len(keys) == len(arguments):
             row = tuple(keys)
             return (row,) if row in self.rows else _NONE
         if not keys or len(self.rows) < FEW:
@@ -352,6 +325,24 @@ def _known(arguments: Row) -> tuple[list[int], list[Term]]:
         places.append(place)
         keys.append(argument)
     return places, keys
+
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+
+
+def discard(rows: dict[Key, Value], row: Key) -> None:
+    """Take a key out of a dictionary that is read backwards: at its end no gaps are left, which would have to be passed
+    over at every reading."""
+    last, value = rows.popitem()
+    if last is not row and last != row:
+        rows[last] = value
+        del rows[row]
+
+
+def key_of(row: Row, positions: tuple[int, ...]) -> Term:
+    """The arguments of a row at these positions, by which an index finds it."""
+    return row[positions[0]] if len(positions) == 1 else tuple(row[i] for i in positions)
 
 
 def _put(index: Index, key: Term, row: Row) -> None:

@@ -2,26 +2,26 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
-from typing import Any, Final, Literal, NamedTuple, Protocol
+from dataclasses import InitVar, dataclass, field
+from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.asl.source import Span
 from jacaros.bdi.architecture import Architecture
 from jacaros.bdi.state.act import Percept
 from jacaros.bdi.state.belief_base import BeliefTables
-from jacaros.bdi.state.budget import SearchBudget, budgets
-from jacaros.bdi.state.condition_waits import ConditionWaits
-from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event
+from jacaros.bdi.state.budget import Budget, SearchBudget, budgets
+from jacaros.bdi.state.engine import Engine
+from jacaros.bdi.state.event import EVENT_GOAL, EVENT_INTENTION, Annotations, Event, Posted
 from jacaros.bdi.state.intention import PLAN, Frame, Intention
-from jacaros.bdi.state.need import Need, Wanted
+from jacaros.bdi.state.need import Wanted
 from jacaros.bdi.state.observing import MindObserver
 from jacaros.bdi.state.options import Options
+from jacaros.bdi.state.pending import Waiting, Waits
 from jacaros.bdi.state.plan import Plan
 from jacaros.bdi.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.bdi.state.selections import Selections
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.bdi.state.triggers import Goal, Trigger
-from jacaros.bdi.state.waiting import ActWait, Alarm, AnswerWait, EventWaits, TimedWait, Waiting
 from jacaros.terms.text import text
 from jacaros.terms.unifier import Trail
 from jacaros.terms.values import Functor, Term
@@ -31,7 +31,8 @@ INTERVAL = 1_000
 """Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
 
 
-class ProjectFunctions(Protocol):
+@dataclass(frozen=True)
+class ProjectFunctions:
     """The arithmetic functions of a project.
 
     Attributes:
@@ -39,23 +40,14 @@ class ProjectFunctions(Protocol):
         evaluators: what computes them, by name; None stands for a value that is not known yet.
     """
 
-    @property
-    def functions(self) -> Mapping[str, tuple[int, int | None]]: ...
+    functions: Mapping[str, tuple[int, int | None]] = field(default_factory=dict)
+    evaluators: Mapping[str, Callable[..., Term]] = field(default_factory=dict)
 
-    @property
-    def evaluators(self) -> Mapping[str, Callable[..., Term]]: ...
-
-
-class _NoFunctions(NamedTuple):
-    functions: Mapping[str, tuple[int, int | None]] = MappingProxyType({})
-    evaluators: Mapping[str, Callable[..., Term]] = MappingProxyType({})
-
-
-NO_FUNCTIONS: Final = _NoFunctions()
 
 Sleep = Literal["awake", "drowsy", "asleep"]
 
 
+@dataclass(slots=True, eq=False)
 class Functions:
     """The arithmetic functions that an agent knows beside those of the language.
 
@@ -64,13 +56,11 @@ class Functions:
         project: those of the project.
     """
 
-    __slots__ = ("own", "project")
-
-    def __init__(self) -> None:
-        self.own: dict[str, Any] = {}
-        self.project: ProjectFunctions = NO_FUNCTIONS
+    own: dict[str, Any] = field(default_factory=dict)
+    project: ProjectFunctions = field(default_factory=ProjectFunctions)
 
 
+@dataclass(slots=True, eq=False)
 class Incoming:
     """Input that has not been taken in yet.
 
@@ -83,13 +73,10 @@ class Incoming:
             that are not plain. Code that adds to one of them sets it.
     """
 
-    __slots__ = ("called", "messages", "percepts", "tasks")
-
-    def __init__(self) -> None:
-        self.messages: deque[SpeechAct] = deque()
-        self.percepts: deque[list[Percept]] = deque()
-        self.tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = deque()
-        self.called = False
+    messages: deque[SpeechAct] = field(default_factory=deque)
+    percepts: deque[list[Percept]] = field(default_factory=deque)
+    tasks: deque[tuple[Callable[..., None], tuple[object, ...]]] = field(default_factory=deque)
+    called: bool = False
 
     def __bool__(self) -> bool:
         return bool(self.messages or self.percepts or self.tasks)
@@ -134,6 +121,7 @@ class HeldEvent(NamedTuple):
     ends_cycle: bool
 
 
+@dataclass(slots=True, eq=False)
 class Observers:
     """Observers of an agent's goals and reasons.
 
@@ -146,17 +134,15 @@ class Observers:
         hear_beliefs: whether one of the last three is set.
     """
 
-    __slots__ = ("derived", "goal", "hear_beliefs", "lost", "mind", "step")
-
-    def __init__(self) -> None:
-        self.goal: Callable[[str, Goal, int, int, str], None] | None = None
-        self.lost: Callable[[str, Sequence[str], Span | None], None] | None = None
-        self.step: StepObserver | None = None
-        self.mind: MindObserver | None = None
-        self.derived: BeliefObserver | None = None
-        self.hear_beliefs = False
+    goal: Callable[[str, Goal, int, int, str], None] | None = None
+    lost: Callable[[str, Sequence[str], Span | None], None] | None = None
+    step: StepObserver | None = None
+    mind: MindObserver | None = None
+    derived: BeliefObserver | None = None
+    hear_beliefs: bool = False
 
 
+@dataclass(slots=True, eq=False)
 class Counts:
     """How much an agent has done.
 
@@ -168,58 +154,13 @@ class Counts:
         next_look: number of the cycle in which percepts and messages are looked at next.
     """
 
-    __slots__ = ("cycles", "intentions", "next_check", "next_look")
-
-    def __init__(self) -> None:
-        self.cycles = self.intentions = self.next_look = 0
-        self.next_check = INTERVAL
-
-
-class Waits:
-    """What the intentions of an agent wait for, and what has been postponed.
-
-    Attributes:
-        events: waits for an event.
-        conditions: waits for a condition.
-        acts: waits for an external action, by its number.
-        questions: waits for an answer, by the id of the question.
-        abandoned: ids of questions that no intention waits for: a late answer is discarded.
-        alarms: calls that are due at a moment, by number.
-        alarms_made: number of alarms so far.
-        suspended_events: those of suspended intentions, and of goals that were suspended before they began.
-        needs: the resources that plans and goals have requested, by the number of the act.
-        preempted: the acts that have lost a resource: why, and the intentions that are suspended for it.
-        requeued: external events without plan that are to be tried again (``events=requeue``).
-    """
-
-    __slots__ = (
-        "abandoned",
-        "acts",
-        "alarms",
-        "alarms_made",
-        "conditions",
-        "events",
-        "needs",
-        "preempted",
-        "questions",
-        "requeued",
-        "suspended_events",
-    )
-
-    def __init__(self) -> None:
-        self.events = EventWaits()
-        self.conditions = ConditionWaits()
-        self.acts: dict[int, ActWait] = {}
-        self.needs: dict[int, Need] = {}
-        self.preempted: dict[int, tuple[Term, list[Intention]]] = {}
-        self.questions: dict[str, AnswerWait] = {}
-        self.abandoned: set[str | None] = set()
-        self.alarms: dict[int, Alarm] = {}
-        self.alarms_made = 0
-        self.suspended_events: list[Event] = []
-        self.requeued: list[Event] = []
+    cycles: int = 0
+    intentions: int = 0
+    next_check: int = INTERVAL
+    next_look: int = 0
 
 
+@dataclass(slots=True, eq=False)
 class Features:
     """What is true of all plans and observers of an agent together.
 
@@ -229,13 +170,28 @@ class Features:
         edges: there may be plans for falling asleep and awaking.
     """
 
-    __slots__ = ("edges", "meta", "meta_plans")
+    meta: bool = False
+    meta_plans: bool = False
+    edges: bool = False
 
-    def __init__(self) -> None:
-        self.meta = self.meta_plans = self.edges = False
+
+class _Rules:
+    """Rules that the state calls; `jacaros.bdi.mind.Mind` has them."""
+
+    __slots__ = ()
+
+    accepts: Callable[[SpeechAct], bool]
+    call_own: Callable[[Term], Term]
+    observe_rest: Callable[[Intention], None]
+    drop_wait: Callable[[Waiting], None]
+    end_above: Callable[[Intention, int], None]
+    end_wait: Callable[[Waiting], None]
+    begin_need: Callable[[Intention, Frame, Wanted], bool]
+    notify_listeners: Callable[[Event], None]
 
 
-class Circumstance:
+@dataclass(slots=True, eq=False, repr=False)
+class Circumstance(_Rules):
     """All that an agent holds.
 
     Attributes:
@@ -271,87 +227,50 @@ class Circumstance:
             have run.
     """
 
-    __slots__ = (
-        "alive",
-        "architecture",
-        "atomic",
-        "atomic_over",
-        "beliefs",
-        "budgets",
-        "conditioned",
-        "context",
-        "counts",
-        "current",
-        "engine",
-        "events",
-        "features",
-        "functions",
-        "held",
-        "holders",
-        "incoming",
-        "intentions",
-        "library",
-        "name",
-        "observers",
-        "options",
-        "outer_frame",
-        "running",
-        "selections",
-        "sleep",
-        "stopped",
-        "trail",
-        "waits",
-    )
+    name: str
+    architecture: Architecture
+    options: Options
+    plans: InitVar[ProgramPlans]
+    trail: Trail = field(default_factory=Trail)
+    current: Intention | None = None
+    budgets: dict[str, Budget] = field(init=False)
+    engine: Engine = field(init=False)
+    beliefs: BeliefTables = field(init=False)
+    library: PlanLibrary = field(init=False)
+    events: deque[Event] = field(default_factory=deque)
+    intentions: deque[Intention] = field(default_factory=deque)
+    alive: dict[int, Intention] = field(default_factory=dict)
+    holders: dict[Plan, dict[int, Intention]] = field(default_factory=dict)
+    conditioned: dict[int, Intention] = field(default_factory=dict)
+    selections: Selections = field(init=False)
+    atomic: Intention | None = None
+    atomic_over: bool = False
+    incoming: Incoming = field(default_factory=Incoming)
+    observers: Observers = field(default_factory=Observers)
+    waits: Waits = field(default_factory=Waits)
+    features: Features = field(default_factory=Features)
+    functions: Functions = field(default_factory=Functions)
+    counts: Counts = field(default_factory=Counts)
+    sleep: Sleep = "awake"
+    outer_frame: Any = None
+    context: Any = None
+    held: HeldEvent | Intention | None = None
+    running: bool = False
+    stopped: bool = False
 
-    selections: Selections
-    accepts: Callable[[SpeechAct], bool]
-    call_own: Callable[[Term], Term]
-    observe_rest: Callable[[Intention], None]
-    drop_wait: Callable[[Waiting], None]
-    end_above: Callable[[Intention, int], None]
-    end_wait: Callable[[TimedWait], None]
-    begin_need: Callable[[Intention, Frame, Wanted], bool]
-    notify_event_waits: Callable[[Event], None]
-
-    def __init__(
-        self,
-        name: str,
-        architecture: Architecture,
-        options: Options,
-        plans: ProgramPlans,
-    ) -> None:
-        self.name = name
-        self.architecture = architecture
-        self.options = options
-        self.trail = Trail()
-        self.current: Intention | None = None
+    def __post_init__(self, plans: ProgramPlans) -> None:
         self.budgets = budgets(self)
         self.engine = plans.engine
-        self.beliefs: BeliefTables = BeliefTables(
-            plans.engine, options.belief_limit, self.budgets["belief_limit"]
-        )
-        if options.search_limit:
-            self.beliefs.budget = SearchBudget(options.search_limit)
+        self.beliefs = BeliefTables(plans.engine, self.options.belief_limit, self.budgets["belief_limit"])
+        if self.options.search_limit:
+            self.beliefs.budget = SearchBudget(self.options.search_limit)
         self.library = PlanLibrary(plans)
-        self.events: deque[Event] = deque()
-        self.intentions: deque[Intention] = deque()
-        self.alive: dict[int, Intention] = {}
-        self.holders: dict[Plan, dict[int, Intention]] = {}
-        self.conditioned: dict[int, Intention] = {}
-        self.atomic: Intention | None = None
-        self.atomic_over = False
-        self.incoming = Incoming()
-        self.observers = Observers()
-        self.waits = Waits()
-        self.features = Features()
-        self.functions = Functions()
-        self.counts = Counts()
-        self.sleep: Sleep = "awake"
-        self.outer_frame: Any = None
-        self.context: Any = None
-        self.held: HeldEvent | Intention | None = None
-        self.running = False
-        self.stopped = False
+        self.look_at_observers()
+
+    def look_at_observers(self) -> None:
+        """Note whether anything observes beliefs."""
+        each = self.observers
+        each.hear_beliefs = not (each.mind is None and each.step is None and each.derived is None)
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Warn of an operand that is not a number."""
@@ -412,6 +331,9 @@ class Circumstance:
         if intention.waiting is not None:
             waiting, intention.waiting = intention.waiting, None
             self.drop_wait(waiting)
+        if intention.on_end is not None:
+            function, arguments = intention.on_end
+            function(self, *arguments)
 
     def may_handle(self, kind: Trigger) -> bool:
         """Return whether there may be a plan for an event kind (sub-plans are checked when the event is handled)."""
@@ -444,7 +366,14 @@ class Circumstance:
             self.note(event[EVENT_GOAL][0])
         self.events.append(event)
         if self.waits.events:
-            self.notify_event_waits(event)
+            self.notify_listeners(event)
+
+    def post_for(self, intention: Intention, posted: Posted | None) -> None:
+        """Queue what an intention continues with, if it does."""
+        if posted is not None:
+            self.post((posted.goal, intention, posted.annotations, None))
+            if not self.running:
+                self.architecture.ready()
 
     def _admits(self, event: Event) -> bool:
         """Return whether an event may still be queued: one that an existing intention waits for may.

@@ -37,6 +37,7 @@ class Intention:
         urgencies: the urgency of each frame with those below it; only if the agent has urgent plans.
         on_failed: called instead of the usual warning when it ends in failure, with the agent and the reason
             (`FailureReason`, or None), and the arguments that follow these; or None.
+        on_end: called with the agent and the arguments when it is over, however it ended; or None.
     """
 
     __slots__ = (
@@ -46,6 +47,7 @@ class Intention:
         "frames",
         "handlers",
         "id",
+        "on_end",
         "on_failed",
         "outer",
         "suspended",
@@ -66,6 +68,26 @@ class Intention:
         self.outer: tuple[Intention, Frame] | None = None
         self.forks: tuple[tuple[Any, int], ...] = ()
         self.on_failed: tuple[Callable[..., None], tuple[Any, ...]] | None = None
+        self.on_end: tuple[Callable[..., None], tuple[Any, ...]] | None = None
+
+    @property
+    def state(self) -> str:
+        """One of four states, the first of these that applies.
+
+        ==============  ======================  ================================================================
+        state           it has                  and ends with
+        ==============  ======================  ================================================================
+        ``over``        been dropped            nothing: it has no frames, and is not among those alive
+        ``suspended``   a reason (`suspended`)  ``.resume``, or the resource that it lost; in no queue meanwhile
+        ``waiting``     a wait (`waiting`)      the end of the wait, also while it is suspended
+        ``running``     a place in a queue      its next step, or the handling of the event that it has posted
+        ==============  ======================  ================================================================
+        """
+        if self.dropped:
+            return "over"
+        if self.suspended is not None:
+            return "suspended"
+        return "running" if self.waiting is None else "waiting"
 
     def is_atomic(self) -> bool:
         """Whether a plan on the stack is atomic."""

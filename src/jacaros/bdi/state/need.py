@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from jacaros.bdi.state.intention import SERIAL, Intention
+from jacaros.bdi.state.intention import PLAN, SERIAL, Frame, Intention
 from jacaros.terms.text import text
 from jacaros.terms.values import String, Term, bare, functor
 
@@ -27,21 +27,25 @@ class Need:
 
     Attributes:
         number: of the act that asked for it.
-        index: of the frame on the stack.
-        serial: of the frame, the same in all branches of a fork.
         intention: that asked for it; branches of a fork may have taken its place.
+        index: of the frame on the stack; it may have moved up since, above the supervision of its plan.
+        serial: of the frame, the same in all branches of a fork.
+        plan: of the frame.
     """
 
-    __slots__ = ("index", "intention", "number", "serial")
+    __slots__ = ("index", "intention", "number", "plan", "serial")
 
-    def __init__(self, number: int, intention: Intention, index: int) -> None:
-        self.number, self.intention, self.index = number, intention, index
-        self.serial = intention.frames[index][SERIAL]
+    def __init__(self, number: int, intention: Intention) -> None:
+        self.number, self.intention, self.index = number, intention, len(intention.frames) - 1
+        self.serial, self.plan = intention.frames[-1][SERIAL], intention.frames[-1][PLAN]
+
+    def is_of(self, frame: Frame) -> bool:
+        """Whether a frame has asked for it."""
+        return frame[SERIAL] == self.serial and frame[PLAN] is self.plan
 
     def is_on(self, intention: Intention) -> bool:
         """Whether the frame is on the stack of an intention."""
-        frames = intention.frames
-        return len(frames) > self.index and frames[self.index][SERIAL] == self.serial
+        return any(map(self.is_of, intention.frames[self.index :]))
 
 
 def wanted_in(annotations: Iterable[Term]) -> Wanted | None:

@@ -1,7 +1,7 @@
 """A plan: its syntax, its label, the places of its variables in a frame, and the ways in which its steps may end."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.asl import nodes
@@ -15,6 +15,7 @@ from jacaros.terms.order import annotation_set
 from jacaros.terms.values import (
     SOURCE,
     Annotated,
+    Functor,
     String,
     Term,
     annotations_of,
@@ -45,6 +46,7 @@ class StepInfo:
     failure: tuple[Term, ...] | None = None
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Plan:
     """A plan of the library.
 
@@ -74,54 +76,41 @@ class Plan:
         subselects: their select functions by event kind, made at the first event.
     """
 
-    __slots__ = (
-        "_slots",
-        "annotations",
-        "atomic",
-        "body_term",
-        "by_name",
-        "first",
-        "goal_condition",
-        "guards",
-        "interpreted",
-        "label",
-        "needs",
-        "nested",
-        "node",
-        "of_program",
-        "replaceable",
-        "scope",
-        "size",
-        "special",
-        "steps",
-        "subplans",
-        "subselects",
-        "urgency",
-    )
+    node: nodes.Plan
+    label: Term
+    by_name: frozenset[str] = frozenset()
+    annotations: tuple[Term, ...] = ()
+    atomic: bool = False
+    urgency: int = 0
+    guards: tuple[nodes.Literal, ...] = ()
+    needs: Wanted | None = None
+    of_program: bool = False
+    body_term: Term = None
+    replaceable: bool = True
+    special: bool = False
+    nested: bool = False
+    interpreted: Any = None
+    size: int = 0
+    first: Callable[[Any, list[Any]], Any] | None = None
+    steps: dict[str, StepInfo] = field(default_factory=dict)
+    scope: "Plan | None" = None
+    goal_condition: Callable[[Any, list[Any]], bool] | None = None
+    subplans: list["Plan"] = field(default_factory=list)
+    subselects: dict[Trigger, Any] = field(default_factory=dict)
+    _slots: dict[str, int] | None = None
 
-    def __init__(self, node: nodes.Plan, label: Term, by_name: frozenset[str] = frozenset()) -> None:
-        self.node = node
-        self.by_name = by_name
+    def __post_init__(self) -> None:
+        node, label = self.node, self.label
         self.label = bare(label)
         self.annotations = tuple(a for a in annotations_of(label) if not _is_source(a))
-        self.atomic = ATOMIC_LABEL in self.annotations
-        self.urgency = _urgency(self.annotations) if self.annotations else 0
-        self.guards = guards_of(node) if self.annotations else ()
-        self.needs: Wanted | None = wanted_in(self.annotations) if self.annotations else None
-        self.of_program = False
-        self.body_term: Term = None
+        if self.annotations:
+            self.atomic = ATOMIC_LABEL in self.annotations
+            self.urgency = _urgency(self.annotations)
+            self.guards = guards_of(node)
+            self.needs = wanted_in(self.annotations)
         self.replaceable = node.goal_condition is None and not node.subplans and self.needs is None
         self.special = self.atomic or not self.replaceable
         self.nested = bool(node.subplans)
-        self._slots: dict[str, int] | None = None
-        self.interpreted: Any = None
-        self.size = 0
-        self.first: Callable[[Any, list[Any]], Any] | None = None
-        self.steps: dict[str, StepInfo] = {}
-        self.scope: Plan | None = None
-        self.goal_condition: Callable[[Any, list[Any]], bool] | None = None
-        self.subplans: list[Plan] = []
-        self.subselects: dict[Trigger, Any] = {}
 
     def __repr__(self) -> str:
         return f"Plan({self.label!r})"
@@ -170,6 +159,13 @@ class Plan:
         if isinstance(literal, nodes.Variable) or isinstance(literal.namespace, nodes.Variable):
             return None
         return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def hidden_plan(label: Functor) -> Plan:
+    """Make a plan without a body, for frames that stand for something else on the stack of an intention."""
+    return Plan(
+        nodes.Plan(None, nodes.Trigger("+", "!", nodes.Literal(label.name)), None, nodes.Body()), label
+    )
 
 
 def position_of(step: Any) -> str:

@@ -1,12 +1,13 @@
 """The plans of a program, made once for all agents that run it, and those of one agent."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from jacaros.asl import nodes
 from jacaros.bdi.state.belief_base import MANY_NAMES
 from jacaros.bdi.state.engine import Engine, Every, Select
-from jacaros.bdi.state.plan import Plan, label_of, with_subplans
+from jacaros.bdi.state.plan import Plan, every_plan, label_of, with_subplans
 from jacaros.bdi.state.triggers import Trigger
 from jacaros.bdi.state.triggers import trigger as trigger_of_kind
 from jacaros.terms.values import SELF, Term, bare
@@ -45,7 +46,7 @@ class ProgramPlans:
             self._by_head.setdefault((head.operator, head.kind, plan.trigger_functor()), []).append(plan)
         self.reactions = Reactions(self.plans)
         self.has_meta_plans = any(plan.node.trigger.operator == "^" for plan in self.plans)
-        self.selects = ProgramSelects(self)
+        self.selects = Selects(self, self)
 
     def kinds(self) -> Iterator[Trigger]:
         """The kinds of events that plans are for, in the order of the program."""
@@ -74,7 +75,7 @@ class Reactions(dict[Trigger, Sequence[Plan]]):
 
     def __init__(self, plans: Iterable[Plan]) -> None:
         super().__init__()
-        self.of = list(with_inner(plans))
+        self.of = [plan for plan in every_plan(plans) if plan.subplans]
 
     def __missing__(self, kind: Trigger) -> Sequence[Plan]:
         if len(self) >= MANY_NAMES:
@@ -83,26 +84,31 @@ class Reactions(dict[Trigger, Sequence[Plan]]):
         return self[kind]
 
 
-def with_inner(plans: Iterable[Plan]) -> Iterator[Plan]:
-    """Yield the plans that have sub-plans: among these plans, and inside them."""
-    for plan in plans:
-        if plan.subplans:
-            yield plan
-            yield from with_inner(plan.subplans)
-
-
 class Selects(dict[Trigger, Select | None]):
-    """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it."""
+    """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it.
 
-    __slots__ = ("_general", "_unnamed")
+    Args:
+        plans: those of a program, or of one agent.
+        program: those of the program, which an agent shares for events that none of its own plans concerns.
+    """
 
-    def __init__(self) -> None:
+    __slots__ = ("_general", "_plans", "_program", "_unnamed")
+
+    def __init__(self, plans: "ProgramPlans | PlanLibrary", program: "ProgramPlans") -> None:
         super().__init__()
+        self._plans, self._program = plans, program
         self._general: dict[tuple[Any, ...], Select | None] = {}
         self._unnamed: list[Trigger] = []
 
-    def made(self, trigger: Trigger, plans: Sequence[Plan], engine: Engine) -> Select | None:
-        """What chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
+    def __missing__(self, trigger: Trigger) -> Select | None:
+        if isinstance(self._plans, PlanLibrary) and self._plans.is_as_written(trigger):
+            return self._keep(trigger, self._program.selects[trigger], self._program.relevant(trigger))
+        plans = self._plans.relevant(trigger)
+        return self._keep(trigger, self._made(trigger, plans), plans)
+
+    def _made(self, trigger: Trigger, plans: Sequence[Plan]) -> Select | None:
+        """Make what chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
+        engine = self._program.engine
         if not plans:
             return None
         if _name(plans, trigger):
@@ -112,7 +118,7 @@ class Selects(dict[Trigger, Select | None]):
             self._general[key] = engine.select(trigger, plans)
         return self._general[key]
 
-    def keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
+    def _keep(self, trigger: Trigger, select: Select | None, plans: Sequence[Plan]) -> Select | None:
         """Keep the function of an event kind, for ever if a plan names it; of others, only MANY_NAMES are kept."""
         if not _name(plans, trigger):
             if len(self._unnamed) >= MANY_NAMES:
@@ -123,20 +129,11 @@ class Selects(dict[Trigger, Select | None]):
         self[trigger] = select
         return select
 
-
-class ProgramSelects(Selects):
-    """What chooses among the plans of a program."""
-
-    __slots__ = ("_program",)
-
-    def __init__(self, program: ProgramPlans) -> None:
-        super().__init__()
-        self._program = program
-
-    def __missing__(self, trigger: Trigger) -> Select | None:
-        program = self._program
-        plans = program.relevant(trigger)
-        return self.keep(trigger, self.made(trigger, plans, program.engine), plans)
+    def forget(self, plan: Plan) -> None:
+        """A plan came or went: the functions it concerns are made anew."""
+        self._general.clear()
+        for trigger in [each for each in self if concerns(plan, each)]:
+            del self[trigger]
 
 
 def _name(plans: Sequence[Plan], trigger: Trigger) -> bool:
@@ -159,6 +156,7 @@ def concerns(plan: Plan, trigger: Trigger) -> bool:
     )
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class PlanLibrary:
     """The plans of one agent, in the order in which they are tried.
 
@@ -172,32 +170,21 @@ class PlanLibrary:
         blamed: plans whose goal condition could not be evaluated, and has been reported.
     """
 
-    __slots__ = (
-        "_every",
-        "_sources",
-        "blamed",
-        "bodies",
-        "own",
-        "plans",
-        "plans_made",
-        "program",
-        "reactions",
-        "removed",
-        "selects",
-    )
+    program: ProgramPlans
+    plans: list[Plan] = field(init=False)
+    plans_made: int = field(init=False)
+    selects: Selects = field(init=False)
+    reactions: Reactions = field(init=False)
+    bodies: dict[int, tuple[Term, Plan]] = field(default_factory=dict)
+    blamed: set[Plan] = field(default_factory=set)
+    own: list[Plan] = field(default_factory=list)
+    removed: list[Plan] = field(default_factory=list)
+    _sources: dict[Plan, tuple[Term, ...]] = field(default_factory=dict)
+    _every: dict[Trigger, Every] = field(default_factory=dict)
 
-    def __init__(self, program: ProgramPlans) -> None:
-        self.program = program
-        self.plans: list[Plan] = program.plans
-        self.plans_made = len(program.plans)
-        self.bodies: dict[int, tuple[Term, Plan]] = {}
-        self.blamed: set[Plan] = set()
-        self.own: list[Plan] = []
-        self.removed: list[Plan] = []
-        self.selects: Selects = program.selects
-        self.reactions = program.reactions
-        self._sources: dict[Plan, tuple[Term, ...]] = {}
-        self._every: dict[Trigger, Every] = {}
+    def __post_init__(self) -> None:
+        self.plans, self.selects = self.program.plans, self.program.selects
+        self.plans_made, self.reactions = len(self.plans), self.program.reactions
 
     @property
     def by_name(self) -> frozenset[str]:
@@ -229,13 +216,12 @@ class PlanLibrary:
         if self.plans is self.program.plans:
             self.plans = list(self.plans)
         if self.selects is self.program.selects:
-            self.selects = OwnSelects(self)
+            self.selects = Selects(self, self.program)
 
     def _forget_selects(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""
         self._every.clear()
-        if isinstance(self.selects, OwnSelects):
-            self.selects.forget(plan)
+        self.selects.forget(plan)
 
     def parts(self) -> tuple[Any, ...] | None:
         """What makes it differ from the plans of the program, for `take_parts`; None when it does not."""
@@ -298,33 +284,3 @@ class PlanLibrary:
         if not self.own and not self.removed:
             return self.program.has_meta_plans
         return any(plan.node.trigger.operator == "^" for plan in self.plans)
-
-
-class OwnSelects(Selects):
-    """The same for an agent whose plans are not all those of its program; or one that chooses among them itself."""
-
-    __slots__ = ("library",)
-
-    def __init__(self, library: PlanLibrary) -> None:
-        super().__init__()
-        self.library = library
-
-    def __missing__(self, trigger: Trigger) -> Select | None:
-        library = self.library
-        if library.is_as_written(trigger):
-            return self.keep(trigger, library.program.selects[trigger], library.program.relevant(trigger))
-        plans = library.relevant(trigger)
-        return self.keep(trigger, self.made(trigger, plans, library.program.engine), plans)
-
-    def forget(self, plan: Plan) -> None:
-        """A plan came or went: the functions it concerns are made anew."""
-        self._general.clear()
-        head = plan.node.trigger
-        functor = plan.trigger_functor()
-        for trigger in list(self):
-            if (
-                trigger.operator == head.operator
-                and trigger.kind == head.kind
-                and functor in (None, trigger.functor)
-            ):
-                del self[trigger]

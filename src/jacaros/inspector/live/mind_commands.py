@@ -146,7 +146,7 @@ def _ask(mind: OpenMind, formula: str) -> str:
     agent = mind.mind
     if agent.running:
         raise Refused("the agent is in the middle of a step: ask again")
-    with reading(agent, QUESTION_STEPS, look_up=True) as view:
+    with reading(agent, QUESTION_STEPS) as view:
         answers = within(QUESTION_TIME, lambda: _answers(view, formula))
     if answers is None:
         raise Refused(f"the question takes longer than {QUESTION_TIME} s; ask a simpler one")

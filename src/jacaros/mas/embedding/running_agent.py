@@ -9,9 +9,9 @@ from jacaros.asl.lowering import lower_value
 from jacaros.bdi.explaining.lost_goals import loss_of
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules import goals
-from jacaros.bdi.rules.watched import WatchedGoal
+from jacaros.bdi.rules.failure import told
+from jacaros.bdi.rules.watched import WatchedCondition, WatchedGoal
 from jacaros.bdi.snapshot import stored
-from jacaros.bdi.state.condition_waits import ConditionObserver, asked_by
 from jacaros.bdi.state.speech_act import SpeechAct
 from jacaros.body.values import to_value
 from jacaros.errors import UsageError
@@ -20,7 +20,6 @@ from jacaros.mas.embedding.errors import AgentEnded, GoalFailed
 from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.open_mind import OpenMind, literal, question, values_of
 from jacaros.terms.text import text
-from jacaros.terms.unifier import undo
 from jacaros.terms.values import Functor, String, Term, bare, deref
 
 
@@ -46,7 +45,7 @@ class PursuedGoal:
         if self._watched.ended:
             return "achieved" if self.achieved else "failed"
         intentions = self._watched.intentions()
-        return str(goals.describe(intentions[-1])[0]) if intentions else "dropped"
+        return intentions[-1].state if intentions else "dropped"
 
     @property
     def reasons(self) -> list[Term]:
@@ -183,46 +182,22 @@ class RunningAgent(OpenMind):
         return f"<agent {self.name}{' (ended)' if self.ended else ''}>"
 
 
-class _Awaited(ConditionObserver):
-    """A condition that Python code waits for, among those that the agent evaluates (`Circumstance.waits.conditions`)."""
+class _Awaited:
+    """A condition that Python code waits for."""
 
     def __init__(self, mind: Mind, formula: str) -> None:
         self.future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
-        self._mind = mind
         self._formula = formula
-        self._term, self._names = question(formula)
-        self._found: dict[str, Any] = {}
-        self.asked = asked_by(self._term, mind.beliefs, mind.engine.actions)
-        mind.waits.conditions.add(self)
-        mind.incoming.called = True
-        mind.architecture.ready()
+        term, self._names = question(formula)
+        self.forget = WatchedCondition(mind, term, self._ended).forget
 
-    def holds(self) -> bool:
-        mark = len(self._mind.trail)
-        try:
-            for _ in self._mind.context.answers(self._term):
-                self._found = values_of(self._names)
-                return True
-            return False
-        finally:
-            undo(self._mind.trail, mark)
-
-    # The agent's interface to a wait.
-
-    @property
-    def ended(self) -> bool:
-        return self.future.done()
-
-    def resume(self) -> None:
-        if not self.future.done():
-            self.future.set_result(self._found)
-
-    def fail(self, message: str) -> None:
-        if not self.future.done():
-            self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {message}"))
-
-    def forget(self) -> None:
-        self._mind.waits.conditions.remove(self)
+    def _ended(self, fault: Exception | None) -> None:
+        if self.future.done():
+            return
+        if fault is None:
+            self.future.set_result(values_of(self._names))
+        else:
+            self.future.set_exception(UsageError(f"{self._formula} cannot be evaluated: {told(fault)}"))
 
 
 class Goal(PursuedGoal):
@@ -233,7 +208,7 @@ class Goal(PursuedGoal):
     """
 
     def __init__(self, written: str, mind: Mind, waits: Waits, agent_ended: Callable[[], bool]) -> None:
-        super().__init__(written, WatchedGoal(mind, literal(written), self._news))
+        super().__init__(written, WatchedGoal(mind, literal(written), self._news, self._news))
         self._mind = mind
         self._agent_ended = agent_ended
         self._waits = waits
@@ -254,21 +229,14 @@ class Goal(PursuedGoal):
         """
         self._awaited = True
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        dropped = _Dropped(self, future)
         if not self._watched.ended and self._agent_ended():
             await asyncio.sleep(0)  # the end of a run is reported one turn later
             self._waits.check()
             if self.state != "dropped":
                 raise AgentEnded(f"{self._not_achieved()}: agent {self._mind.name} has ended")
-        elif not self._watched.ended:
+        elif self._watched.intentions():
             self._waiting.append(future)
-            self._mind.waits.conditions.add(dropped)
-            self._mind.incoming.called = True
-            self._mind.architecture.ready()
-            try:
-                await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
-            finally:
-                self._mind.waits.conditions.remove(dropped)
+            await self._waits.wait(future, self._not_achieved, timeout, self._mind.name)
         if not self.achieved:
             raise self._failure()
 
@@ -307,7 +275,7 @@ class Goal(PursuedGoal):
         reason = self._watched.reason
         if reason is None:
             return GoalFailed(f"{who} failed", self._written)
-        message, where = reason.message(), reason.where()
+        message, where = reason.message(), reason.place.where()
         others = ", ".join(text(term) for term in reason.terms if not _is_message(term))
         told = f"{who} failed{f': {message}' * bool(message)}{f' ({others})' * bool(others)}"
         told += f", in {where}" * bool(where and where != _RUN_TIME)
@@ -315,27 +283,6 @@ class Goal(PursuedGoal):
         for candidate in reason.candidates:
             failed.add_note(candidate)
         return failed
-
-
-class _Dropped(ConditionObserver):
-    """Ends the wait for a goal when the goal is dropped. It is one of the conditions that the agent evaluates."""
-
-    def __init__(self, goal: Goal, future: asyncio.Future[None]) -> None:
-        self._goal, self._future = goal, future
-
-    @property
-    def ended(self) -> bool:
-        return self._future.done()
-
-    def holds(self) -> bool:
-        return self._goal.state == "dropped"
-
-    def resume(self) -> None:
-        if not self._future.done():
-            self._future.set_result(None)
-
-    def fail(self, message: str) -> None:
-        self.resume()
 
 
 def _is_message(term: Term) -> bool:

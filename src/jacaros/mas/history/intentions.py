@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol
 from jacaros.bdi.mind import Mind
 from jacaros.bdi.rules.urgency import Urgent
 from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.waiting import TimedWait, Waiting
+from jacaros.bdi.state.pending import Waiting
 from jacaros.clock import Clock, Timer
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.steps import Stacks
@@ -156,7 +156,7 @@ class IntentionRecords:
             else "runs",
             "stack": self._stacks.of(intention),
             "waits": "" if waiting is None or waiting.ended else waits_for(waiting),
-            "since": self._t(waiting.began if isinstance(waiting, TimedWait) else None),
+            "since": self._t(None if waiting is None else waiting.began),
             "reason": "" if intention.suspended is None else shown(intention.suspended),
             "urgency": self._urgency(intention),
             "cause": 0 if cause is None else cause.id,

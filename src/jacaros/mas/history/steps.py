@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from jacaros.asl.source import Span
-from jacaros.bdi.explaining.failure_reason import StepPlace, place_of_call
+from jacaros.bdi.explaining.failure_reason import Place, place_of_call
 from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.bdi.state.literals import literal_of
 from jacaros.bdi.state.plan import Plan, StepInfo
@@ -102,7 +102,7 @@ def step_of(frame: Frame) -> str:
     if info is None:
         return ""
     try:
-        return cut(named(StepPlace(frame, info).step()))
+        return cut(named(Place(frame, info).step()))
     except Exception:
         # Output for users must not make a run fail.
         return _written(info.node.span)

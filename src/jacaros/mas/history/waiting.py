@@ -1,17 +1,13 @@
 """What an intention waits for, in words."""
 
-from collections.abc import Callable
-
 from jacaros.bdi.actions.waiting import TIME
-from jacaros.bdi.state.condition_waits import ConditionWait
-from jacaros.bdi.state.waiting import (
-    ActWait,
-    AnswerWait,
+from jacaros.bdi.state.pending import (
+    ASK,
+    GOAL_CONDITION,
     CoroutineWait,
-    EventWait,
-    GoalConditionWait,
-    TimedWait,
+    Listener,
     Waiting,
+    Watch,
     is_action,
 )
 from jacaros.mas.history.words import shown
@@ -20,7 +16,15 @@ from jacaros.terms.values import Term, annotations_of
 
 def waits_for(waiting: Waiting) -> str:
     """Return what ends a wait."""
-    return next((told(waiting) for kind, told in _WORDS if isinstance(waiting, kind)), shown(waiting.reason))
+    if waiting.act is not None:
+        return _act(waiting)
+    if isinstance(waiting, CoroutineWait):
+        return f"the Python coroutine {shown(waiting.reason)}"
+    if waiting.reason in (ASK, GOAL_CONDITION):
+        return "an answer" if waiting.reason is ASK else "the condition of its goal"
+    kinds = {type(each) for each in waiting.pending}
+    what = "the event " if Listener in kinds else "the condition " if Watch in kinds else ""
+    return f"{what}{shown(_awaited(waiting))}" if what else _time(waiting)
 
 
 def _awaited(waiting: Waiting) -> Term:
@@ -41,14 +45,3 @@ def _act(waiting: Waiting) -> str:
     if reason.__class__ is tuple and not is_action(reason):  # needs(wheels)
         return f"the resource{'s' if len(reason) > 2 else ''} {', '.join(map(shown, reason[1:]))}"
     return f"the action {shown(reason[1] if reason.__class__ is tuple else reason)}"
-
-
-_WORDS: tuple[tuple[type[Waiting], Callable[[Waiting], str]], ...] = (
-    (ActWait, _act),
-    (EventWait, lambda waiting: f"the event {shown(_awaited(waiting))}"),
-    (ConditionWait, lambda waiting: f"the condition {shown(_awaited(waiting))}"),
-    (TimedWait, _time),
-    (AnswerWait, lambda waiting: "an answer"),
-    (GoalConditionWait, lambda waiting: "the condition of its goal"),
-    (CoroutineWait, lambda waiting: f"the Python coroutine {shown(waiting.reason)}"),
-)

@@ -18,9 +18,9 @@ from jacaros.bdi.rules.calls import (
     unknown,
     values_of,
 )
+from jacaros.bdi.rules.deadlines import begin_guarded
 from jacaros.bdi.rules.deconstruction import constructed, deconstruct, deconstruct_in, deconstructed
 from jacaros.bdi.rules.forks import join_branch
-from jacaros.bdi.rules.plan_guards import begin_guarded
 from jacaros.bdi.rules.searching import (
     Loop,
     Remaining,
