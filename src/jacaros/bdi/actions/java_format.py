@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from decimal import ROUND_HALF_UP, Context, Decimal
+from decimal import ROUND_HALF_UP, Decimal
+from decimal import Context as DecimalContext
 
 from jacaros.terms.text import double_text
 
 _SPECIFIER = re.compile(r"%(?:(\d+)\$)?([-#+ 0,(]*)(\d+)?(?:\.(\d+))?([a-zA-Z%])")
-_EXACT = Context(prec=2000, rounding=ROUND_HALF_UP)
+_EXACT = DecimalContext(prec=2000, rounding=ROUND_HALF_UP)
 
 
 def java_format(template: str, arguments: Sequence[float | str | bool]) -> str:
@@ -92,7 +93,7 @@ def _digits(value: Decimal, conversion: str, places: int) -> str:
     if conversion == "e":
         return _scientific(value, places)
     significant = max(places, 1)
-    rounded = value and Context(prec=significant, rounding=ROUND_HALF_UP).plus(value)
+    rounded = value and DecimalContext(prec=significant, rounding=ROUND_HALF_UP).plus(value)
     if rounded == 0:
         return _fixed(value, significant - 1)
     if Decimal("0.0001") <= rounded < Decimal(10) ** significant:
@@ -107,7 +108,7 @@ def _fixed(value: Decimal, places: int) -> str:
 def _scientific(value: Decimal, places: int) -> str:
     if value == 0:
         return f"{_fixed(value, places)}e+00"
-    rounded = Context(prec=places + 1, rounding=ROUND_HALF_UP).plus(value)
+    rounded = DecimalContext(prec=places + 1, rounding=ROUND_HALF_UP).plus(value)
     digits = "".join(map(str, rounded.as_tuple().digits)).ljust(places + 1, "0")
     point = "." if places else ""
     return f"{digits[0]}{point}{digits[1:]}e{rounded.adjusted():+03d}"

@@ -32,7 +32,7 @@ MOST_STEPS = 1_000
 """Maximum number of steps of the search for one plan (about ten microseconds each): answers of conjuncts, rules and
 internal actions.
 """
-LONGEST_CONJUNCT, LONGEST_VALUE = 100, 40
+LONGEST, LONGEST_CONJUNCT, LONGEST_VALUE = 120, 100, 40
 """Maximum numbers of characters shown of a conjunct and of the value of a variable."""
 
 
@@ -174,14 +174,14 @@ class _Search:
             written = span.file.lines[span.line - 1][span.column - 1 : span.end_column - 1]
         else:
             written = unbracketed(format_term(conjunct))
-        return _short(written, LONGEST_CONJUNCT)
+        return short(written, LONGEST_CONJUNCT)
 
     def _values(self, conjunct: nodes.Node) -> str:
         shown = []
         for name in names_in(conjunct):
             value = deref(self._names[name])
             if value.__class__ is not Var:
-                shown.append(f"{name}={_short(_value_text(value), LONGEST_VALUE)}")
+                shown.append(f"{name}={short(_value_text(value), LONGEST_VALUE)}")
         return ", ".join(shown)
 
 
@@ -192,5 +192,6 @@ def _value_text(value: Term) -> str:
     return text(value)
 
 
-def _short(written: str, longest: int) -> str:
+def short(written: str, longest: int = LONGEST) -> str:
+    """Return a text, cut at *longest* characters."""
     return written if len(written) <= longest else f"{written[: longest - 3]}..."

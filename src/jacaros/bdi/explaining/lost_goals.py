@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from jacaros.asl.formatter import format_term
 from jacaros.asl.source import Span
-from jacaros.bdi.explaining.failing_context import FailingContexts
+from jacaros.bdi.explaining.failing_context import FailingContexts, short
 from jacaros.bdi.explaining.failure_reason import FailureReason, shown_goal
 from jacaros.bdi.explaining.step_text import unbracketed
 from jacaros.bdi.state.circumstance import Circumstance
@@ -24,8 +24,6 @@ MOST_GOALS = 6
 """Maximum number of goals listed of a deeper stack, those next to the failure."""
 MOST_PLANS = 3
 """Maximum number of unfit plans listed."""
-LONGEST = 120
-"""Maximum number of characters of a term shown, such as a list with all ranges of a laser."""
 LONGEST_MESSAGE = 600
 """Maximum number of characters of an ``error_msg`` shown; plans get all of it."""
 
@@ -60,7 +58,7 @@ def loss(agent: Circumstance, intention: Intention, reason: FailureReason, goal:
     stack = note_goals(agent, intention, reason, goal)
     wanted = next((each for each in reversed(stack) if each[0].operator == "+" and each[0].kind), None)
     if wanted is not None:
-        what = f"the goal {_short(shown_goal(wanted))}"
+        what = f"the goal {short(shown_goal(wanted))}"
     else:
         what = f"the plan for {reason.goals[-1]}" if reason.goals else "an intention"
     return loss_of(what, reason)
@@ -135,7 +133,7 @@ def why(reason: FailureReason) -> str:
 
 def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
     """Return the lines after message and place; *what*, such as ``the goal !go``, has already been named."""
-    goals = [_short(goal) for goal in reason.goals]
+    goals = [short(goal) for goal in reason.goals]
     if len(goals) == 1 and what.endswith(f" {goals[0]}"):
         goals = []
     lines = []
@@ -150,7 +148,7 @@ def details(reason: FailureReason, what: str = "") -> tuple[str, ...]:
 def _step(reason: FailureReason) -> str:
     step = reason.place.step()
     # The reason that it passes on is in the other lines.
-    return ".fail(...)" if step.startswith(".fail(") else _short(step)
+    return ".fail(...)" if step.startswith(".fail(") else short(step)
 
 
 def _terms(reason: FailureReason) -> list[str]:
@@ -161,7 +159,7 @@ def _terms(reason: FailureReason) -> list[str]:
     terms = reason.others()
     if any(functor_of(term) is ENV_FAILURE_DETAIL for term in terms):
         terms = [term for term in terms if functor_of(term) is not ENV_FAILURE_REASON]
-    return [f"reason: {', '.join(_short(text(excerpt(term))) for term in terms)}"] if terms else []
+    return [f"reason: {', '.join(short(text(excerpt(term))) for term in terms)}"] if terms else []
 
 
 def goals_below(intention: Intention) -> Iterator[Goal]:
@@ -193,16 +191,12 @@ def _why(reason: FailureReason) -> str:
 
 
 def _error(reason: FailureReason) -> str:
-    return ", ".join(filter(None, (reason.known_error(), _short(reason.message(), LONGEST_MESSAGE))))
+    return ", ".join(filter(None, (reason.known_error(), short(reason.message(), LONGEST_MESSAGE))))
 
 
 def _place(reason: FailureReason) -> str:
     where = reason.place.where()
     return f" ({where})" if where else ""
-
-
-def _short(told: str, longest: int = LONGEST) -> str:
-    return told if len(told) <= longest else f"{told[: longest - 3]}..."
 
 
 def _candidates(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> tuple[str, ...]:
@@ -224,4 +218,4 @@ def _candidate(plan: Plan, stop: str) -> str:
     if node.context is not None and not stop:
         told += f" : {unbracketed(format_term(node.context))}"
     line = f":{node.span.line}" if node.span is not None else ""
-    return f"does not fit: {_short(told)} ({plan.file}{line}){', ' if stop else ''}{stop}"
+    return f"does not fit: {short(told)} ({plan.file}{line}){', ' if stop else ''}{stop}"
