@@ -69,7 +69,9 @@ TESTS_FOR = 30.0
 """Seconds of tests, as measured without a change, that one mutant is given."""
 MEMORY = 4 << 30
 ASLEEP = 60.0
-"""Seconds without processor time after which a mutant is taken for one that waits for ever."""
+"""Seconds with hardly any processor time after which a mutant is taken for one that waits for ever."""
+HARDLY = 0.01
+"""Share of the processor time."""
 KILLED, LOOPS, SURVIVED, UNREACHED = "killed", "killed by the time limit", "survived", "reached by no test"
 NOT_IN_MEMORY = "not changed in memory"
 OUTCOMES = {0: SURVIVED, 1: KILLED, 2: NOT_IN_MEMORY}
@@ -312,27 +314,30 @@ def _fork(run: Callable[[], int], folder: Path, limit: float | None = None) -> i
 
 
 class _Progress:
-    """Notices that a child waits for ever: it uses no processor time, however busy the machine is."""
+    """Notices that a child waits for ever: it uses hardly any processor time, however busy the machine is."""
 
     def __init__(self, process: int) -> None:
         self._process = process
-        self._used = -1.0
+        self._used = 0.0
         self._since = time.monotonic()
 
     def has_ceased(self) -> bool:
-        """Whether the child has used no processor time for a minute."""
-        used = _processor_time(self._process)
-        if used != self._used:
-            self._used, self._since = used, time.monotonic()
-        return time.monotonic() - self._since > ASLEEP
+        """Whether the child has used hardly any processor time for a minute; a thread that looks around uses a little."""
+        passed = time.monotonic() - self._since
+        if passed <= ASLEEP:
+            return False
+        before, self._used = self._used, _processor_time(self._process)
+        self._since += passed
+        return self._used - before < HARDLY * passed
 
 
 def _processor_time(process: int) -> float:
+    """Return the seconds of processor time that a process has used; 0 if unknown."""
     try:
         fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:  # not Linux, or it has ended
         return 0.0
-    return float(fields[11]) + float(fields[12])
+    return (float(fields[11]) + float(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _ended(process: int) -> int | None:

@@ -40,6 +40,7 @@ OTHER_CALLS = {"min": "max", "max": "min", "any": "all", "all": "any"}
 LOGS = {"log", "warn", "warning", "info", "debug", "print"}
 UNTESTED_FUNCTIONS = {"__repr__", "__str__"}
 UNTESTED_DECORATORS = {"overload", "abstractmethod"}
+UNTESTED_ARGUMENTS = {"strict", "repr", "compare"}
 UNTESTED_BASES = {"Protocol", "Enum", "IntEnum", "StrEnum", "Flag", "TypedDict"}
 
 
@@ -216,7 +217,7 @@ class _Finder(ast.NodeVisitor):
             if ast.dump(swapped) != ast.dump(node):
                 self._replace(node, "swapped arguments", swapped)
         for place, each in enumerate(node.keywords):
-            if each.arg is not None:
+            if each.arg is not None and each.arg not in UNTESTED_ARGUMENTS:
                 fewer = copy.deepcopy(node)
                 del fewer.keywords[place]
                 self._replace(node, "dropped argument", fewer)

@@ -18,11 +18,10 @@ from check import Case, by_agent, find_cases  # noqa: E402
 RECORDED: list[Case] = find_cases(str(CASES))[0]
 
 
-@pytest.mark.parametrize("plain", ["0", "1"], ids=["fast", "plain"])
+@pytest.mark.parametrize("plain", [False, True], ids=["fast", "plain"])
 @pytest.mark.parametrize("case", RECORDED, ids=lambda case: case.key)
-def test_a_program_prints_what_was_recorded(case: Case, plain: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JACAROS_PLAIN", plain)
-    found = run_project(case.project, seconds=600)
+def test_a_program_prints_what_was_recorded(case: Case, plain: bool) -> None:
+    found = run_project(case.project, seconds=600, plain=plain)
     lines = [line.rstrip() for line in found.lines]
     wanted = by_agent(case.lines) if case.per_agent else case.lines
     assert (by_agent(lines) if case.per_agent else lines) == wanted
