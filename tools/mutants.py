@@ -46,6 +46,8 @@ from mutation_operators import Mutant, mutants_of
 ROOT = Path(__file__).resolve().parent.parent
 MIND = (
     *(f"tests/unit/{each}" for each in ("bdi", "terms", "asl", "compiler", "extension", "streams")),
+    "tests/unit/mas/debugging",
+    "tests/integration/test_resources.py",
     "tests/conformance",
 )
 SUBJECTS: dict[str, tuple[str, ...]] = {
@@ -65,7 +67,7 @@ WITHOUT = ("ros/drivers/ros1/", "ros/drivers/ros2/")
 NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser and not whole_stack"
 SAMPLE, SAMPLES = 120, {"jacaros/bdi/rules": 200}
 LIMIT, LIMIT_FACTOR = 5.0, 10.0
-TESTS_FOR = 30.0
+TESTS_FOR = 20.0
 """Seconds of tests, as measured without a change, that one mutant is given."""
 MEMORY = 4 << 30
 ASLEEP = 60.0

@@ -301,7 +301,7 @@ class Writer:
             f"+ns1::b({value}); ?ns1::b({found}); .print({found})",
             "-ns1::b(_)",
             f"++b({value})",
-            f"--b({found}); {found} = {value}; .print({found})",
+            f"--b({found}); {found} = {self._number()}; .print({found})",
             f"--c({value}); .print(cs)",
             f".setof(in(N{found},{found}), N{found}::~o({found}), L{found}); .print(L{found})",
             f"N{found} = {self._pick('ns1', 'ns2')}; ?N{found}::{negation}o({found}); .print({found})",

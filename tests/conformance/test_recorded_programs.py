@@ -15,7 +15,10 @@ sys.path.insert(0, str(CASES))
 
 from check import Case, by_agent, find_cases  # noqa: E402
 
-RECORDED: list[Case] = find_cases(str(CASES))[0]
+RECORDED: list[Case] = [
+    *find_cases(str(CASES))[0],
+    *find_cases(str(CASES.parent / "conformance_environment"))[0],
+]
 
 
 @pytest.mark.parametrize("plain", [False, True], ids=["fast", "plain"])
