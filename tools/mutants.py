@@ -64,7 +64,7 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
 WITHOUT = ("ros/drivers/ros1/", "ros/drivers/ros2/")
 """Files whose tests need a real ROS."""
 
-NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser and not whole_stack"
+NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser"
 SAMPLE, SAMPLES = 120, {"jacaros/bdi/rules": 200}
 LIMIT, LIMIT_FACTOR = 5.0, 10.0
 TESTS_FOR = 20.0

@@ -1,7 +1,8 @@
 """Random programs that run: every step has an effect that output can show, and every program ends.
 
-Goals call later goals only, waits are short, and an agent begins a limited number of plans that can begin others: it counts
-them down in a belief, and such a plan fails when nothing is left. A number determines a project.
+Goals call later goals only, waits are short, and an agent has a limited number of plans that can begin others: each takes
+a belief away in one step, since many intentions do so at the same time, and fails when none is left. A number determines a
+project.
 """
 
 import json
@@ -11,7 +12,7 @@ from random import Random
 GOALS, AGENTS = 7, ("ann", "bob")
 PLANS = 80
 """Number of plans that an agent begins, except those that only print."""
-LEFT = "?left(L); L > 0; -+left(L-1)"
+COUNTED = "-left(L); .ground(L)"
 """The steps of a plan that count it."""
 ARTIFACTS = """from jacaros.env import Artifact, Out, operation
 
@@ -92,7 +93,10 @@ class Writer:
             f"c({self._term()})[{self._pick('x', 'y(1)', 'z(2), x')}]."
             for _ in range(self._random.randint(0, 3))
         ]
-        lines += [f"s([3,1,2]). left({PLANS}).", "ns1::o(1). ~ns1::o(2). ns1::~o(3). ns2::~o(4)."]
+        lines += [
+            "s([3,1,2]). " + " ".join(f"left({number})." for number in range(PLANS)),
+            "ns1::o(1). ~ns1::o(2). ns1::~o(3). ns2::~o(4).",
+        ]
         lines += [
             "r(X) :- b(X) & not c(X).",
             "r(X) :- c(X) & X > 1.",
@@ -124,7 +128,7 @@ class Writer:
                 guard = self._pick("", " & X > 1", " & b(X)", " & not c(X)", " & r(X)")
                 told = f".print({json.dumps(event)},{shown})"
                 lines.append(
-                    f"{event} : left(L) & L > 0{guard} <- -+left(L-1); {told}; {self._steps(5, 2)}."
+                    f"{event} : left(_){guard} <- {COUNTED}; {told}; {self._steps(5, 2)}."
                     if self._chance(0.7)
                     else f"{event}{guard.replace(' &', ' :')} <- {told}; {self._internal()}."
                 )
@@ -137,7 +141,7 @@ class Writer:
             self._variables = 0
             guard = f" : {self._formula(2)}" if self._chance(0.5) else ""
             condition = f" <: {self._pick('b(7)', 'count(3)', 'false')}" if self._chance(0.06) else ""
-            body = f" <- {LEFT}; .print(g{number},X0); {self._steps(number, 5)}"
+            body = f" <- {COUNTED}; .print(g{number},X0); {self._steps(number, 5)}"
             yield f"{label}+!g{number}(X0){guard}{condition}{body}{self._end_of_plan(number)}"
         if self._chance(0.7):
             handler = self._pick("", "[error(E)]", "[code(C)]", "[error_msg(_)]")
@@ -165,7 +169,8 @@ class Writer:
         if not self._chance(0.15):
             return "."
         called = self._pick("", f"; !inner({self._value()})", self._tail_call(number))
-        inner = f"{LEFT}; .print(inner,Y,X0); {self._steps(GOALS, 1)}"
+        counted = COUNTED.replace("L", "K")  # the plan around it has counted in L, which the sub-plan sees
+        inner = f"{counted}; .print(inner,Y,X0); {self._steps(GOALS, 1)}"
         again = self._pick("", "; !inner(Y)", "; !g6(Y)")
         return f"{called}. {{\n   +!inner(Y) <- {inner}{again}.\n   +b(Y) <- .print(seen,Y).\n}}"
 
@@ -223,9 +228,9 @@ class Writer:
         if kind == 7:
             item = self._fresh()
             condition = self._pick(
-                f"b({item}) & not seen{number}({item})", f"c({item})[x] & not seen{number}({item})"
+                f"b({item}) & not seen{item}({item})", f"c({item})[x] & not seen{item}({item})"
             )
-            return f"while ({condition}) {{ +seen{number}({item}); {inner()} }}; .abolish(seen{number}(_))"
+            return f"while ({condition}) {{ +seen{item}({item}); {inner()} }}; .abolish(seen{item}(_))"
         if kind == 0:
             return f"if ({self._formula(1)}) {{ {inner()} }} else {{ {inner()} }}"
         if kind == 1:
