@@ -1,4 +1,4 @@
-"""What a mind keeps for what is pending, and what is left when that ends; contents of messages that are no goals."""
+"""What a mind keeps for what is pending, and what is left when that ends; and messages whose content is not a goal."""
 
 import pytest
 from recording_host import RecordingHost, mind
@@ -40,7 +40,7 @@ def awaiting(condition: str) -> RecordingHost:
     return host
 
 
-def test_a_wait_that_is_over_is_looked_at_no_more() -> None:
+def test_a_wait_that_is_over_is_forgotten() -> None:
     host = awaiting("p(X) & not q(2) & q(1)")
     waits = host.agent.waits.conditions
     assert len(waits) == 1
@@ -120,7 +120,7 @@ def test_a_handler_for_a_failure_that_a_step_signals_is_not_its_own_handler() ->
 
 @pytest.mark.parametrize("content", ["3", '"text"', "X"])
 @pytest.mark.parametrize("performative", ["achieve", "tell"])
-def test_a_message_about_something_that_is_no_literal_is_refused(content: str, performative: str) -> None:
+def test_a_message_whose_content_is_not_a_literal_is_refused(content: str, performative: str) -> None:
     host = mind("!s. +!s. +!g(X) <- .print(X).")
     host.run()
     host.agent.receive(SpeechAct(performative, "other", "tester", term(content), "m1"))
