@@ -1,5 +1,7 @@
 """What a mind keeps for what is pending, and what is left when that ends; and messages whose content is not a goal."""
 
+from typing import Any
+
 import pytest
 from recording_host import RecordingHost, mind
 
@@ -146,3 +148,57 @@ def test_a_question_is_forgotten_when_it_is_answered() -> None:
     host.run()
     assert host.printed == ["p(1)[source(friend)]"]
     assert not host.agent.waits.questions
+
+
+def test_a_second_answer_to_a_question_is_not_for_the_asker() -> None:
+    host = mind("!s. +!s <- .send(friend, askOne, p(_), A); .print(A); .wait(50); .print(end).")
+    host.run(seconds=0.01)
+    (question,) = host.sent
+    for name in ("a1", "a2"):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", term("p(1)"), name, question.id))
+        host.run(seconds=0.01)
+    host.run()
+    assert host.printed == ["p(1)[source(friend)]", "end"]
+
+
+def test_urgent_messages_go_first_after_plans_have_changed() -> None:
+    host = mind("!s. +!s <- .wait(1). +!low <- .print(low). @h[urgency(1)] +!high <- .print(high).")
+    host.run()
+    for name in ("low", "high"):
+        host.agent.receive(SpeechAct("achieve", "other", "tester", term(name), name))
+    selections: Any = host.agent.selections
+    selections.look_anew()
+    host.run()
+    assert host.printed == ["high", "low"]
+
+
+# --- failures ----------------------------------------------------------------------------------------------
+
+
+def test_a_wait_fails_when_its_condition_can_no_longer_be_evaluated() -> None:
+    host = mind(
+        "!s. +!s <- .wait(p(X) & 1 div X > 0). -!s[error(E)] <- .print(E). !t. +!t <- .wait(5); +p(0)."
+    )
+    host.run()
+    assert len(host.printed) == 1
+    assert not host.agent.waits.conditions
+    assert not host.agent.alive
+
+
+def test_a_condition_of_a_plan_that_cannot_be_evaluated_counts_as_false() -> None:
+    host = mind(
+        """
+        !s. @p[while(ok(X) & 1 div X > 0)] +!s <- .wait(50); .print(never). -!s[error(E)] <- .print(E).
+        ok(1). !t. +!t <- .wait(5); -+ok(0).
+        """
+    )
+    host.run()
+    assert host.printed == ["condition_lost"]
+    assert [level for level, _ in host.logged] == ["error"]
+    assert "cannot evaluate the condition" in host.logged[0][1]
+
+
+def test_a_failing_handler_of_the_bottom_goal_is_not_run_again_in_a_scope() -> None:
+    host = mind("!s. +!s <- !a. { +!x <- true. } +!a <- .fail. -!s <- .print(h); .fail.")
+    host.run(fuel=100, seconds=1)
+    assert host.printed == ["h"]

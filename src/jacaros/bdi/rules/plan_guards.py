@@ -66,6 +66,7 @@ def _holds(agent: Circumstance, condition: Term) -> bool:
     except InternalError:
         raise
     except Exception as fault:
+        undo(agent.trail, 0)  # its text would evaluate what is bound, and fail again
         agent.architecture.log(
             "error", f"cannot evaluate the condition {text(condition)}: {failure.told(fault)}"
         )
