@@ -29,11 +29,10 @@ PATIENCE = 8.0
 
 def work(path: str) -> None:
     """Be a worker: read projects as lines, run each on one *path*, write the results as lines."""
+    os.environ["JACAROS_PLAIN"] = str(int(path == "plain"))  # before the import, which reads it
     from jacaros.testing import run_project
 
-    if path == "plain":
-        os.environ["JACAROS_PLAIN"] = "1"
-    elif path == "searched":
+    if path == "searched":
         from jacaros.bdi.fast.generated import (
             conditions,
         )  # here: may differ in the other build

@@ -1,15 +1,18 @@
 """Change one place of a package at a time, and count the changes that its tests notice.
 
 mutants.py                                  a sample of each subject; prints the scores and the surviving changes
+mutants.py bdi/rules terms bdi/state        the mind's, whose tests are measured once
 mutants.py artifacts/robots --sample 0      all changes of one subject
 mutants.py ros --sample 150 --seed 3 --shard 2/4
+mutants.py terms --files terms/text.py:41:  of the sample, those of a file or a line
 mutants.py pkg=tests/pkg --root FOLDER      another package (of FOLDER/src) and its tests
 
-One process collects the tests and forks. A first child runs them all and notes which lines each test reaches. Then a child
-for each mutant replaces the code of the changed function in memory and runs the tests that reach the line, fastest first,
-until one fails. A mutant that survives this, or changes code that runs on import, is tried again by a new process on a copy
-of the source, because programs that tests start and values made on import do not see the change in memory. A child that
-uses too much time counts as killed: its mutant loops.
+A sample takes the same share of each file. One process collects the tests and forks. A first child runs them all and notes
+which lines each test reaches. Then a child for each mutant replaces the code of the changed function in memory and runs the
+tests that reach the line, fastest first, until one fails. A mutant that survives this, or changes code that runs on import,
+is tried again by a new process on a copy of the source, because programs that tests start and values made on import do not
+see the change in memory. (Survivors of the mind's tests are not tried again: these tests start few programs.) A child whose
+test uses too much time counts as killed: its mutant loops.
 
 Exit code: 0, or 1 if a score is below ``--least``.
 """
@@ -17,7 +20,9 @@ Exit code: 0, or 1 if a score is below ``--least``.
 import argparse
 import difflib
 import gc
+import importlib
 import io
+import itertools
 import json
 import os
 import random
@@ -29,7 +34,7 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable, Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -39,7 +44,16 @@ import pytest
 from mutation_operators import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parent.parent
+MIND = (
+    *(f"tests/unit/{each}" for each in ("bdi", "terms", "asl", "compiler", "extension", "streams")),
+    "tests/unit/mas/debugging",
+    "tests/integration/test_resources.py",
+    "tests/conformance",
+)
 SUBJECTS: dict[str, tuple[str, ...]] = {
+    "jacaros/bdi/rules": MIND,
+    "jacaros/terms": MIND,
+    "jacaros/bdi/state": MIND,
     "jacaros/artifacts/robots": ("tests/unit/artifacts",),
     "jacaros/artifacts/mapping": ("tests/unit/artifacts",),
     "jacaros/ros": ("tests/unit/ros", "tests/contracts"),
@@ -50,21 +64,29 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
 WITHOUT = ("ros/drivers/ros1/", "ros/drivers/ros2/")
 """Files whose tests need a real ROS."""
 
-NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser and not whole_stack"
-SAMPLE = 120
+NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser"
+SAMPLE, SAMPLES = 120, {"jacaros/bdi/rules": 200}
 LIMIT, LIMIT_FACTOR = 5.0, 10.0
+TESTS_FOR = 20.0
+"""Seconds of tests, as measured without a change, that one mutant is given."""
 MEMORY = 4 << 30
 ASLEEP = 60.0
-"""Seconds without processor time after which a mutant is taken for one that waits for ever."""
+"""Seconds with hardly any processor time after which a mutant is taken for one that waits for ever."""
+HARDLY = 0.01
+"""Share of the processor time."""
 KILLED, LOOPS, SURVIVED, UNREACHED = "killed", "killed by the time limit", "survived", "reached by no test"
+NOT_IN_MEMORY = "not changed in memory"
+OUTCOMES = {0: SURVIVED, 1: KILLED, 2: NOT_IN_MEMORY}
+"""What the exit code of a child means; any other is that of a child that was stopped."""
 
 
-class Test(NamedTuple):
-    """What a test does without a change: its index, its seconds and the lines that it reaches, by file."""
+class Measured(NamedTuple):
+    """The tests without a change: the seconds of those that pass, and the tests that reach each mutant, by indexes."""
 
-    index: int
-    seconds: float
-    lines: dict[str, set[int]]
+    seconds: dict[int, float]
+    reaching: list[list[int]]
+    failing: list[int]
+    modules: list[str]
 
 
 class Trial:
@@ -76,6 +98,7 @@ class Trial:
         self.outcomes: dict[Mutant, str] = {}
         self.problems: list[str] = []
         self._source, self._mutants, self._jobs = source, mutants, jobs
+        self._places = {each: place for place, each in enumerate(mutants)}
         self._limit, self._twice = limit, twice
         self._terminal = os.dup(2)
         self._failed = False
@@ -92,64 +115,75 @@ class Trial:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Run the tests without a change, then with each."""
         self._items = session.items
+        with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+            self._scratch = Path(folder)
+            self._tests = self._measure()
+            self._prepare()
+            in_memory = [each for each in self._mutants if each.functions]
+            self._try(in_memory, self._run_in_memory)
+            again = SURVIVED if self._twice else None
+            copies = [
+                each for each in self._mutants if self.outcomes.get(each) in (None, NOT_IN_MEMORY, again)
+            ]
+            self._try(copies, self._run_on_copy)
+        return True
+
+    def _prepare(self) -> None:
+        """Import what the tests need, and find the functions that change: children must not import them anew."""
+        for name in self._tests.modules:
+            with suppress(ImportError):  # a test has made the module
+                importlib.import_module(name)
         gc.collect()
         files = {str(self._source / each.file) for each in self._mutants}
         self._functions = [each for each in gc.get_objects() if _is_of(each, files)]
         gc.freeze()  # a collection in a child must not copy the memory of this process
-        with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-            self._scratch = Path(folder)
-            self._tests = self._measure()
-            limit = max(self._limit, LIMIT_FACTOR * max((each.seconds for each in self._tests), default=0.0))
-            in_memory = [each for each in self._mutants if each.functions]
-            self._try(in_memory, self._run_in_memory, limit)
-            again = SURVIVED if self._twice else None
-            copies = [each for each in self._mutants if self.outcomes.get(each) in (None, again)]
-            self._try(copies, self._run_on_copy, 3 * limit)
-        return True
 
     # ---- without a change
 
-    def _measure(self) -> list[Test]:
-        """Run each test once, and return those that pass with what they reach; the fastest first."""
+    def _measure(self) -> Measured:
+        """Run each test once, and return what they do."""
         report = self._scratch / "tests.json"
-        _wait(_fork(lambda: self._write_report(report), None, self._scratch))
+        _wait(_fork(lambda: self._write_report(report), self._scratch))
         if not report.exists():
             raise RuntimeError((self._scratch / "error.txt").read_text(encoding="utf-8"))
-        found = json.loads(report.read_text(encoding="utf-8"))
-        failing = [self._items[index].nodeid for index, passed, *_ in found if not passed]
+        seconds, *rest = json.loads(report.read_text(encoding="utf-8"))
+        found = Measured({int(index): each for index, each in seconds.items()}, *rest)
+        failing = [self._items[index].nodeid for index in found.failing]
         self.problems += [f"left out, as it fails without a change: {each}" for each in failing]
-        tests = [
-            Test(index, seconds, {file: set(lines) for file, lines in reached.items()})
-            for index, passed, seconds, reached in found
-            if passed
-        ]
-        return sorted(tests, key=lambda each: each.seconds)
+        return found
 
     def _write_report(self, report: Path) -> bool:
         from coverage import Coverage  # here: it must not be in the processes that run mutants
 
-        files = {str(self._source / each.file): each.file for each in self._mutants}
+        files = {str(self._source / each.file) for each in self._mutants}
         measured = Coverage(data_file=None, include=list(files), config_file=False)
         measured.set_option("run:disable_warnings", ["no-data-collected"])
-        found: list[tuple[int, bool, float, dict[str, list[int]]]] = []
+        seconds, failing = {}, []
         with measured.collect():
             for index in range(len(self._items)):
                 measured.switch_context(str(index))
                 began = time.monotonic()
-                found.append((index, self._passes([index]), time.monotonic() - began, {}))
-        data = measured.get_data()
-        for path in data.measured_files():
-            for line, tests in data.contexts_by_lineno(path).items():
-                for test in filter(None, tests):
-                    found[int(test)][3].setdefault(files[path], []).append(line)
+                if self._passes([index]):
+                    seconds[index] = time.monotonic() - began
+                else:
+                    failing.append(index)
+        lines = {file: measured.get_data().contexts_by_lineno(file) for file in files}
+        reaching = [
+            _reaching(lines[str(self._source / each.file)], each) & seconds.keys() for each in self._mutants
+        ]
+        modules = sorted(each for each in sys.modules if each.partition(".")[0] == "jacaros")
+        found = Measured(seconds, [sorted(each) for each in reaching], failing, modules)
         report.write_text(json.dumps(found), encoding="utf-8")
         return True
 
-    def _passes(self, indexes: Sequence[int]) -> bool:
-        """Run tests until one fails."""
+    def _passes(self, indexes: Sequence[int], limits: Sequence[float] = ()) -> bool:
+        """Run tests until one fails; one that takes more processor time than its limit ends the process."""
         self._failed = False
         items = [self._items[index] for index in indexes]
-        for item, following in zip(items, [*items[1:], None], strict=True):
+        for place, item in enumerate(items):
+            if limits:
+                signal.setitimer(signal.ITIMER_PROF, limits[place])
+            following = items[place + 1] if place + 1 < len(items) else None
             item.ihook.pytest_runtest_protocol(item=item, nextitem=following)
             if self._failed:
                 return False
@@ -157,7 +191,7 @@ class Trial:
 
     # ---- with a change
 
-    def _try(self, mutants: Sequence[Mutant], run: Callable[[Mutant, list[int]], bool], limit: float) -> None:
+    def _try(self, mutants: Sequence[Mutant], run: Callable[[Mutant, list[int]], int]) -> None:
         """Run mutants, some at the same time."""
         running: dict[int, tuple[Mutant, _Progress]] = {}
         waiting = list(reversed(mutants))
@@ -169,14 +203,14 @@ class Trial:
                     self.outcomes[mutant] = UNREACHED
                     continue
                 folder = Path(tempfile.mkdtemp(dir=self._scratch))
-                process = _fork(lambda: run(mutant, tests), limit, folder)  # noqa: B023 - called by the child at once
+                process = _fork(lambda: run(mutant, tests), folder, self._limit_of(tests))  # noqa: B023 - called by the child at once
                 running[process] = (mutant, _Progress(process))
             for process, (mutant, progress) in list(running.items()):
                 if progress.has_ceased():
                     _kill(process)
                 if (status := _ended(process)) is not None:
                     del running[process]
-                    self.outcomes[mutant] = {0: SURVIVED, 1: KILLED}.get(status, LOOPS)
+                    self.outcomes[mutant] = OUTCOMES.get(status, LOOPS)
                     self._show(mutant, len(waiting) + len(running))
             time.sleep(0.02)
 
@@ -186,20 +220,31 @@ class Trial:
         os.write(self._terminal, f"{left} left: {self.outcomes[mutant]}: {where}: {change}\n".encode())
 
     def _tests_for(self, mutant: Mutant) -> list[int]:
-        """The tests that reach the changed line; the file, if the line runs on import only."""
-        reaching = [each for each in self._tests if mutant.file in each.lines]
-        if not mutant.functions:
-            return [each.index for each in reaching]
-        span = set(range(mutant.line, mutant.last_line + 1))
-        return [each.index for each in reaching if each.lines[mutant.file] & span]
+        """The tests that reach the changed line (the file, if the line runs on import only), the fastest first."""
+        seconds, found, total = self._tests.seconds, [], 0.0
+        for index in sorted(self._tests.reaching[self._places[mutant]], key=seconds.__getitem__):
+            total += seconds[index]
+            if found and total > TESTS_FOR:
+                break
+            found.append(index)
+        return found
 
-    def _run_in_memory(self, mutant: Mutant, tests: list[int]) -> bool:
+    def _limits_of(self, tests: Sequence[int]) -> list[float]:
+        return [max(self._limit, LIMIT_FACTOR * self._tests.seconds[index]) for index in tests]
+
+    def _limit_of(self, tests: Sequence[int]) -> float:
+        """Return the processor time of a child that runs tests; a new process also imports and collects."""
+        slowest = max(self._limits_of(tests))
+        return 5 * self._limit + slowest + 2 * sum(self._tests.seconds[index] for index in tests)
+
+    def _run_in_memory(self, mutant: Mutant, tests: list[int]) -> int:
         path = self._source / mutant.file
         changed = compile(mutant.apply(path.read_bytes()), str(path), "exec", dont_inherit=True)
-        _replace_code(self._functions, str(path), mutant, changed)
-        return self._passes(tests)
+        if not _replace_code(self._functions, str(path), mutant, changed):
+            return 2
+        return 0 if self._passes(tests, self._limits_of(tests)) else 1
 
-    def _run_on_copy(self, mutant: Mutant, tests: list[int]) -> bool:
+    def _run_on_copy(self, mutant: Mutant, tests: list[int]) -> int:
         """Run tests by a new interpreter, which replaces this process."""
         copy = Path(os.environ["PYTEST_DEBUG_TEMPROOT"]) / "src"
         shutil.copytree(self._source, copy, ignore=shutil.ignore_patterns("*.egg-info", "__pycache__"))
@@ -217,15 +262,24 @@ def _is_of(each: object, files: Container[str]) -> bool:
     return isinstance(each, FunctionType) and each.__code__.co_filename in files
 
 
-def _replace_code(functions: Sequence[FunctionType], path: str, mutant: Mutant, changed: CodeType) -> None:
-    """Give every function around the change its new code; those that exist are all that tests can call."""
+def _reaching(tests_of: dict[int, list[str]], mutant: Mutant) -> set[int]:
+    """Return the tests that run a line of a change; any line of the file, if the change is of code that runs on import."""
+    lines: Iterable[int] = range(mutant.line, mutant.last_line + 1) if mutant.functions else tests_of
+    return {int(test) for line in lines for test in tests_of.get(line, ()) if test}
+
+
+def _replace_code(functions: Sequence[FunctionType], path: str, mutant: Mutant, changed: CodeType) -> bool:
+    """Give every function around the change its new code, and return whether there are such functions."""
     new = {(each.co_name, each.co_firstlineno): each for each in _codes(changed)}
+    replaced = False
     for function in functions:
         if function.__code__.co_filename == path:
             key = function.__code__.co_name, function.__code__.co_firstlineno
             if key in mutant.functions and key in new:
-                with suppress(ValueError):  # other free variables: a new process tries this mutant again
+                with suppress(ValueError):  # other free variables: a new process tries this mutant
                     function.__code__ = new[key]
+                    replaced = True
+    return replaced
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:
@@ -238,8 +292,8 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 # ---- processes
 
 
-def _fork(run: Callable[[], bool], limit: float | None, folder: Path) -> int:
-    """Start a child that runs a function in silence, with limits of its processor time and memory."""
+def _fork(run: Callable[[], int], folder: Path, limit: float | None = None) -> int:
+    """Start a child that runs a function in silence, with limits of its processor time and memory; return its process."""
     process = os.fork()
     if process:
         return process
@@ -253,7 +307,7 @@ def _fork(run: Callable[[], bool], limit: float | None, folder: Path) -> int:
         if limit is not None:
             resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit) + 1))
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        status = 0 if run() else 1
+        status = run()
     except BaseException:  # a mutant can do anything, such as ending the process
         (folder / "error.txt").write_text(traceback.format_exc(), encoding="utf-8")
         status = 1
@@ -262,27 +316,30 @@ def _fork(run: Callable[[], bool], limit: float | None, folder: Path) -> int:
 
 
 class _Progress:
-    """Notices that a child waits for ever: it uses no processor time, however busy the machine is."""
+    """Notices that a child waits for ever: it uses hardly any processor time, however busy the machine is."""
 
     def __init__(self, process: int) -> None:
         self._process = process
-        self._used = -1.0
+        self._used = 0.0
         self._since = time.monotonic()
 
     def has_ceased(self) -> bool:
-        """Whether the child has used no processor time for a minute."""
-        used = _processor_time(self._process)
-        if used != self._used:
-            self._used, self._since = used, time.monotonic()
-        return time.monotonic() - self._since > ASLEEP
+        """Whether the child has used hardly any processor time for a minute; a thread that looks around uses a little."""
+        passed = time.monotonic() - self._since
+        if passed <= ASLEEP:
+            return False
+        before, self._used = self._used, _processor_time(self._process)
+        self._since += passed
+        return self._used - before < HARDLY * passed
 
 
 def _processor_time(process: int) -> float:
+    """Return the seconds of processor time that a process has used; 0 if unknown."""
     try:
         fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:  # not Linux, or it has ended
         return 0.0
-    return float(fields[11]) + float(fields[12])
+    return (float(fields[11]) + float(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _ended(process: int) -> int | None:
@@ -315,8 +372,13 @@ def changes_of(source: Path, package: str) -> list[Mutant]:
 
 
 def chosen(mutants: list[Mutant], sample: int, seed: int, shard: tuple[int, int]) -> list[Mutant]:
-    """Draw a sample (0 for all), and return one part of it."""
-    drawn = random.Random(seed).sample(mutants, min(sample or len(mutants), len(mutants)))
+    """Draw a sample (0 for all) with the same share of each file, and return one part of it."""
+    generator, places = random.Random(seed), []
+    by_file = itertools.groupby(sorted(mutants), key=lambda each: each.file)
+    for group in (list(each) for _, each in by_file):
+        generator.shuffle(group)
+        places += [((place + generator.random()) / len(group), each) for place, each in enumerate(group)]
+    drawn = [each for _, each in sorted(places)[: sample or None]]
     return sorted(drawn)[shard[0] - 1 :: shard[1]]
 
 
@@ -373,25 +435,51 @@ def main(arguments: Sequence[str]) -> int:
     """Run what the command line says."""
     given = _parser().parse_args(arguments)
     subjects = given.subjects or [each.removeprefix("jacaros/") for each in SUBJECTS]
-    if len(subjects) > 1:  # a process has one collection of tests
+    packages = dict(map(_package_and_tests, subjects))
+    if len(set(packages.values())) > 1:  # a process has one collection of tests
         options = [each for each in arguments if each not in subjects]
+        same = [
+            [each for each in subjects if _package_and_tests(each)[1] == tests]
+            for tests in dict.fromkeys(packages.values())
+        ]
         command = [sys.executable, __file__]
-        return max(subprocess.run([*command, each, *options], check=False).returncode for each in subjects)
-    package, _, folder = subjects[0].partition("=")
-    if not folder:
-        package = f"jacaros/{package.removeprefix('jacaros/')}"
-        if package not in SUBJECTS:
-            raise SystemExit(
-                f"error: unknown subject: {package}\n  = help: give its tests, as in {package}=tests/unit"
-            )
+        return max(subprocess.run([*command, *each, *options], check=False).returncode for each in same)
     source = given.root / "src"
-    wanted = chosen(changes_of(source, package), given.sample, given.seed, given.shard)
-    if given.files:
-        wanted = [each for each in wanted if any(part in each.file for part in given.files)]
-    trial = Trial(source, wanted, given.jobs, given.limit, not given.once)
-    try_mutants(given.root, folder.split(",") if folder else SUBJECTS[package], trial)
-    print(*trial.problems, *report(package, trial.outcomes, source), sep="\n", flush=True)
-    return 1 if score(trial.outcomes) < given.least else 0
+    samples = {each: _sample(source, each, given) for each in packages}
+    wanted = [mutant for each in samples.values() for mutant in each]
+    tests = next(iter(packages.values()))
+    trial = Trial(source, wanted, given.jobs, given.limit, not given.once and tests != MIND)
+    try_mutants(given.root, tests, trial)
+    print(*trial.problems, sep="\n")
+    return max(_report(package, sample, trial, given) for package, sample in samples.items())
+
+
+def _package_and_tests(subject: str) -> tuple[str, tuple[str, ...]]:
+    """Return the package of a subject and the tests that must notice its changes."""
+    package, _, folders = subject.partition("=")
+    if folders:
+        return package, tuple(folders.split(","))
+    package = f"jacaros/{package.removeprefix('jacaros/')}"
+    if package not in SUBJECTS:
+        raise SystemExit(
+            f"error: unknown subject: {package}\n  = help: give its tests, as in {package}=tests/unit"
+        )
+    return package, SUBJECTS[package]
+
+
+def _sample(source: Path, package: str, given: argparse.Namespace) -> list[Mutant]:
+    """Return the mutants of a package that the command line asks for."""
+    sample = SAMPLES.get(package, SAMPLE) if given.sample is None else given.sample
+    drawn = chosen(changes_of(source, package), sample, given.seed, given.shard)
+    wanted = given.files or [""]
+    return [each for each in drawn if any(part in f"{each.file}:{each.line}:" for part in wanted)]
+
+
+def _report(package: str, sample: list[Mutant], trial: Trial, given: argparse.Namespace) -> int:
+    """Print the report on a package, and return its exit code."""
+    outcomes = {each: trial.outcomes[each] for each in sample}
+    print(*report(package, outcomes, given.root / "src"), sep="\n", flush=True)
+    return 1 if score(outcomes) < given.least else 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -399,14 +487,14 @@ def _parser() -> argparse.ArgumentParser:
     names = ", ".join(each.removeprefix("jacaros/") for each in SUBJECTS)
     parser.add_argument("subjects", nargs="*", help=f"packages (default: {names}), or PACKAGE=TESTS,TESTS")
     parser.add_argument(
-        "--sample", type=int, default=SAMPLE, help=f"mutants of a package (default {SAMPLE}; 0: all)"
+        "--sample", type=int, help=f"mutants of a package (default {SAMPLE}, 200 of bdi/rules; 0: all)"
     )
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample (default 1)")
     parser.add_argument(
         "--shard", type=_shard, default=(1, 1), metavar="I/N", help="the I-th of N parts of the sample"
     )
     parser.add_argument(
-        "--files", nargs="+", help="of the sample, only files with one of these texts in their names"
+        "--files", nargs="+", help="of the sample, only changes with one of these texts in FILE:LINE:"
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at the same time")
     limits = f"seconds of processor time of a mutant, or {LIMIT_FACTOR:g} times the slowest test (default {LIMIT:g})"

@@ -1,7 +1,8 @@
 """Where a Python file can be changed so that its meaning changes, and how: one place at a time.
 
 Operators: a comparison, an arithmetic operator or a Boolean is replaced by its opposite, a number by another, ``min`` by
-``max``; a condition is negated, a statement removed, a value not returned. Not changed, because no test could or should
+``max``, ``break`` by ``continue``; a condition is negated, a statement removed, a value not returned; the first two
+arguments of a call are swapped if they look alike, a keyword argument dropped. Not changed, because no test could or should
 notice it: docstrings, type hints, `Protocol` bodies, members of enumerations, log calls, f-strings, texts of errors.
 
 The boundary of a comparison (``<`` becomes ``<=``) is changed for whole numbers only: no robot measures exactly its limit.
@@ -39,6 +40,7 @@ OTHER_CALLS = {"min": "max", "max": "min", "any": "all", "all": "any"}
 LOGS = {"log", "warn", "warning", "info", "debug", "print"}
 UNTESTED_FUNCTIONS = {"__repr__", "__str__"}
 UNTESTED_DECORATORS = {"overload", "abstractmethod"}
+UNTESTED_ARGUMENTS = {"strict", "repr", "compare"}
 UNTESTED_BASES = {"Protocol", "Enum", "IntEnum", "StrEnum", "Flag", "TypedDict"}
 
 
@@ -129,7 +131,15 @@ class _Finder(ast.NodeVisitor):
         self._replace(node, "removed statement", "pass")
         self.generic_visit(node)
 
-    visit_Break = visit_Continue = visit_Delete = _statement  # noqa: N815
+    visit_Delete = _statement  # noqa: N815
+
+    def visit_Break(self, node: ast.Break) -> None:
+        self._statement(node)
+        self._replace(node, "break, continue", "continue")
+
+    def visit_Continue(self, node: ast.Continue) -> None:
+        self._statement(node)
+        self._replace(node, "break, continue", "break")
 
     def visit_Expr(self, node: ast.Expr) -> None:
         value = node.value.value if isinstance(node.value, ast.Await) else node.value
@@ -196,7 +206,21 @@ class _Finder(ast.NodeVisitor):
             return
         if isinstance(node.func, ast.Name) and name in OTHER_CALLS:
             self._replace(node.func, "call", OTHER_CALLS[name])
+        else:
+            self._change_arguments(node)
         self.generic_visit(node)
+
+    def _change_arguments(self, node: ast.Call) -> None:
+        if len({type(each) for each in node.args[:2]} - {ast.Starred}) == 1 < len(node.args):
+            swapped = copy.deepcopy(node)
+            swapped.args[:2] = reversed(swapped.args[:2])
+            if ast.dump(swapped) != ast.dump(node):
+                self._replace(node, "swapped arguments", swapped)
+        for place, each in enumerate(node.keywords):
+            if each.arg is not None and each.arg not in UNTESTED_ARGUMENTS:
+                fewer = copy.deepcopy(node)
+                del fewer.keywords[place]
+                self._replace(node, "dropped argument", fewer)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
         self._negate(node.test)

@@ -1,6 +1,8 @@
 """Random programs that run: every step has an effect that output can show, and every program ends.
 
-Goals call later goals only, and waits are short. A number determines a project.
+Goals call later goals only, waits are short, and an agent has a limited number of plans that can begin others: each takes
+a belief away in one step, since many intentions do so at the same time, and fails when none is left. A number determines a
+project.
 """
 
 import json
@@ -8,6 +10,10 @@ from collections.abc import Iterator
 from random import Random
 
 GOALS, AGENTS = 7, ("ann", "bob")
+PLANS = 80
+"""Number of plans that an agent begins, except those that only print."""
+COUNTED = "-left(L); .ground(L)"
+"""The steps of a plan that count it."""
 ARTIFACTS = """from jacaros.env import Artifact, Out, operation
 
 
@@ -71,7 +77,7 @@ class Writer:
 
     def __init__(self, random: Random) -> None:
         self._random = random
-        self._variables = 0
+        self._variables = self._labels = 0
 
     def files(self) -> dict[str, str]:
         """A project: its file, its artifacts, and a program for each agent."""
@@ -87,7 +93,10 @@ class Writer:
             f"c({self._term()})[{self._pick('x', 'y(1)', 'z(2), x')}]."
             for _ in range(self._random.randint(0, 3))
         ]
-        lines += ["s([3,1,2])."]
+        lines += [
+            "s([3,1,2]). " + " ".join(f"left({number})." for number in range(PLANS)),
+            "ns1::o(1). ~ns1::o(2). ns1::~o(3). ns2::~o(4).",
+        ]
         lines += [
             "r(X) :- b(X) & not c(X).",
             "r(X) :- c(X) & X > 1.",
@@ -116,30 +125,57 @@ class Writer:
         ):
             if self._random.random() < 0.4:
                 shown = "X,S" if "(S)" in event else "X"
-                guard = self._pick("", " : X > 1", " : b(X)", " : not c(X)", " : r(X)")
-                lines.append(f"{event}{guard} <- .print({json.dumps(event)},{shown}); {self._steps(5, 2)}.")
+                guard = self._pick("", " & X > 1", " & b(X)", " & not c(X)", " & r(X)")
+                told = f".print({json.dumps(event)},{shown})"
+                lines.append(
+                    f"{event} : left(_){guard} <- {COUNTED}; {told}; {self._steps(5, 2)}."
+                    if self._chance(0.7)
+                    else f"{event}{guard.replace(' &', ' :')} <- {told}; {self._internal()}."
+                )
         return "\n".join(lines) + "\n"
 
     def _plans(self, number: int) -> Iterator[str]:
         for _ in range(self._random.randint(1, 2)):
-            label = (
-                f"@p{number}_{self._random.randint(0, 99)}[{self._pick('atomic', 'x(1)', 'cost(2)', 'all_unifs')}] "
-                if self._chance(0.2)
-                else ""
-            )
+            label = f"@p{number}_{self._labels}[{self._annotation()}] " if self._chance(0.25) else ""
+            self._labels += bool(label)
             self._variables = 0
             guard = f" : {self._formula(2)}" if self._chance(0.5) else ""
             condition = f" <: {self._pick('b(7)', 'count(3)', 'false')}" if self._chance(0.06) else ""
-            body = f" <- .print(g{number},X0); {self._steps(number, 5)}"
-            sub = ""
-            if self._chance(0.1):
-                sub = f" {{\n   +!inner(Y) <- .print(inner,Y,X0); {self._steps(GOALS, 1)}.\n   +b(Y) <- .print(seen,Y).\n}}"
-            yield f"{label}+!g{number}(X0){guard}{condition}{body}" + (sub or ".")
+            body = f" <- {COUNTED}; .print(g{number},X0); {self._steps(number, 5)}"
+            yield f"{label}+!g{number}(X0){guard}{condition}{body}{self._end_of_plan(number)}"
         if self._chance(0.7):
             handler = self._pick("", "[error(E)]", "[code(C)]", "[error_msg(_)]")
             told = {"[error(E)]": ",E", "[code(C)]": ",C"}.get(handler, "")
             self._variables = 0
             yield f"-!g{number}(X0){handler} <- .print(failed{number},X0{told}); {self._steps(number, 1)}."
+
+    def _annotation(self) -> str:
+        """What a label says of its plan."""
+        found = self._fresh()
+        return self._pick(
+            "atomic",
+            "x(1)",
+            "cost(2)",
+            "all_unifs",
+            f"needs({self._pick('arm', 'base')})",
+            f"needs(arm), urgency({self._number()})",
+            f"while(b({found}) & {found} > {self._number()})",
+            f"while(not c({found})), cleanup(inner(X0))",
+            f"within({self._random.randint(1, 9)})",
+        )
+
+    def _end_of_plan(self, number: int) -> str:
+        """A full stop, or sub-plans, some of them after a call of a goal that takes the place of the plan."""
+        if not self._chance(0.15):
+            return "."
+        called = self._pick("", f"; !inner({self._value()})", self._tail_call(number))
+        counted = COUNTED.replace("L", "K")  # the plan around it has counted in L, which the sub-plan sees
+        inner = f"{counted}; .print(inner,Y,X0); {self._steps(GOALS, 1)}"
+        again = self._pick("", "; !inner(Y)", "; !g6(Y)")
+        return f"{called}. {{\n   +!inner(Y) <- {inner}{again}.\n   +b(Y) <- .print(seen,Y).\n}}"
+
+    def _tail_call(self, number: int) -> str:
+        return f"; !g{number + 1}({self._value()})" if number + 1 < GOALS else ""
 
     def _steps(self, number: int, most: int) -> str:
         return "; ".join(self._step(number, 2) for _ in range(self._random.randint(1, most)))
@@ -149,8 +185,10 @@ class Writer:
         later = (
             f"g{self._random.randint(number + 1, GOALS - 1)}({self._value()})" if number + 1 < GOALS else ""
         )
-        if later and made < 0.16:
+        if later and made < 0.13:
             return self._pick("!", "!", "!", "!!") + later
+        if later and made < 0.16:
+            return self._pick("!", "!!") + later + self._supervision()
         if later and made < 0.24:
             return self._goal_control(later)
         if depth and made < 0.38:
@@ -165,6 +203,17 @@ class Writer:
             return self._belief()
         return self._internal()
 
+    def _supervision(self) -> str:
+        """What an annotation of a goal asks for."""
+        milliseconds = self._random.randint(1, 9)
+        return self._pick(
+            f"[hard_deadline({milliseconds})]",
+            f"[within({milliseconds})]",
+            f"[retry(2, {milliseconds})]",
+            f"[every({100 * milliseconds}), within(4)]",
+            f"[needs({self._pick('arm', 'base')})]",
+        )
+
     def _goal_control(self, goal: str) -> str:
         wanted = goal.split("(")[0] + "(_)"
         what = self._pick(
@@ -175,7 +224,13 @@ class Writer:
 
     def _control(self, number: int, depth: int, goal: str) -> str:
         inner = lambda: self._step(number, depth - 1)  # noqa: E731
-        kind = self._random.randint(0, 6)
+        kind = self._random.randint(0, 7)
+        if kind == 7:
+            item = self._fresh()
+            condition = self._pick(
+                f"b({item}) & not seen{item}({item})", f"c({item})[x] & not seen{item}({item})"
+            )
+            return f"while ({condition}) {{ +seen{item}({item}); {inner()} }}; .abolish(seen{item}(_))"
         if kind == 0:
             return f"if ({self._formula(1)}) {{ {inner()} }} else {{ {inner()} }}"
         if kind == 1:
@@ -187,7 +242,8 @@ class Writer:
         if kind == 3:
             return f"-+w{number}(0); while (w{number}(W{depth}) & W{depth} < 3) {{ -+w{number}(W{depth}+1); {inner()} }}"
         if kind == 4 and goal:
-            return f"({{ !{goal} }} {self._pick('|&|', '|||')} {{ {inner()} }})"
+            needs = self._pick("", "", "[needs(arm)]")
+            return f"({{ !{goal}{needs} }} {self._pick('|&|', '|||')} {{ {inner()} }})"
         if kind == 5:
             return f"{{ {inner()}; {inner()} }}"
         awaited = self._pick("b(_)", "count(_)", "r(_)", "{+b(_)}", "{+done(_)}")
@@ -234,7 +290,7 @@ class Writer:
         )
 
     def _belief(self) -> str:
-        value, found = self._value(), self._fresh()
+        value, found, negation = self._value(), self._fresh(), self._pick("", "~")
         return self._pick(
             f"+b({value})",
             f"-b({value})",
@@ -250,6 +306,11 @@ class Writer:
             f"+ns1::b({value}); ?ns1::b({found}); .print({found})",
             "-ns1::b(_)",
             f"++b({value})",
+            f"--b({found}); {found} = {self._number()}; .print({found})",
+            f"--c({value}); .print(cs)",
+            f".setof(in(N{found},{found}), N{found}::~o({found}), L{found}); .print(L{found})",
+            f"N{found} = {self._pick('ns1', 'ns2')}; ?N{found}::{negation}o({found}); .print({found})",
+            f"N{found} = ns2; {self._pick('+', '-', '-+')}N{found}::{negation}o({value})",
             f"?s({found}); -+s([{self._number()}|{found}])",
             f".abolish(c({value}))",
         )
@@ -269,7 +330,7 @@ class Writer:
             f"?sum({items},{a}); .print({a})",
             f'.concat("ab",{self._value()},{a}); .substring({a},1,{b}); .print({a},{b})',
             f'.length("{self._pick("", "abc")}",{a}); .print({a})',
-            f"{self._term()} =.. {a}; .print({a})",
+            f"{b} = {self._term()}; {b} =.. {a}; .print({a})",
             f".random({a}); .print({a})",
             f"{a} = math.round(math.random(10)) + {self._number()}; .print({a})",
             f".union({items},[1,2],{a}); .intersection({items},[1,5],{b}); .print({a},{b})",
@@ -321,7 +382,9 @@ class Writer:
         return self._pick("X0", str(self._number()), self._term(), self._sum())
 
     def _sum(self) -> str:
-        return f"{self._number()}{self._pick('+', '-', '*', ' div ', ' mod ', '/')}{self._number()}"
+        operator = self._pick("+", "-", "*", " div ", " mod ", "/", "**")
+        left, right = (self._pick(*(3 * [str(self._number())]), "(1/0)", "(-1/0)") for _ in range(2))
+        return f"{left}{operator}{right}"
 
     def _number(self) -> int:
         return self._random.randint(0, 7)

@@ -108,6 +108,7 @@ def parts() -> list[Part]:
         Part("layers", (f"{BIN}/lint-imports", "--no-logo")),
         Part("unit", (*PYTEST, "tests/unit", "-m", "not browser"), budget=245),
         Part("wheel", ("tools/test_wheel.sh",)),
+        Part("recorded", (*PYTEST, "tests/conformance"), budget=15),
         # The checker prints at its end.
         Part("conformance", (PYTHON, "tools/check_conformance.py", "language"), budget=120, quiet_minutes=30),
         Part("plain", (PYTHON, "tools/check_conformance.py", "plain"), budget=180, quiet_minutes=30),

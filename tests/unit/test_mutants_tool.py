@@ -34,6 +34,10 @@ def changes(source: str) -> set[str]:
         ("x += 2", {"pass", "x -= 2", "3"}),
         ("self.x = a", {"pass"}),
         ("stop()", {"pass"}),
+        ("f(a, b, c)", {"pass", "f(b, a, c)"}),
+        ("f(a, 'b', *c)", {"pass"}),
+        ("x = f(a, c=b)", {"f(a)"}),
+        ("for a in b: continue", {"pass", "break"}),
         ("return a", {"return None"}),
         ("return True", {"False"}),
         ("return", {"pass"}),
@@ -91,6 +95,8 @@ def test_shards_of_a_sample_are_the_sample() -> None:
     assert sorted(each for shard in shards for each in shard) == sample
     assert len(sample) == 20
     assert chosen(mutants, 20, 8, (1, 1)) != sample
+    files = [Mutant(f"{line % 10}.py", *each[1:]) for line, each in enumerate(mutants)]
+    assert {each.file for each in chosen(files, 20, 7, (1, 1))} == {f"{name}.py" for name in range(10)}
     assert chosen(mutants, 0, 7, (1, 1)) == mutants
 
 

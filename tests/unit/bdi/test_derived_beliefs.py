@@ -1,6 +1,7 @@
 """Derived beliefs of programs: end to end on the virtual clock, by the rules and by generated code; wrong directives."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -32,7 +33,7 @@ def run(folder: Path, derived: str, body: str, plans: str = "") -> list[str]:
         f"{{ derive(d, {derived}) }}\n!start.\n+!start <- {body}.\n"
         f"+d[source(S)] <- .print(on, S).\n-d <- .print(off).\n+d(X) <- .print(X).\n{plans}"
     )
-    result = run_project(file, until_idle=True)
+    result = run_project(file, until_idle=True, plain=os.environ["JACAROS_PLAIN"] == "1")
     assert result.errors == []
     return [line.removeprefix("[a] ") for line in result.lines]
 

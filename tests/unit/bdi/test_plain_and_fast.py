@@ -9,7 +9,9 @@ from random import Random
 import pytest
 from recording_host import printed
 
+from jacaros.bdi.fast.compiler import Compiler
 from jacaros.bdi.fast.generated import conditions
+from jacaros.bdi.rules.interpreter import Interpreter
 from jacaros.testing import run_project
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "tools"))
@@ -38,10 +40,9 @@ def test_there_are_programs():
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_program_prints_the_same_plain_and_fast(program, monkeypatch):
-    fast = run_project(program, seconds=120)
-    monkeypatch.setenv("JACAROS_PLAIN", "1")
-    plain = run_project(program, seconds=120)
+def test_a_program_prints_the_same_plain_and_fast(program):
+    fast = run_project(program, seconds=120, plain=False)
+    plain = run_project(program, seconds=120, plain=True)
 
     assert plain.lines == fast.lines
     assert plain.errors == fast.errors
@@ -107,7 +108,7 @@ def test_a_plain_run_does_not_import_the_fast_paths():
     assert done.stdout.splitlines()[-1] == "0 []"
 
 
-def test_plain_and_fast_runs_make_the_same_cycles(monkeypatch, tmp_path):
+def test_plain_and_fast_runs_make_the_same_cycles(tmp_path):
     program = tmp_path / "count.asl"
     program.write_text(
         "!s. !t. +!s <- !g(20); !k; !h; .print(done); .stopMAS. +!g(0). +!g(N) : N > 0 <- +b(N); !g(N-1). "
@@ -115,14 +116,15 @@ def test_plain_and_fast_runs_make_the_same_cycles(monkeypatch, tmp_path):
         "+b(N) <- -b(N). +!h <- !i; .print(never). +!i <- .fail. -!h."
     )
 
-    def cycles():
+    def cycles(engine, **options):
         minds = []
-        run_project(program, when_started=lambda mas: minds.extend(host.mind for host in mas.directory))
+        run_project(
+            program, when_started=lambda mas: minds.extend(host.mind for host in mas.directory), **options
+        )
+        assert isinstance(minds[0].engine, engine)
         return minds[0].counts.cycles
 
-    fast = cycles()
-    monkeypatch.setenv("JACAROS_PLAIN", "1")
-    assert cycles() == fast
+    assert cycles(Interpreter, plain=True) == cycles(Compiler, plain=False)
 
 
 @pytest.mark.parametrize("plain", ["0", "1"])
@@ -140,12 +142,13 @@ def test_random_programs_do_the_same_plain_and_fast_and_with_searched_contexts(m
         results = []
         for path in ("fast", "plain", "searched"):
             with monkeypatch.context() as patch:
-                if path == "plain":
-                    patch.setenv("JACAROS_PLAIN", "1")
-                elif path == "searched":
+                if path == "searched":
                     patch.setattr(conditions, "_MAX_LOOPS", 0)
-                result = run_project(tmp_path / "random.jcm", seconds=30, until_idle=True)
+                project = tmp_path / "random.jcm"
+                result = run_project(project, seconds=30, until_idle=True, plain=path == "plain")
             results.append((result.lines, result.errors, result.exit_code))
+        assert results[0][0], "a program that prints nothing"
+        assert results[0][2] == 0, results[0][1]
         if results.count(results[0]) < len(results):
             differing.append(seed)
     assert differing == []
