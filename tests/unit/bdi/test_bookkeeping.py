@@ -8,9 +8,9 @@ from recording_host import RecordingHost, mind
 from jacaros.asl.loader import parse_term
 from jacaros.asl.lowering import lower_value
 from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.bdi.state.budget import SearchBudget, SearchLimit
-from jacaros.bdi.state.condition_waits import asked_by
+from jacaros.bdi.rules.pending import asked_by, note_change
 from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.bdi.state.budget import SearchBudget, SearchLimit
 from jacaros.terms.values import NIL, Term, functor
 
 
@@ -42,25 +42,32 @@ def awaiting(condition: str) -> RecordingHost:
     return host
 
 
+def is_looked_at(host: RecordingHost, name: str, *arguments: float) -> bool:
+    """Return whether a change of a belief makes the mind test the awaited condition again."""
+    waits = host.agent.waits
+    waits.due.clear()
+    note_change(host.agent, functor(name, len(arguments)), arguments)
+    return bool(waits.due or waits.restless)
+
+
 def test_a_wait_that_is_over_is_forgotten() -> None:
     host = awaiting("p(X) & not q(2) & q(1)")
-    waits = host.agent.waits.conditions
-    assert len(waits) == 1
+    assert len(host.agent.waits.conditions) == 1
     host.run()
     assert host.printed == ["failed"]
-    assert len(waits) == 0
-    for symbol in (functor("p", 1), functor("q", 1)):
-        assert not waits.changed(symbol, (1.0,))
-        assert not waits.changed(symbol, (2.0,))
+    assert not host.agent.waits.conditions
+    assert not host.agent.waits.asked
+    for name in ("p", "q"):
+        assert not is_looked_at(host, name, 1.0)
+        assert not is_looked_at(host, name, 2.0)
 
 
 def test_only_changes_of_what_a_condition_asks_for_are_looked_at() -> None:
-    waits = awaiting("p(3) & r(_)").agent.waits.conditions
-    assert not waits.changed(functor("p", 1), (4.0,))
-    assert not waits.changed(functor("p", 2), (3.0, 3.0))
-    assert waits.changed(functor("p", 1), (3.0,))
-    waits.take_due()
-    assert waits.changed(functor("r", 1), (8.0,))
+    host = awaiting("p(3) & r(_)")
+    assert not is_looked_at(host, "p", 4.0)
+    assert not is_looked_at(host, "p", 3.0, 3.0)
+    assert is_looked_at(host, "p", 3.0)
+    assert is_looked_at(host, "r", 8.0)
 
 
 @pytest.mark.parametrize(

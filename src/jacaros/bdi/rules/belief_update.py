@@ -128,7 +128,6 @@ def is_quiet(agent: Circumstance) -> bool:
         agent.waits.events
         or agent.waits.conditions
         or agent.observers.hear_beliefs
-        or agent.library.reactions.of
         or agent.options.events != "discard"
     )
 

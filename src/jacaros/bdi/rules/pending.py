@@ -77,6 +77,10 @@ def _numbered(agent: Circumstance) -> int:
 # --- moments -----------------------------------------------------------------------------------------------
 
 
+_ROUNDED = 0.001
+"""By how many seconds a timer may ring early."""
+
+
 def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
     """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
     alarm = Alarm(_numbered(agent), function, arguments, now(agent) + delay)
@@ -92,6 +96,9 @@ def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
 
 def _ring(agent: Circumstance, alarm: Alarm) -> None:
     del agent.waits.alarms[alarm.number]
+    early = alarm.due - now(agent)
+    if early > _ROUNDED:
+        agent.waits.ahead += early  # the clock was set back: that it rings says how much time has passed
     alarm.function(agent, *alarm.arguments)
 
 

@@ -44,7 +44,7 @@ def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
     Raises:
         InternalError: a literal of a percept is not a literal.
     """
-    beliefs, selects = agent.beliefs, agent.library.selects
+    beliefs, selects, reactions = agent.beliefs, agent.library.selects, agent.library.reactions
     holders = beliefs.held_percepts
     for percept in percepts:
         symbol, row, keyed = percept.kept or _keep(percept)
@@ -67,14 +67,14 @@ def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
             external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
             continue
         trigger = table.deleted if kind == "remove" else table.added
-        if selects[trigger] is not None:
+        if selects[trigger] is not None or (reactions.of and reactions[trigger]):
             agent.post(((trigger, *own), None, annotations, percept.cause))
 
 
 def _take_unusual(
     agent: Circumstance, symbol: Functor, row: Row, percept: Percept, keyed: bool
 ) -> Row | None:
-    """Take a percept that others agree with, or that cannot be looked up; return what is believed or not any more."""
+    """Take a percept that others agree with, or that cannot be looked up; return what it changed."""
     if percept.kind == "add":
         return (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
     if percept.kind == "remove":

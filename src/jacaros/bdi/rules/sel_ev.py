@@ -104,7 +104,7 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, _, annotations, cause = event
     kind, observer, reactions, reacted = goal[0], agent.observers.mind, agent.library.reactions, False
-    if reactions.of and kind.kind == "":
+    if reactions.of and kind.kind == "" and reactions[kind]:
         reacted = _react(agent, event, reactions[kind])
     if observer is None:
         frame = select_plan(agent, goal, annotations)
