@@ -147,7 +147,7 @@ class Writer:
             handler = self._pick("", "[error(E)]", "[code(C)]", "[error_msg(_)]")
             told = {"[error(E)]": ",E", "[code(C)]": ",C"}.get(handler, "")
             self._variables = 0
-            yield f"-!g{number}(X0){handler} <- .print(failed{number},X0{told}); {self._steps(number, 1)}."
+            yield f"-!g{number}(X0){handler} <- {COUNTED}; .print(failed{number},X0{told}); {self._steps(number, 1)}."
 
     def _annotation(self) -> str:
         """What a label says of its plan."""
@@ -230,7 +230,12 @@ class Writer:
             condition = self._pick(
                 f"b({item}) & not seen{item}({item})", f"c({item})[x] & not seen{item}({item})"
             )
-            return f"while ({condition}) {{ +seen{item}({item}); {inner()} }}; .abolish(seen{item}(_))"
+            few = (
+                f".count(seen{item}(_),N{item}) & N{item} < 9"  # NaN is not equal to itself: it is never seen
+            )
+            return (
+                f"while ({condition} & {few}) {{ +seen{item}({item}); {inner()} }}; .abolish(seen{item}(_))"
+            )
         if kind == 0:
             return f"if ({self._formula(1)}) {{ {inner()} }} else {{ {inner()} }}"
         if kind == 1:
@@ -279,7 +284,7 @@ class Writer:
         found = self._fresh()
         return self._pick(
             f".add_plan({{ @m +!extra(X) <- .print(extra,X) }}, self, begin); !extra({self._value()}); .remove_plan(m)",
-            f".add_plan({{ @added +!g6(X) <- .print(added,X) }}, self, end); !g6({self._value()}); .remove_plan(added)",
+            f".add_plan({{ @added +!g6(X) <- .print(added,X) }}, self, end); !{goal or 'inner(1)'}; .remove_plan(added)",
             f".relevant_plans({{ +!g5(_) }}, {found}); .length({found}, N{found}); .print(plans,N{found})",
             f".findall(T, .intention(_, T), {found}); .print(states,{found})",
             f".findall(D, .desire(D), {found}); .length({found}, N{found}); .print(N{found})",
