@@ -272,7 +272,7 @@ class Test(Node):
 class BeliefChange(Node):
     """A change of beliefs (or of plans and rules, when the operand is a PlanTerm or RuleTerm).
 
-    ``operator`` is one of ``+ - -+ ++ -- +< +> -++`` as written.
+    ``operator`` is one of ``+ - -+ ++ -- +< +>`` as written.
     """
 
     operator: str

@@ -21,7 +21,7 @@ _STEP_STARTS: Final = _CONTROL | frozenset(
     {"atom", "variable", "number", "string", "true", "false", "not", "~", "::", "(", "[", "{"}
     | {"!", "!!", "?", "+", "-", "^", "else", "elif", "error"}
 )
-_CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>", "-++"})
+_CHANGES: Final = frozenset({"+", "-", "-+", "++", "--", "+<", "+>"})
 _ENDS: Final = frozenset({".", "}", ")", "]", "{", "<-", "end", "error"})
 """Tokens that may follow a body, and tokens that are reported better by the caller."""
 _FORMULA_AFTER_GROUP: Final = frozenset(BINARY) - {"+", "-"}

@@ -301,7 +301,6 @@ class Mind(Circumstance):
     add_belief_last = belief_update.add_belief_last
     add_belief_apart = belief_update.add_belief_apart
     delete_belief = belief_update.delete_belief
-    delete_any = belief_update.delete_any
     tell = belief_update.tell
     believe = belief_update.believe
     untell = belief_update.untell
@@ -328,9 +327,7 @@ class Mind(Circumstance):
             return self.delete_belief(symbol, row, own, operator == "--")
         if operator == "-+":
             return self.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
-        if operator == "-++":
-            self.delete_any(symbol, BY_SELF if own == BY_SELF else own)
-        if operator in ("++", "-++"):
+        if operator == "++":
             return self.add_belief_apart(symbol, row, own)
         return (self.add_belief_last if operator == "+>" else self.add_belief)(symbol, row, own)
 

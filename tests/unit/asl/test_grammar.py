@@ -33,7 +33,7 @@ CLASSES["math.pi"] |= {"dotted"}
 MEANING = {"tested-action", "chained-relation"}
 """Errors of what a text means: an action as a test goal, a comparison of a comparison in brackets."""
 INSIDE_TOKENS = {"non-ascii-name", "wrong-escape"}
-CHANGES = {"-+", "++", "--", "+<", "+>", "-++"}
+CHANGES = {"-+", "++", "--", "+<", "+>"}
 TRIGGERS = {"+", "-", "^", "@"}
 BEFORE_STEPS = {"<-", ";", "{", "}", "(", "|&|", "|||"}
 FRAGILE = CHANGES | {"begin", "end"}

@@ -171,7 +171,6 @@ _ADDITIONS = {
     "+>": "agent.add_belief_last(",
     "++": "agent.add_belief_apart(",
     "-+": "replace_belief(agent, ",
-    "-++": "agent.add_belief_apart(",
 }
 
 
@@ -200,10 +199,6 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
         fn.line(f"posted = delete_belief(agent, {symbol}, {arguments}, {annotations}, {operator == '--'})")
         return
     row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments]) if operand.arguments else "()"
-    if operator == "-++":
-        fn.line(f"row = {row}")
-        fn.line(f"agent.delete_any({symbol}, {annotations})")
-        row = "row"
     fn.line(f"posted = {_ADDITIONS[operator]}{symbol}, {row}, {annotations})")
 
 
