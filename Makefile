@@ -4,7 +4,7 @@
 # make quick         checks before a commit: style, types, layers, unit tests
 # make coverage      lines run by the unit, contract and conformance tests, by package; about 15 minutes
 # make mutants       one-line changes that the tests notice; a sample, in about an hour
-#                    make mutants MUTANTS="bdi/rules terms bdi/state"     440 changes of the mind, in about 20 minutes
+#                    make mutants MUTANTS="agents/mind/rules agents/terms agents/mind/state"     440 changes of the mind, in about 20 minutes
 #                    make mutants MUTANTS="artifacts/robots --sample 0"   all changes of one package
 # make bench         benchmarks, beside other engines, in about 10 minutes; rewrites docs/benchmarks.md
 #                    make bench BENCH=--quick   about 3 minutes, writes nothing; JASON=/path/to/jason adds Jason

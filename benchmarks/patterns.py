@@ -137,10 +137,10 @@ class Port:
 
 def agent(samples: list[Sample], derives: bool) -> Go:
     """Run a mind on the percepts; return the number of derived beliefs at the end."""
-    from jacaros.asl.loader import load_program
-    from jacaros.bdi.mind import Mind
-    from jacaros.bdi.state.act import Percept
-    from jacaros.terms.values import SOURCE_PERCEPT, functor
+    from jacaros.agents.language.loader import load_program
+    from jacaros.agents.mind.mind import Mind
+    from jacaros.agents.mind.state.act import Percept
+    from jacaros.agents.terms.values import SOURCE_PERCEPT, functor
 
     port = Port()
     program, _ = load_program("patterns.asl", declarations() if derives else "")
@@ -171,8 +171,7 @@ def agent(samples: list[Sample], derives: bool) -> Go:
 
 def patterns(samples: list[Sample]) -> Go:
     """The operators alone."""
-    from jacaros.streams.pattern import Pattern
-    from jacaros.streams.schema import Spec
+    from jacaros.artifacts.streams.pattern import Pattern, Spec
 
     outputs = 0
 

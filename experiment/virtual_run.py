@@ -13,8 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jacaros.clock import VirtualClock, new_event_loop
 from jacaros.errors import JacarosError
+from jacaros.runtime.clock import VirtualClock, new_event_loop
 from jacaros.sim import World
 from jacaros.sim.node import SimNode
 from jacaros.testing import RunResult

@@ -15,6 +15,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "jacaros"
+LAYERS = ("agents", "artifacts")
+"""Packages whose packages have a budget each."""
 LOOSE = "."
 """The package of the modules directly in the root."""
 _NO_CODE = {
@@ -48,7 +50,11 @@ def sizes() -> dict[str, tuple[int, int]]:
     files: Counter[str] = Counter()
     for path in SOURCE.rglob("*.py"):
         inside = path.relative_to(SOURCE).parts
-        package = inside[0] if len(inside) > 1 else LOOSE
+        package = (
+            "/".join(inside[: 2 if inside[0] in LAYERS and len(inside) > 2 else 1])
+            if len(inside) > 1
+            else LOOSE
+        )
         lines[package] += lines_of_code(path.read_text())
         files[package] += 1
     return {package: (lines[package], files[package]) for package in sorted(files)}

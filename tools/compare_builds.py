@@ -33,9 +33,7 @@ def work(path: str) -> None:
     from jacaros.testing import run_project
 
     if path == "searched":
-        from jacaros.bdi.fast.generated import (
-            conditions,
-        )  # here: may differ in the other build
+        from jacaros.agents.mind.generated import conditions  # here: may differ in the other build
 
         conditions._MAX_LOOPS = 0
     answers, sys.stdout = sys.stdout, sys.stderr

@@ -26,22 +26,21 @@ from pathlib import Path
 from random import Random
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "unit" / "bdi")]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "unit" / "agents" / "mind")]
 
 from fuzzed_files import KINDS  # noqa: E402
 from program_grammar import Grammar  # noqa: E402
 from recording_host import RecordingHost  # noqa: E402
 
-from jacaros.asl.checker import check  # noqa: E402
-from jacaros.asl.checks.actions import KnownActions  # noqa: E402
-from jacaros.asl.diagnostics import Diagnostic  # noqa: E402
-from jacaros.asl.formatter import format_plan, format_term  # noqa: E402
-from jacaros.asl.loader import read_program  # noqa: E402
-from jacaros.asl.nodes import Program  # noqa: E402
-from jacaros.asl.source import SourceFile  # noqa: E402
-from jacaros.bdi.actions.internal_action import STANDARD  # noqa: E402
-from jacaros.bdi.mind import Mind  # noqa: E402
-from jacaros.bdi.state.act import Act, Completion  # noqa: E402
+from jacaros.agents.checks.actions import KnownActions  # noqa: E402
+from jacaros.agents.checks.checker import check  # noqa: E402
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile  # noqa: E402
+from jacaros.agents.language.loader import read_program  # noqa: E402
+from jacaros.agents.language.lowering import format_plan, format_term  # noqa: E402
+from jacaros.agents.language.nodes import Program  # noqa: E402
+from jacaros.agents.mind.actions.internal_action import STANDARD  # noqa: E402
+from jacaros.agents.mind.mind import Mind  # noqa: E402
+from jacaros.agents.mind.state.act import Act, Completion  # noqa: E402
 
 CORPUS = [
     path.read_text(encoding="utf-8")

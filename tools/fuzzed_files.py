@@ -14,8 +14,8 @@ from typing import Any
 
 import cbor2
 
+from jacaros.agents.language.diagnostics import render_all
 from jacaros.artifacts.mapping.file import load_mapping
-from jacaros.asl.diagnostics import render_all
 from jacaros.cli.ros_arguments import read_parameters
 from jacaros.errors import JacarosError
 from jacaros.inspector.page import replay_html

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import click
 
-import jacaros.bdi.actions.standard
+import jacaros.agents.mind.actions.standard
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.terms.functions import ARITIES
+from jacaros.artifacts import Artifact, describe
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.velocity import WheeledArtifact
-from jacaros.bdi.actions.internal_action import STANDARD
 from jacaros.cli.main import COMMANDS, jacaros
-from jacaros.env import Artifact, describe
-from jacaros.terms.functions import ARITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
@@ -84,7 +84,11 @@ def grammar() -> Iterator[str]:
     yield "# The grammar\n"
     yield (ROOT / "tools" / "grammar.md").read_text(encoding="utf-8")
     yield "```ebnf"
-    yield (ROOT / "src" / "jacaros" / "asl" / "grammar.ebnf").read_text(encoding="utf-8").rstrip()
+    yield (
+        (ROOT / "src" / "jacaros" / "agents" / "language" / "grammar.ebnf")
+        .read_text(encoding="utf-8")
+        .rstrip()
+    )
     yield "```"
 
 

@@ -1,7 +1,7 @@
 """Measure which lines the tests run, and print a table of packages.
 
 measure_coverage.py                    unit tests, contracts without a real ROS, recorded cases; then the table
-measure_coverage.py COMMAND [ARGS]     one of them, such as `-m pytest tests/unit/env`; then the table
+measure_coverage.py COMMAND [ARGS]     one of them, such as `-m pytest tests/unit/artifacts/env`; then the table
 
 Processes started by tests are measured, too. A failing test does not stop the measurement: some tests check which modules
 are loaded, and coverage loads more.
@@ -22,7 +22,15 @@ PARTS = (
     ("tools/check_conformance.py", "language"),
     ("tools/check_conformance.py", "environment"),
 )
-APART = ("bdi/actions", "bdi/explaining", "bdi/fast", "bdi/rules", "bdi/state", "ros/drivers")
+APART = (
+    "agents/mind/actions",
+    "agents/mind/explaining",
+    "agents/mind/compiled",
+    "agents/mind/generated",
+    "agents/mind/rules",
+    "agents/mind/state",
+    "ros/drivers",
+)
 """Folders with their own row."""
 
 

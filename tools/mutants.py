@@ -1,10 +1,10 @@
 """Change one place of a package at a time, and count the changes that its tests notice.
 
 mutants.py                                  a sample of each subject; prints the scores and the surviving changes
-mutants.py bdi/rules terms bdi/state        the mind's, whose tests are measured once
+mutants.py agents/mind/rules agents/terms agents/mind/state        the mind's, whose tests are measured once
 mutants.py artifacts/robots --sample 0      all changes of one subject
 mutants.py ros --sample 150 --seed 3 --shard 2/4
-mutants.py terms --files terms/text.py:41:  of the sample, those of a file or a line
+mutants.py terms --files agents/terms/text.py:41:  of the sample, those of a file or a line
 mutants.py pkg=tests/pkg --root FOLDER      another package (of FOLDER/src) and its tests
 
 A sample takes the same share of each file. One process collects the tests and forks. A first child runs them all and notes
@@ -45,15 +45,16 @@ from mutation_operators import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parent.parent
 MIND = (
-    *(f"tests/unit/{each}" for each in ("bdi", "terms", "asl", "compiler", "extension", "streams")),
+    "tests/unit/agents",
+    "tests/unit/artifacts/streams",
     "tests/unit/mas/debugging",
     "tests/integration/test_resources.py",
     "tests/conformance",
 )
 SUBJECTS: dict[str, tuple[str, ...]] = {
-    "jacaros/bdi/rules": MIND,
-    "jacaros/terms": MIND,
-    "jacaros/bdi/state": MIND,
+    "jacaros/agents/mind/rules": MIND,
+    "jacaros/agents/terms": MIND,
+    "jacaros/agents/mind/state": MIND,
     "jacaros/artifacts/robots": ("tests/unit/artifacts",),
     "jacaros/artifacts/mapping": ("tests/unit/artifacts",),
     "jacaros/ros": ("tests/unit/ros", "tests/contracts"),
@@ -65,7 +66,7 @@ WITHOUT = ("ros/drivers/ros1/", "ros/drivers/ros2/")
 """Files whose tests need a real ROS."""
 
 NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser"
-SAMPLE, SAMPLES = 120, {"jacaros/bdi/rules": 200}
+SAMPLE, SAMPLES = 120, {"jacaros/agents/mind/rules": 200}
 LIMIT, LIMIT_FACTOR = 5.0, 10.0
 TESTS_FOR = 20.0
 """Seconds of tests, as measured without a change, that one mutant is given."""
@@ -487,7 +488,7 @@ def _parser() -> argparse.ArgumentParser:
     names = ", ".join(each.removeprefix("jacaros/") for each in SUBJECTS)
     parser.add_argument("subjects", nargs="*", help=f"packages (default: {names}), or PACKAGE=TESTS,TESTS")
     parser.add_argument(
-        "--sample", type=int, help=f"mutants of a package (default {SAMPLE}, 200 of bdi/rules; 0: all)"
+        "--sample", type=int, help=f"mutants of a package (default {SAMPLE}, 200 of agents/mind/rules; 0: all)"
     )
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample (default 1)")
     parser.add_argument(

@@ -13,9 +13,8 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.object_kinds import NotStorable
-from jacaros.bdi.snapshot import restore, stored
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.storage import NotStorable, restore, stored
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 

@@ -14,7 +14,7 @@ PLANS = 80
 """Number of plans that an agent begins, except those that only print."""
 COUNTED = "-left(L); .ground(L)"
 """The steps of a plan that count it."""
-ARTIFACTS = """from jacaros.env import Artifact, Out, operation
+ARTIFACTS = """from jacaros.artifacts import Artifact, Out, operation
 
 
 class Board(Artifact):

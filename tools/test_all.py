@@ -39,7 +39,7 @@ OTHER_SYSTEMS = tuple(
     for name in ("win32", "darwin")
 )
 """The package as Python is elsewhere: names that Windows or macOS does not have are errors of types."""
-SMOKE = ("tests/unit/compiler", "tests/unit/env", "tests/unit/extension")
+SMOKE = ("tests/unit/agents/compiler", "tests/unit/artifacts/env", "tests/unit/agents/python")
 """Tests that show in seconds whether another Python works: code that we generate, annotations, asyncio."""
 
 REAL_GRAPHS = {

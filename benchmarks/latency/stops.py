@@ -10,8 +10,8 @@ import time
 from itertools import pairwise
 from typing import Any
 
+from jacaros.agents.mind.mind import Mind
 from jacaros.artifacts.robots.odometry import Odometer
-from jacaros.bdi.mind import Mind
 from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 from jacaros.ros.drivers.ros1.connections import InletTransport

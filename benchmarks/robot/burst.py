@@ -6,9 +6,9 @@ from typing import Any
 
 from yardstick import call
 
-from jacaros.bdi.state.act import Percept
-from jacaros.terms.order import annotation_set
-from jacaros.terms.values import SOURCE_PERCEPT, atom, structure
+from jacaros.agents.mind.state.act import Percept
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.values import SOURCE_PERCEPT, atom, structure
 from jacaros.testing import AgentHarness
 
 PERCEPTS = 10_000

@@ -13,7 +13,7 @@ OBSERVERS = 10
 UPDATES, PIECE = 12_000, 200
 ARTIFACTS = f"""
 import pieces
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Ticker(Artifact):
     def init(self) -> None:

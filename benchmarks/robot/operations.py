@@ -15,7 +15,7 @@ PROGRAM = """
 +!go(N, false) : N > 0 <- true; !go(N - 1, false).
 """
 ARTIFACTS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Bench(Artifact):
     @operation

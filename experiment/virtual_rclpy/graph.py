@@ -6,10 +6,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from jacaros.clock import VirtualClock
 from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock
 
 
 class TimeIsUp(BaseException):

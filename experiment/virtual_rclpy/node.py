@@ -5,8 +5,8 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from jacaros.clock import Timer as ClockTimer
 from jacaros.ros.backend import Publisher as GraphPublisher
+from jacaros.runtime.clock import Timer as ClockTimer
 from virtual_rclpy.graph import VirtualGraph, current
 from virtual_rclpy.messages import Interface
 from virtual_rclpy.qos import QoSProfile, qos_of

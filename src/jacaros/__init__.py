@@ -10,18 +10,16 @@ from jacaros.version import VERSION
 TYPE_CHECKING = False  # True for type checkers; importing the typing module takes longer than all of this
 
 if TYPE_CHECKING:
-    from jacaros.asl.diagnostics import AslError
-    from jacaros.bdi.actions.internal_action import ActionError, WrongArguments
-    from jacaros.bdi.object_kinds import NotStorable
-    from jacaros.env.errors import OperationFailed
-    from jacaros.env.values import Atom, Out, Structure
+    from jacaros.agents.language.diagnostics import AslError
+    from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
+    from jacaros.agents.mind.storage import NotStorable
+    from jacaros.agents.python.agent import Agent, Literal, Message, Option, ReceivedMessage
+    from jacaros.agents.python.agent import PlanView as Plan
+    from jacaros.agents.python.declaring import arithmetic_function, internal_action
+    from jacaros.agents.python.python_agent import PythonAgent
+    from jacaros.artifacts.env.errors import OperationFailed
+    from jacaros.artifacts.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
-    from jacaros.extension.agent import Agent
-    from jacaros.extension.declaring import arithmetic_function, internal_action
-    from jacaros.extension.literal import Literal
-    from jacaros.extension.python_agent import PythonAgent
-    from jacaros.extension.views import Message, Option, ReceivedMessage
-    from jacaros.extension.views import PlanView as Plan
     from jacaros.mas.deployment import ProjectError
     from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
     from jacaros.mas.embedding.mas import Mas
@@ -62,21 +60,19 @@ __all__ = [
 ]
 
 _MODULES = {
-    "jacaros.asl.diagnostics": "AslError",
-    "jacaros.bdi.actions.internal_action": "ActionError WrongArguments",
-    "jacaros.bdi.object_kinds": "NotStorable",
-    "jacaros.env.errors": "OperationFailed",
-    "jacaros.env.values": "Atom Out Structure",
+    "jacaros.agents.language.diagnostics": "AslError",
+    "jacaros.agents.mind.actions.internal_action": "ActionError WrongArguments",
+    "jacaros.agents.mind.storage": "NotStorable",
+    "jacaros.agents.python.agent": "Agent Literal Message Option Plan=PlanView ReceivedMessage",
+    "jacaros.agents.python.declaring": "arithmetic_function internal_action",
+    "jacaros.agents.python.python_agent": "PythonAgent",
+    "jacaros.artifacts.env.errors": "OperationFailed",
+    "jacaros.artifacts.env.values": "Atom Out Structure",
     "jacaros.errors": "InternalError JacarosError UsageError",
-    "jacaros.extension.agent": "Agent",
-    "jacaros.extension.declaring": "arithmetic_function internal_action",
-    "jacaros.extension.literal": "Literal",
-    "jacaros.extension.python_agent": "PythonAgent",
-    "jacaros.extension.views": "Message Option Plan=PlanView ReceivedMessage",
     "jacaros.mas.deployment": "ProjectError",
     "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
-    "jacaros.mas.embedding.run": "run",
     "jacaros.mas.embedding.mas": "Mas",
+    "jacaros.mas.embedding.run": "run",
     "jacaros.mas.options": "RunOptions",
 }
 """Where the names are defined; views of the mind's objects have other names there."""

@@ -18,8 +18,8 @@ from typing import IO, Any, cast
 import peer as peer_module
 
 import jacaros.ros.errors
-from jacaros.clock import VirtualClock, new_event_loop
 from jacaros.ros.drivers.memory.backend import MemoryGraph
+from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 PATIENCE = 90.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""

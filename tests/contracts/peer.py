@@ -21,13 +21,13 @@ from peer_actions import ActionCommands
 from peer_graph import GraphCommands
 
 from jacaros.artifacts.kit.connection import Matching
-from jacaros.clock import Clock, WallClock, run
 from jacaros.ros.backend import Sample, TopicEvent
 from jacaros.ros.handoff import post
 from jacaros.ros.message import plain
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
-from jacaros.trace import Cause
+from jacaros.runtime.clock import Clock, WallClock, run
+from jacaros.runtime.trace import Cause
 
 ADD = "example_interfaces/srv/AddTwoInts"
 

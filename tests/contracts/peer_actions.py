@@ -4,10 +4,10 @@ import asyncio
 from collections import defaultdict
 from typing import Any
 
-from jacaros.clock import Clock
 from jacaros.ros.action import Abort, ActionPolicy
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import plain
+from jacaros.runtime.clock import Clock
 
 COUNT = "jacaros_interfaces/action/Count"
 

@@ -4,9 +4,9 @@ import asyncio
 from dataclasses import asdict
 from typing import Any
 
-from jacaros.clock import Clock
 from jacaros.ros.backend import Backend
 from jacaros.ros.parameter import Declaration
+from jacaros.runtime.clock import Clock
 
 
 class GraphCommands:

@@ -223,7 +223,7 @@ def test_a_process_has_one_node(master: Master) -> None:
     master.start()
     program = """
 import asyncio
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 async def main():
     one, two = open_backend("ros1", WallClock(), "one"), open_backend("ros1", WallClock(), "two")
@@ -252,7 +252,7 @@ def test_a_signal_in_the_middle_of_joining_ends_the_start(master: Master) -> Non
     program = """
 import asyncio
 import rospy
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 async def main():
     backend = open_backend("ros1", WallClock(), "hasty")
@@ -285,7 +285,7 @@ def test_a_publisher_with_a_broken_connection_is_connected_again(master: Master,
     program = """
 import asyncio, sys
 import rospy
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 async def until(condition):
     async with asyncio.timeout(60):

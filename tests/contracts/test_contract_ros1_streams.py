@@ -14,7 +14,7 @@ TOGETHER = """
 import asyncio, threading
 import rospy
 from std_msgs.msg import String
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 
 MAIN = threading.current_thread()
@@ -66,7 +66,7 @@ run(main, WallClock())
 
 LARGE = """
 import asyncio
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
 

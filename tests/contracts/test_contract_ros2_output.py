@@ -13,7 +13,7 @@ pytestmark = pytest.mark.ros2
 
 PROGRAM = """
 import resource, signal
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.open import open_backend
 
 # No room for shared memory: Fast DDS logs a warning, and uses the network.

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.ros2
 
 BEGIN = """
 import asyncio, sys
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.drivers.ros2 import receiving as ros2_receiving
 from jacaros.ros.open import open_backend
 

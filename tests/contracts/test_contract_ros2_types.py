@@ -11,7 +11,7 @@ from presence import is_wanted, ros2_environment
 pytestmark = pytest.mark.ros2
 
 PROGRAM = """
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.errors import RosError
 from jacaros.ros.open import open_backend
 
@@ -59,7 +59,7 @@ def test_a_name_already_used_with_another_type_is_reported(
 
 
 WRONG_PARAMETER = """
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.open import open_backend
 

@@ -12,7 +12,6 @@ import pytest
 from bridges import BehindBridge, BridgeServer, heard, talking
 from presence import need
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.errors import (
     CallFailed,
     CallTimedOut,
@@ -23,6 +22,7 @@ from jacaros.ros.errors import (
     UnknownInterface,
 )
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import WallClock, run
 
 pytestmark = pytest.mark.rosbridge
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pages import ROOT, Block, blocks
 
-from jacaros.asl.diagnostics import KINDS
+from jacaros.agents.language.diagnostics import KINDS
 from jacaros.cli.main import call
 
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"

@@ -5,14 +5,19 @@ import re
 import pytest
 from pages import ROOT, blocks
 
+from jacaros.agents.body.actions import keys
+from jacaros.artifacts import Artifact, describe
+from jacaros.artifacts.env.environment import (
+    Blackboard,
+    Console,
+    ManualRepository,
+    SystemArtifact,
+    WorkspaceArtifact,
+)
+from jacaros.artifacts.env.operation import OPERATION
 from jacaros.artifacts.tools import Barrier, Clock, Latch
-from jacaros.body.actions import keys
-from jacaros.env import Artifact, describe
-from jacaros.env.operation import OPERATION
-from jacaros.env.standard_artifacts import Blackboard, Console, ManualRepository, SystemArtifact
-from jacaros.env.workspace_artifact import WorkspaceArtifact
+from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.python_objects import actions
-from jacaros.project_modules import ProjectModules
 
 REFERENCE = ROOT / "docs" / "reference"
 

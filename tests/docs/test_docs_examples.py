@@ -8,7 +8,20 @@ from examples import SHOWN, examples
 from following import Reader
 from pages import PAGES, ROOT, blocks, is_file, name_of
 
-LANGUAGES = {"agentspeak", "console", "diff", "ebnf", "jcm", "mas2j", "python", "sh", "text", "xml", "yaml", *SHOWN}
+LANGUAGES = {
+    "agentspeak",
+    "console",
+    "diff",
+    "ebnf",
+    "jcm",
+    "mas2j",
+    "python",
+    "sh",
+    "text",
+    "xml",
+    "yaml",
+    *SHOWN,
+}
 
 RUN = [page for page in PAGES if any(block.language == "console" for block in blocks(page))]
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import pytest
 from pages import ROOT
 
-import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.terms.functions import ARITIES
+import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.terms.functions import ARITIES
 
 FOLDER = ROOT / "docs" / "reference" / "internal_actions"
 FUNCTIONS = FOLDER / "functions.md"

@@ -2,8 +2,8 @@
 
 from pages import ROOT, blocks
 
-from jacaros.asl.formatting import format_program
-from jacaros.asl.layout.document import WIDTH
+from jacaros.agents.language.formatting import format_program
+from jacaros.agents.language.layout import WIDTH
 
 PAGE = ROOT / "docs" / "reference" / "layout.md"
 

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 from pages import PAGES, ROOT, blocks, links, name_of
 
-from jacaros.asl.formatting import format_program
+from jacaros.agents.language.formatting import format_program
 from jacaros.cli.demo import PROGRAM
 
 

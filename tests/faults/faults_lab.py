@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from jacaros.clock import Clock, Timer, VirtualClock, run
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.mappings import with_mappings
 from jacaros.mas.options import RunOptions
@@ -22,6 +21,7 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.runtime.clock import Clock, Timer, VirtualClock, run
 from jacaros.sim.files.world import load_world
 from jacaros.sim.ground_truth import GroundTruth
 from jacaros.sim.node import SimNode

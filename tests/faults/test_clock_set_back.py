@@ -6,7 +6,7 @@ from typing import Any
 
 from faults_lab import Lab, in_lab
 
-from jacaros.clock import VIRTUAL_EPOCH
+from jacaros.runtime.clock import VIRTUAL_EPOCH
 
 
 async def never(request: Any) -> Any:

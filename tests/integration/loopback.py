@@ -9,22 +9,20 @@ import json
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.env import ports
-from jacaros.env.artifact import Artifact
-from jacaros.env.errors import UnknownArtifact
-from jacaros.env.ids import ArtifactId
-from jacaros.env.observation import Observation, Observer, Signal
-from jacaros.env.operation import OperationOutcome, OperationRequest, ignore_outcome
-from jacaros.env.ports import OnMade, OnOutcome, UnderWay, ignore_made
-from jacaros.env.property import ObservableProperty
-from jacaros.env.values import Atom, Out, Structure
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.terms.text import text
+from jacaros.artifacts.env import ports
+from jacaros.artifacts.env.artifact import Artifact
+from jacaros.artifacts.env.errors import ArtifactId, UnknownArtifact
+from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest, ignore_outcome
+from jacaros.artifacts.env.ports import OnMade, OnOutcome, UnderWay, ignore_made
+from jacaros.artifacts.env.property import ObservableProperty, Observation, Observer, Signal
+from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.mas.directory import Services
 from jacaros.mas.system import System
-from jacaros.terms.text import text
-from jacaros.trace import Cause
+from jacaros.runtime.trace import Cause
 
 HOPS = 3
 """Turns of the loop that a line takes."""

@@ -39,7 +39,7 @@ def sleep_on(n: float) -> None:
 """
 ARTIFACTS = """
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Endless(Artifact):
     @operation

@@ -61,7 +61,7 @@ FILES = {
         +ns::closed(Label) <- .wait(100); .print("end of ", Label); .stopMAS.
         """,
     "src/env/market/Board.py": """
-        from jacaros.env import Artifact, operation
+        from jacaros.artifacts import Artifact, operation
 
 
         class Board(Artifact):
@@ -80,7 +80,7 @@ FILES = {
                     self.signal("closed", self.label)
         """,
     "src/env/market/Auction.py": """
-        from jacaros.env import Artifact, Out, operation
+        from jacaros.artifacts import Artifact, Out, operation
 
 
         class Auction(Artifact):

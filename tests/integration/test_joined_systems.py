@@ -7,7 +7,7 @@ from loopback import RemoteWorkspace, Side, join, share
 
 import jacaros
 from jacaros import GoalFailed, Mas
-from jacaros.env import Artifact, Atom, OperationFailed, Out, Structure, link, operation
+from jacaros.artifacts import Artifact, Atom, OperationFailed, Out, Structure, link, operation
 
 Test = Callable[[Mas, Mas, Side, Side], Awaitable[None]]
 

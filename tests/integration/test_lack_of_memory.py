@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.bdi.actions import internal_action
-from jacaros.bdi.actions.internal_action import InternalAction
+from jacaros.agents.mind.actions import internal_action
+from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.mas.system import OUT_OF_MEMORY, System
 from jacaros.testing import run_project
 

@@ -23,7 +23,7 @@ On a robot with its own ROS 2, source its setup file first
 """
 
 COUNTER = """\
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 
 class Counter(Artifact):

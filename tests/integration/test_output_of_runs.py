@@ -55,7 +55,7 @@ def test_output_that_cannot_be_written_fails_no_step(tmp_path: Path, target: str
 BELL = """
 import logging
 import sys
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Bell(Artifact):
     @operation

@@ -268,7 +268,7 @@ def test_two_agents_share_a_lift_and_the_end_of_one_frees_it(tmp_path: Path) -> 
 ARTIFACTS = '''
 import random
 
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 BRAKING = 0.5
 

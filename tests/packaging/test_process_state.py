@@ -20,29 +20,37 @@ from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 
 import jacaros
 from jacaros import Mas, PythonAgent
-from jacaros.terms.values import Held
+from jacaros.agents.terms.values import Held
 
-PACKAGES = ("terms", "asl", "bdi", "extension", "mas", "body", "env")
+PACKAGES = (
+    "agents",
+    "mas",
+    "artifacts.env",
+    "artifacts.kernel",
+    "artifacts.presence",
+    "artifacts.resources",
+    "artifacts.streams",
+)
 WEAK = {
-    "terms.values._functors": "names that are in use",
-    "bdi.state.triggers._triggers": "event kinds that are in use",
-    "body.values._references": "references that are in use, by their objects",
+    "agents.terms.values._functors": "names that are in use",
+    "agents.mind.state.triggers._triggers": "event kinds that are in use",
+    "agents.body.values._references": "references that are in use, by their objects",
 }
 NUMBERS = {
-    "terms.order._variable_numbers": "variables in the order in which they were first compared",
-    "terms.values._reference_numbers": "names of opaque objects (cobj_N)",
+    "agents.terms.order._variable_numbers": "variables in the order in which they were first compared",
+    "agents.terms.values._reference_numbers": "names of opaque objects (cobj_N)",
 }
 VARIABLES = {
-    "terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task",
-    "env.kernel.steps.CURRENT": "what led to the operation that runs, for each task of a run that is watched",
+    "agents.terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task",
+    "artifacts.kernel.steps.CURRENT": "what led to the operation that runs, for each task of a run that is watched",
 }
 CACHES = {
-    "asl.checks.goals._goals_of_tests": "of a file of the package",
-    "bdi.actions.strings._compile": "of a text",
-    "bdi.rules.proc_msg._achieved": "of a name",
-    "bdi.rules.proc_msg._only_from": "of a name",
-    "body.actions.keys": "of nothing",
-    "body.values.symbol_of": "of a name",
+    "agents.checks.goals._goals_of_tests": "of a file of the package",
+    "agents.mind.actions.strings._compile": "of a text",
+    "agents.mind.rules.proc_msg._achieved": "of a name",
+    "agents.mind.rules.proc_msg._only_from": "of a name",
+    "agents.body.actions.keys": "of nothing",
+    "agents.body.values.symbol_of": "of a name",
     "mas.mappings.stored_interfaces": "of files of the package",
     "mas.history.values._field_names": "of a class of messages",
 }
@@ -56,7 +64,7 @@ def attributes() -> Iterator[tuple[str, Any]]:
         for each in pkgutil.walk_packages(found.__path__, f"{found.__name__}."):
             importlib.import_module(each.name)
     for name, module in sorted(sys.modules.items()):
-        if name.partition("jacaros.")[2].partition(".")[0] not in PACKAGES:
+        if not name.removeprefix("jacaros.").startswith(PACKAGES):
             continue
         for key, value in vars(module).items():
             if isinstance(value, type) and value.__module__ == name:
@@ -97,7 +105,7 @@ def test_caches_are_bounded() -> None:
 
 def test_no_function_assigns_to_a_global() -> None:
     folder = Path(jacaros.__file__).parent
-    files = [file for package in PACKAGES for file in (folder / package).rglob("*.py")]
+    files = [file for package in PACKAGES for file in (folder / package.replace(".", "/")).rglob("*.py")]
     assert len(files) > 200
     trees = {file: ast.parse(file.read_text(encoding="utf-8")) for file in files}
     assert [
@@ -106,7 +114,7 @@ def test_no_function_assigns_to_a_global() -> None:
 
 
 COUNTER = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Counter(Artifact):
     def init(self, value: int) -> None:
@@ -180,7 +188,7 @@ def test_a_run_changes_no_module(tmp_path: Path) -> None:
         name: value for name, value in attributes() if isinstance(value, CONTAINERS) and name not in expected
     }
     before = {name: list(value.items() if isinstance(value, dict) else value) for name, value in held.items()}
-    assert "terms.operators.BINARY" in held
+    assert "agents.terms.operators.BINARY" in held
     lines = system(tmp_path, 7)
     assert {"abab1", "7", "14", "no_relevant"} <= set(lines)
     assert not [line for line in lines if "error" in line]

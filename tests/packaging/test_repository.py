@@ -182,7 +182,7 @@ def test_the_programs_of_the_suite_can_be_run() -> None:
 
 
 def test_the_mind_says_what_its_values_are() -> None:
-    files = list((ROOT / "src" / "jacaros" / "bdi").rglob("*.py"))
+    files = list((ROOT / "src" / "jacaros" / "agents" / "mind").rglob("*.py"))
     texts = [file.read_text(encoding="utf-8") for file in files]
     names = [node for text in texts for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Name)]
     untyped = sum(node.id == "Any" for node in names)

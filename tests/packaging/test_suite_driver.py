@@ -165,13 +165,13 @@ def test_the_table_of_coverage_has_a_row_for_each_package() -> None:
 
     files = {
         "src/jacaros/version.py": lines(1, 1),
-        "src/jacaros/bdi/mind.py": lines(3, 4),
-        "src/jacaros/bdi/rules/cycle.py": lines(1, 5),
-        "src/jacaros/bdi/rules/query.py": lines(4, 5),
+        "src/jacaros/agents/mind/mind.py": lines(3, 4),
+        "src/jacaros/agents/mind/rules/cycle.py": lines(1, 5),
+        "src/jacaros/agents/mind/rules/query.py": lines(4, 5),
     }
     assert loaded("measure_coverage").table(files)[2:] == [
-        "| bdi | 4 | 75 % |",
-        "| bdi/rules | 10 | 50 % |",
+        "| agents | 4 | 75 % |",
+        "| agents/mind/rules | 10 | 50 % |",
         "| jacaros | 1 | 100 % |",
         "| all | 15 | 60 % |",
     ]

@@ -28,10 +28,10 @@ from parameters import ParameterServices
 from peer import Peer
 from rosapi import RosApi, write_ros1_types
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
 from jacaros.ros.handoff import post
 from jacaros.ros.node import NodeSettings
+from jacaros.runtime.clock import WallClock, run
 
 DOING = 0.002
 """Seconds after which what a client asks for is done."""

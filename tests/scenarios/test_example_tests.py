@@ -7,7 +7,7 @@ import pytest
 from examples_lab import EXAMPLES
 
 from jacaros.testing import collect, run_suite
-from jacaros.testing.suites import Suite
+from jacaros.testing.run import Suite
 
 FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "tests").is_dir())
 

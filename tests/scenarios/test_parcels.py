@@ -6,7 +6,7 @@ from math import dist
 import pytest
 from examples_lab import checker, falsified, run_of, spoilt
 
-from jacaros.project_modules import ProjectModules
+from jacaros.files.python_modules import ProjectModules
 from jacaros.sim import Event, GroundTruth
 from jacaros.testing import run_project
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
 
-from jacaros.env import Session
+from jacaros.artifacts import Session
 from jacaros.mas.system import System
 from jacaros.sim import Event, GroundTruth, Sample
 from jacaros.testing import run_project

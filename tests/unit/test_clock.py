@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from jacaros.clock import VIRTUAL_EPOCH, VirtualClock, WallClock, new_event_loop, run
+from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, WallClock, new_event_loop, run
 
 
 def test_virtual_time_begins_at_its_epoch_and_jumps_over_a_sleep():

@@ -4,14 +4,13 @@ from collections.abc import Callable
 
 import pytest
 
-from jacaros.asl.checker import check
-from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.diagnostics import Diagnostic, render_all
-from jacaros.asl.loader import read_program
-from jacaros.asl.source import SourceFile, Span
-from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.excerpts import LONGEST, MOST, WIDTH, escaped, marked, printable
-from jacaros.yaml_nodes import Problem, YamlFileError
+from jacaros.agents.checks.actions import KnownActions
+from jacaros.agents.checks.checker import check
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, render_all
+from jacaros.agents.language.loader import read_program
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.files.texts import LONGEST, MOST, WIDTH, escaped, marked, printable
+from jacaros.files.yaml import Problem, YamlFileError
 
 
 def test_control_characters_and_marks_of_direction_are_escaped() -> None:

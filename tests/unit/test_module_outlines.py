@@ -15,7 +15,7 @@ HOSTILE = f"""
 import jacaros
 from dataclasses import dataclass, field
 from jacaros import internal_action
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 {RUNS}
 x = {RUNS}
@@ -113,13 +113,13 @@ def _(a: float, b: float) -> float: ...
 def sq(*numbers): ...
 """,
         artifacts__py="""
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 from base import Base
 class Lamp(Base):
     def init(self): self.define_property("level", 1)
 """,
         base__py="""
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 class Base(Artifact):
     @operation
     def on(self, level: float) -> None: ...
@@ -163,7 +163,7 @@ def test_a_description_read_from_the_source_is_that_of_the_class(capsys: pytest.
         artifacts__py="""
 from dataclasses import dataclass
 from enum import Enum, auto
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 @dataclass
 class Pose:
     x: float

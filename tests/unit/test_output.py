@@ -11,8 +11,8 @@ from typing import TextIO
 
 import pytest
 
-from jacaros import output
-from jacaros.output import Output
+from jacaros.runtime import output
+from jacaros.runtime.output import Output
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pipes are written by descriptor on POSIX only")
 

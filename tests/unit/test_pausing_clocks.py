@@ -7,9 +7,8 @@ from collections.abc import Callable
 import pytest
 from fake_real_time import FakeTimeLoop, in_fake_time
 
-from jacaros.clock import Clock, VirtualClock, WallClock, of_run, run
 from jacaros.ros.ros_clock import RosClock
-from jacaros.timer_queue import COMPACT_ABOVE, TimerQueue
+from jacaros.runtime.clock import COMPACT_ABOVE, Clock, TimerQueue, VirtualClock, WallClock, of_run, run
 
 
 def rings(clock: Clock, delays: dict[str, float]) -> list[tuple[str, float]]:

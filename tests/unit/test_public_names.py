@@ -39,8 +39,6 @@ def test_importing_the_package_imports_nothing_else_of_it() -> None:
 
 
 def test_a_program_without_python_code_does_not_import_the_extension() -> None:
-    code = (
-        "import sys, jacaros.mas.system; print([m for m in sys.modules if m.startswith('jacaros.extension')])"
-    )
+    code = "import sys, jacaros.mas.system; print([m for m in sys.modules if m.startswith('jacaros.agents.python')])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import load_mapping, read_mapping
-from jacaros.yaml_nodes import Problem, read_document
+from jacaros.files.yaml import Problem, read_document
 
 LAUGHS = "a: &a [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
     f"{new}: &{new} [{','.join([f'*{old}'] * 10)}]\n" for old, new in zip("abcdefg", "bcdefgh", strict=True)

@@ -1,6 +1,6 @@
 """The artifact of the programs ``percepts`` and ``operations``: many observable properties, some of which change."""
 
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 
 class Board(Artifact):

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 
+from jacaros.artifacts import Artifact, InvalidArtifact, UnknownArtifactType
+from jacaros.artifacts.env.environment import Blackboard, Console
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.connection_artifact import ArtRos
 from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
@@ -22,10 +24,8 @@ from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.artifacts.thesis.perception import ArtPerception
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
 from jacaros.artifacts.tools import Barrier, Clock, Latch
-from jacaros.env import Artifact, InvalidArtifact, UnknownArtifactType
-from jacaros.env.standard_artifacts import Blackboard, Console
-from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
-from jacaros.text_files import shown_from
+from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
+from jacaros.files.texts import shown_from
 
 LATE = {
     "ArtMap": "jacaros.artifacts.map.robot_map",
@@ -184,7 +184,7 @@ def _other_class(name: str, modules: Iterable[ModuleType]) -> str:
     for module in modules:
         if isinstance(vars(module).get(name), type):
             file = Path(module.__file__ or module.__name__).name
-            return f"`{name}` in {file} is not an artifact type; derive it from jacaros.env.Artifact"
+            return f"`{name}` in {file} is not an artifact type; derive it from jacaros.artifacts.Artifact"
     return ""
 
 

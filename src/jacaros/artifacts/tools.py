@@ -1,6 +1,6 @@
 """CArtAgO's synchronisation tools: a latch that is set once, a barrier, a clock."""
 
-from jacaros.env import Artifact, internal_operation, operation
+from jacaros.artifacts import Artifact, internal_operation, operation
 
 
 class Latch(Artifact):

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 from py_trees.common import Status
 
+from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
+from jacaros.artifacts.env.operation import OperationOutcome
+from jacaros.artifacts.env.values import Atom, Out, Structure, text
+from jacaros.artifacts.presence.session import SessionOperation
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.env.errors import OperationFailed
-from jacaros.env.ids import ArtifactId
-from jacaros.env.operation import OperationOutcome
-from jacaros.env.session.operation import SessionOperation
-from jacaros.env.values import Atom, Out, Structure, text
 
 MISTAKES = ("unknown_operation", "wrong_op_arguments")
 """Functors of reasons that indicate a mistake in the tree, not in the world; these are logged, too."""

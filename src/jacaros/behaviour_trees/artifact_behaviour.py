@@ -6,8 +6,8 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Access
 
-from jacaros.clock import Clock
-from jacaros.env import Session
+from jacaros.artifacts import Session
+from jacaros.runtime.clock import Clock
 
 
 def nothing() -> None:

@@ -4,11 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 from py_trees.common import Status
 
+from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownProperty
+from jacaros.artifacts.env.values import equal, plain, text
+from jacaros.artifacts.presence.perception import ObservedProperty
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.env.errors import OperationFailed, UnknownProperty
-from jacaros.env.ids import ArtifactId
-from jacaros.env.session.observed import ObservedProperty
-from jacaros.env.values import equal, plain, text
 
 
 class PropertyCheck(ArtifactBehaviour):

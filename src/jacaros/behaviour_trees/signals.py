@@ -5,9 +5,9 @@ from typing import Any
 
 from py_trees.common import Status
 
+from jacaros.artifacts.env.values import text
+from jacaros.artifacts.presence.perception import ReceivedSignal
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing
-from jacaros.env.session.signal_stream import ReceivedSignal
-from jacaros.env.values import text
 
 
 class OnSignal(ArtifactBehaviour):

@@ -11,8 +11,8 @@ from py_trees.common import Status
 from py_trees.decorators import Decorator
 
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing, session_of
-from jacaros.clock import Clock
-from jacaros.clock import Timer as ClockTimer
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.clock import Timer as ClockTimer
 
 
 class Timer(ArtifactBehaviour):

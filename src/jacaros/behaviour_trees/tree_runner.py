@@ -9,11 +9,11 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.trees import BehaviourTree
 
+from jacaros.artifacts import Session
+from jacaros.artifacts.presence.perception import Observer
 from jacaros.behaviour_trees.act import Act
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 from jacaros.behaviour_trees.timing import follow
-from jacaros.env import Session
-from jacaros.env.session.account import Observer
 
 _ENDS = {Status.SUCCESS: "achieved", Status.FAILURE: "failed"}
 CLOSEST = 0.01

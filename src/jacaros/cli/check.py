@@ -8,14 +8,13 @@ from pathlib import Path
 
 import click
 
-from jacaros.asl.diagnostics import KINDS, Diagnostic, Severity, bounded
+from jacaros.agents.language.diagnostics import KINDS, Diagnostic, Severity, bounded
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.cli.usage import examples, usage_error
+from jacaros.files.texts import is_file, suggestion
 from jacaros.mas.checking import Findings, check_files
-from jacaros.output import beneath
-from jacaros.suggestions import suggestion
-from jacaros.text_files import is_file
+from jacaros.runtime.output import beneath
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
 MOST_NAMES = 8

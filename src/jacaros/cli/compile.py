@@ -6,21 +6,21 @@ from pathlib import Path
 
 import click
 
-import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl import nodes
-from jacaros.asl.diagnostics import bounded
-from jacaros.bdi.engines import new_engine
-from jacaros.bdi.fast.generated.listing import Piece, listing, pieces
-from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.plan_library import ProgramPlans
+import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import bounded
+from jacaros.agents.mind.generated.unit import Piece, listing, pieces
+from jacaros.agents.mind.mind import new_engine
+from jacaros.agents.mind.state.plan import Plan
+from jacaros.agents.mind.state.plan_library import ProgramPlans
+from jacaros.agents.terms.text import text
 from jacaros.cli.check import report
 from jacaros.cli.files import existing
 from jacaros.cli.usage import examples, usage_error
+from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.checking import check_files
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
-from jacaros.project_modules import ProjectModules
-from jacaros.terms.text import text
 
 MOST_EVENTS = 8
 """Number of events listed when a plan is unknown."""

@@ -8,16 +8,15 @@ from typing import Any
 
 import click
 
+from jacaros.artifacts.env.artifact import Artifact
+from jacaros.artifacts.env.errors import UnknownArtifactType
+from jacaros.artifacts.env.manual import Manual, describe
 from jacaros.cli.usage import examples, usage_error
-from jacaros.env.artifact import Artifact
-from jacaros.env.errors import UnknownArtifactType
-from jacaros.env.manual import Manual, describe
 from jacaros.errors import UsageError
+from jacaros.files.python_modules import UNSEEN, NotImported, ProjectModules
+from jacaros.files.texts import is_file
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.loading import load_deployment
-from jacaros.module_outlines import UNSEEN
-from jacaros.project_modules import NotImported, ProjectModules
-from jacaros.text_files import is_file
 
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
@@ -116,7 +115,8 @@ def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
             for name in [name for name, value in vars(module).items() if value is UNSEEN] or [file.stem]:
                 modules.require_seen(module, name)
         raise usage_error(
-            f"no artifact type in `{file}`", "an artifact type is a class derived from jacaros.env.Artifact"
+            f"no artifact type in `{file}`",
+            "an artifact type is a class derived from jacaros.artifacts.Artifact",
         )
     return found
 

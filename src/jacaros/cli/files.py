@@ -8,8 +8,7 @@ import click
 
 from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
-from jacaros.suggestions import close_matches, did_you_mean, suggestion
-from jacaros.text_files import is_file
+from jacaros.files.texts import close_matches, did_you_mean, is_file, suggestion
 
 if TYPE_CHECKING:
     from jacaros.inspector.recording import Recording

@@ -9,13 +9,13 @@ from tempfile import NamedTemporaryFile
 
 import click
 
-from jacaros import text_files
-from jacaros.asl.diagnostics import AslError, Diagnostic
-from jacaros.asl.formatting import format_program
-from jacaros.bdi.actions.internal_action import STANDARD
+from jacaros.agents.language.diagnostics import AslError, Diagnostic
+from jacaros.agents.language.formatting import format_program
+from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.usage import examples, usage_error
 from jacaros.errors import InternalError
+from jacaros.files import texts
 from jacaros.mas.checking import files_below
 from jacaros.mas.programs import text_of
 
@@ -82,7 +82,7 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
 def _standard_input() -> str:
     """The standard input, as the text of a file: UTF-8 on every system."""
     try:
-        return text_files.text_of(sys.stdin.buffer.read())
+        return texts.text_of(sys.stdin.buffer.read())
     except UnicodeError as fault:
         wrong = Diagnostic("error", f"cannot read <stdin>: {fault}", code="unreadable-file")
         raise AslError([wrong]) from fault

@@ -10,9 +10,9 @@ import click
 from jacaros.cli.graph_options import address_options, ros_option
 from jacaros.cli.usage import examples
 from jacaros.cli.variables import VariableOption
-from jacaros.clock import WallClock, run
-from jacaros.excerpts import visible
+from jacaros.files.texts import visible
 from jacaros.ros.middleware import ROS_KINDS
+from jacaros.runtime.clock import WallClock, run
 
 LEAST_TIMEOUT = 0.15
 """Seconds: three heartbeats."""

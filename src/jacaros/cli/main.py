@@ -19,9 +19,8 @@ from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.cli.usage import examples, in_our_form, usage_error
 from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
-from jacaros.excerpts import help_line
-from jacaros.output import PLAIN, Visible
-from jacaros.suggestions import suggestion
+from jacaros.files.texts import help_line, suggestion
+from jacaros.runtime.output import PLAIN, Visible
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
 """Exit codes of runs ended by SIGHUP, Ctrl+C, SIGTERM or Ctrl+Break (Windows)."""

@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from jacaros.asl.diagnostics import KINDS, Diagnostic
-from jacaros.asl.source import Span
+from jacaros.agents.language.diagnostics import KINDS, Diagnostic, Span
 from jacaros.cli.version import version_of
-from jacaros.excerpts import printable
+from jacaros.files.texts import printable
 from jacaros.mas.checking import Findings
 
 Object = dict[str, Any]

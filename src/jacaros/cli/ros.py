@@ -10,9 +10,9 @@ import click
 from jacaros.cli.graph_options import address_options, ros_option, world_option
 from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.variables import settled
+from jacaros.files.texts import shown_from
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
-from jacaros.text_files import shown_from
 
 if TYPE_CHECKING:
     from jacaros.artifacts.mapping.declared import MappingFile
@@ -234,7 +234,7 @@ async def _check_mapping(joined: "Joined", mapping: "MappingFile", name: str) ->
     """Print the problems of a mapping file, and return their number."""
     from jacaros.cli.graph import listening
     from jacaros.cli.graph.verifying import problems_of, warnings_of
-    from jacaros.yaml_nodes import shown
+    from jacaros.files.yaml import shown
 
     parts = mapping.artifacts.values()
     frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
@@ -286,7 +286,7 @@ def _in_graph(
 ) -> T:
     """Join the graph that the options select, and run *look* in it."""
     from jacaros.cli.graph.joining import clock_for, joined
-    from jacaros.clock import run
+    from jacaros.runtime.clock import run
 
     options, notes = settled(RunOptions(**graph))
     for note in notes:

@@ -11,8 +11,8 @@ from typing import Any
 
 from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
+from jacaros.files.texts import file_text
 from jacaros.ros.middleware import ROS_KINDS
-from jacaros.text_files import file_text
 
 _SIGN = ":="
 _ROS2_VALUES = {
@@ -285,7 +285,7 @@ def _suits(pattern: list[str], node: list[str]) -> bool:
 
 def _yaml(text: str, where: str) -> Any:
     # Here: only for runs with parameters.
-    from jacaros.yaml_nodes import plain_values, shown
+    from jacaros.files.yaml import plain_values, shown
 
     value, wrong = plain_values(text)
     if wrong is not None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from jacaros.bdi.mind import Mind
+from jacaros.agents.mind.mind import Mind
 from jacaros.cli.files import not_found
 from jacaros.cli.graph_options import (
     faults_option,
@@ -27,6 +27,7 @@ from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
 from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.variables import VariableOption, settled, variables
 from jacaros.cli.view_options import ViewCommand, view_options
+from jacaros.files.texts import is_file
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
@@ -34,8 +35,7 @@ from jacaros.mas.launch import launch
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
-from jacaros.output import CLOSING, PATIENCE
-from jacaros.text_files import is_file
+from jacaros.runtime.output import CLOSING, PATIENCE
 
 FAST_PATIENCE = 1.0
 """Seconds that a run on the virtual clock waits for a slow reader of its output; its agents miss nothing meanwhile."""
@@ -295,7 +295,7 @@ def report_idleness(mas: System) -> None:
 
 def _can_be_woken(mas: System) -> bool:
     """Return whether the ROS graph, an artifact or Python code of the project may wake an agent."""
-    from jacaros.env.standard_artifacts import DEFAULT_TYPES  # here: only for idle runs
+    from jacaros.artifacts.env.environment import DEFAULT_TYPES  # here: only for idle runs
 
     if mas.ros.joined is not None or any(type(host) is not AgentHost for host in mas.directory):
         return True

@@ -10,10 +10,10 @@ import click
 from jacaros.cli.graph_options import faults_option, noise_option, read_remaps, ros_option, world_options
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
-from jacaros.clock import Clock, VirtualClock, WallClock, run
+from jacaros.files.texts import is_file
 from jacaros.ros.address import GraphAddress
+from jacaros.runtime.clock import Clock, VirtualClock, WallClock, run
 from jacaros.sim.description import BatterySettings, WorldDescription
-from jacaros.text_files import is_file
 
 
 @click.command(

@@ -13,12 +13,11 @@ import click
 from jacaros.cli.graph_options import noise_option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
-from jacaros.excerpts import visible
-from jacaros.output import beneath
+from jacaros.files.texts import visible
+from jacaros.runtime.output import beneath
 
 if TYPE_CHECKING:
-    from jacaros.testing.outcomes import SuiteOutcome
-    from jacaros.testing.suites import AgentTest, Suite
+    from jacaros.testing.run import AgentTest, Suite, SuiteOutcome
     from jacaros.testing.trial import TrialOptions
 
 _STYLED = re.compile(r"(\x1b\[.*?\x1b\[0m)", re.DOTALL)
@@ -127,8 +126,7 @@ def command(
     with such plans, and all projects whose names begin with `test_` or end in `_test`. The exit code is 1 if a test fails.
     """  # fmt: skip
     # Imported here: it imports all that runs a system.
-    from jacaros.testing.outcomes import failures, slowest, summary, write_junit
-    from jacaros.testing.suites import collect
+    from jacaros.testing.run import collect, failures, slowest, summary, write_junit
     from jacaros.testing.trial import TrialOptions
 
     if junit is not None:
@@ -188,7 +186,7 @@ class _Progress:
 
     def run(self, suites: "Sequence[Suite]") -> "list[SuiteOutcome]":
         """Run all tests that match the pattern, or up to the first failed one."""
-        from jacaros.testing.outcomes import SuiteOutcome
+        from jacaros.testing.run import SuiteOutcome
 
         outcomes = []
         for suite in suites:
@@ -203,7 +201,7 @@ class _Progress:
         return outcomes
 
     def _run(self, suite: "SuiteOutcome") -> None:
-        from jacaros.testing.outcomes import line_of
+        from jacaros.testing.run import line_of
         from jacaros.testing.trial import run_suite
 
         if suite.suite.error is not None:

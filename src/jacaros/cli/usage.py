@@ -3,8 +3,7 @@
 import click
 
 from jacaros.errors import UsageError
-from jacaros.excerpts import help_line, printable
-from jacaros.suggestions import suggestion
+from jacaros.files.texts import help_line, printable, suggestion
 
 
 def usage_error(what: str, help: str = "") -> UsageError:

@@ -9,7 +9,6 @@ from typing import Any
 
 from jacaros.artifacts.robots.charge import Charge
 from jacaros.artifacts.robots.odometry import not_finite
-from jacaros.clock import Clock
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
@@ -18,6 +17,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import constant
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import Clock
 from jacaros.sim.description import Rectangle, WorldDescription
 
 LOOK_PERIOD = 3.0

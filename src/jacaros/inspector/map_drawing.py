@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from jacaros.map_header import CELLS
+from jacaros.files.maps import CELLS
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.files.map import OccupancyMap
 

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
-from jacaros.excerpts import printable
+from jacaros.files.texts import LARGEST, file_bytes, printable, text_of
 from jacaros.inspector.line_format import MAGIC, unpacked
 from jacaros.sim.ground_truth import FIELDS, present_kind
-from jacaros.text_files import LARGEST, file_bytes, text_of
 
 VERSION = 2
 """Version of the written format; older versions are read completely, and known records of newer ones."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from jacaros.inspector.recording import older_part
-from jacaros.output import CLOSING, PATIENCE, Output
+from jacaros.runtime.output import CLOSING, PATIENCE, Output
 
 FLUSH = 0.2
 """Maximum seconds until a record is in the file, and is safe from a kill of the process."""
@@ -40,7 +40,7 @@ class RecordingFile:
     """Writes records to a file; a file of half the limit becomes ``FILE.1``, and a new one begins.
 
     Records must not change after `write`.  Nothing here raises an error or waits for a disk: see
-    `jacaros.output.Output`.
+    `jacaros.runtime.output.Output`.
 
     Args:
         path: output file.

@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 
-from jacaros.excerpts import visible
+from jacaros.files.texts import visible
 
 
 class TerminalConsole(Console):

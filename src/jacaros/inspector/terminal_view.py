@@ -21,7 +21,7 @@ from jacaros.inspector.braille import BrailleMap, character, draw_world
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.inspector.terminal_console import TerminalConsole
-from jacaros.output import Output, Wrapped
+from jacaros.runtime.output import Output, Wrapped
 
 FRAME_PERIOD = 0.1
 """Seconds of real time between two pictures."""

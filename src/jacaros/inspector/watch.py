@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, runtime_checkable
 
-from jacaros.clock import Clock, Timer
 from jacaros.inspector.scene import RobotView, Scene
 from jacaros.mas.history.history import History
+from jacaros.runtime.clock import Clock, Timer
 
 PERIOD, LIVE_PERIOD = 0.3, 0.05
 """Seconds between two frames of a recording, and of a run in real time shown on a live page.

@@ -8,21 +8,20 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import clauses as clauses_of
-from jacaros.asl.declaration import UNDECLARED
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.walk import walk
-from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.body.actions import keys
-from jacaros.clock import VirtualClock
-from jacaros.env.environment import Environment
-from jacaros.env.errors import UnknownArtifactType
+from jacaros.agents.body.actions import keys
+from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import UNDECLARED, walk
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import UnknownArtifactType
+from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.mas.deployment import AgentSpec, Deployment
-from jacaros.suggestions import close_matches, did_you_mean
+from jacaros.runtime.clock import VirtualClock
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
+    from jacaros.artifacts.env.artifact import Artifact
 
     FindType = Callable[[str], type[Artifact]]
 
@@ -35,7 +34,7 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
 """Goals by which a test simulates the environment."""
 
-_CLOSED: Final = ("jacaros.env.", "jacaros.artifacts.")
+_CLOSED: Final = ("jacaros.artifacts.", "jacaros.artifacts.")
 """Modules whose artifacts have only the operations that their classes declare."""
 
 _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")

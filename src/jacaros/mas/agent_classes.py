@@ -3,20 +3,20 @@
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.nodes import Program
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.plan_library import ProgramPlans
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import Program
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
+from jacaros.files.python_modules import NotImported, ProjectModules
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.python_code import PythonCode
-from jacaros.project_modules import NotImported, ProjectModules
 
 if TYPE_CHECKING:
-    from jacaros.extension.agent import Agent
-    from jacaros.extension.classes import Made
+    from jacaros.agents.python.agent import Agent
+    from jacaros.agents.python.customising import Made
 
 _DEFAULTS = ("", "jason.asSemantics.Agent")
 
@@ -79,7 +79,7 @@ class AgentClasses:
         host = AgentHost(spec.name, run, seed)
         kind = Mind
         if made is not None:
-            from jacaros.extension.customising import CustomMind  # here: most projects have no classes
+            from jacaros.agents.python.customising import CustomMind  # here: most projects have no classes
 
             kind = CustomMind
         mind = kind(spec.name, program, host, options, code.actions, plans)  # pyright: ignore[reportArgumentType]
@@ -90,7 +90,7 @@ class AgentClasses:
         return host
 
     def _begin_as(self, spec: AgentSpec, mind: Mind, face: "Made[Agent]") -> None:
-        from jacaros.extension.customising import begin_as
+        from jacaros.agents.python.customising import begin_as
 
         try:
             begin_as(mind, face.made)
@@ -98,7 +98,7 @@ class AgentClasses:
         except JacarosError as error:
             raise self._project_error(spec, str(error)) from error
         except Exception as error:
-            from jacaros.extension.calling import crash_text
+            from jacaros.agents.python.calling import crash_text
 
             message = crash_text(f"agent {spec.name}", face.made.init, error)
             raise self._project_error(spec, message) from error
@@ -109,8 +109,8 @@ class AgentClasses:
         name = written.partition("(")[0].strip()
         if name in _DEFAULTS:
             return None
-        from jacaros.extension.agent import Agent
-        from jacaros.extension.classes import object_of
+        from jacaros.agents.python.agent import Agent
+        from jacaros.agents.python.customising import object_of
 
         try:
             made = object_of(self._modules, written, Agent)

@@ -4,25 +4,24 @@ from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from random import Random
 from typing import Any, Protocol
 
-from jacaros.asl.nodes import Literal
-from jacaros.bdi.architecture import Timer
-from jacaros.bdi.state.act import NEEDS, Act, Completion
-from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import Clock
+from jacaros.agents.language.nodes import Literal
+from jacaros.agents.mind.state.act import NEEDS, Act, Completion, SpeechAct
+from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.mind.state.ports import Timer
+from jacaros.agents.terms.values import String, Term, atom, functor
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
 from jacaros.mas.directory import Services
 from jacaros.mas.idleness import Activity, AgentTimer
 from jacaros.mas.scheduler import Scheduler
-from jacaros.terms.values import String, Term, atom, functor
+from jacaros.runtime.clock import Clock
 
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
 
 class HostedMind(Protocol):
-    """A mind, as its host sees it (`jacaros.bdi.mind.Mind`)."""
+    """A mind, as its host sees it (`jacaros.agents.mind.mind.Mind`)."""
 
     stopped: bool
     """Set by the host to stop the mind."""
@@ -57,7 +56,7 @@ class HostedMind(Protocol):
 
 
 class Body(Protocol):
-    """Runs the actions of an agent (`jacaros.body.body.AgentBody`)."""
+    """Runs the actions of an agent (`jacaros.agents.body.body.AgentBody`)."""
 
     def act(self, act: Act) -> None:
         """Begin an action."""
@@ -128,7 +127,7 @@ class Run(Protocol):
 
 
 class AgentHost:
-    """Runs one mind. It is the mind's `jacaros.bdi.architecture.Architecture`.
+    """Runs one mind. It is the mind's `jacaros.agents.mind.state.ports.Architecture`.
 
     Args:
         name: name of the agent.
@@ -219,7 +218,7 @@ class AgentHost:
         if not self._ended:
             self._mind.receive(message)
 
-    # ---- the port `jacaros.bdi.architecture.Architecture`
+    # ---- the port `jacaros.agents.mind.state.ports.Architecture`
 
     def ready(self) -> None:
         """The mind has something to do."""

@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Protocol
 
-from jacaros.asl.nodes import Program
-from jacaros.bdi.engines import new_engine
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.snapshot import copy_mind
-from jacaros.bdi.state.plan_library import ProgramPlans
+from jacaros.agents.language.nodes import Program
+from jacaros.agents.mind.mind import Mind, new_engine
+from jacaros.agents.mind.state.plan_library import ProgramPlans
+from jacaros.agents.mind.storage import copy_mind
 from jacaros.errors import JacarosError
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost, Run

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import Span
-from jacaros.bdi.state.options import Options
-from jacaros.suggestions import suggestion
+from jacaros.agents.language.diagnostics import Diagnostic, Span
+from jacaros.agents.mind.state.budget import Options
+from jacaros.files.texts import suggestion
 
 _EVENT: Final = re.compile(r"(\w+::)?~?[a-z]\w*")
 _TRUTH: Final = ("true", "false")

@@ -11,18 +11,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from jacaros.asl import nodes
-from jacaros.asl.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.formatter import format_term
-from jacaros.asl.slips import Slips, is_slip_of
-from jacaros.asl.walk import parts_of
-from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.suggestions import did_you_mean
-from jacaros.text_files import file_bytes
+from jacaros.agents.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
+from jacaros.agents.language import nodes
+from jacaros.agents.language.cursor import Slips, is_slip_of
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import parts_of
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.files.texts import did_you_mean, file_bytes
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
+    from jacaros.artifacts.env.artifact import Artifact
 
 CODE: Final = "misspelt-belief"
 NEVER: Final = "event-never-happens"
@@ -204,7 +203,7 @@ def _warning(name: str, meant: str, literal: nodes.Literal) -> Diagnostic:
 
 def _observables(types: "Sequence[type[Artifact]]") -> set[str] | None:
     """Return the properties and signals of artifacts; None if some of them compute names."""
-    from jacaros.env.manual_sources import described, own_classes, written_properties, written_signals
+    from jacaros.artifacts.env.manual import described, own_classes, written_properties, written_signals
 
     names: set[str] = set()
     for artifact_type in types:

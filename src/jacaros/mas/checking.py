@@ -5,14 +5,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl import nodes
-from jacaros.asl.checker import check, place
-from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.diagnostics import AslError, Diagnostic
-from jacaros.asl.loader import parse_literals, read_program
-from jacaros.asl.source import SourceFile
-from jacaros.asl.suppression import Suppressions, wanted
+import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.checks.actions import KnownActions
+from jacaros.agents.checks.checker import Suppressions, check, place, wanted
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
+from jacaros.agents.language.loader import parse_literals, read_program
+from jacaros.files.python_modules import ModuleUnreadable, ProjectModules
+from jacaros.files.texts import is_file
+from jacaros.files.yaml import Problem
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.loading import load_deployment
@@ -20,12 +21,9 @@ from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
 from jacaros.mas.project.reading import read_project
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_path import source_folders
-from jacaros.project_modules import ModuleUnreadable, ProjectModules
-from jacaros.text_files import is_file
-from jacaros.yaml_syntax import Problem
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
+    from jacaros.artifacts.env.artifact import Artifact
 
 PROJECTS: Final = (".mas2j", ".jcm")
 MAPPINGS: Final = (".yaml", ".yml")
@@ -425,10 +423,9 @@ def _check_program(
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     """Return warnings about plans that run slower because they are too large for Python's compiler."""
-    from jacaros.bdi.engines import new_engine  # here: see `_of_artifacts`
-    from jacaros.bdi.fast.compiler import too_large
-    from jacaros.bdi.fast.units import Units
-    from jacaros.bdi.state.plan_library import ProgramPlans
+    from jacaros.agents.mind.generated.compiler import Units, too_large
+    from jacaros.agents.mind.mind import new_engine  # here: see `_of_artifacts`
+    from jacaros.agents.mind.state.plan_library import ProgramPlans
 
     plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
     for plan, fault in too_large(plans, Units(code.actions)):

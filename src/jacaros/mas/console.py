@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Protocol, TextIO
 
-from jacaros.output import CLOSING, PATIENCE, Output, Printed, Stream
+from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, Stream
 
 LEVELS = ("debug", "info", "warning", "error")
 
@@ -24,7 +24,7 @@ class Console(Protocol):
 class StandardConsole:
     """Prints agents' lines to standard output, unbuffered, and logs to standard error.
 
-    It neither raises nor waits for a reader: see `jacaros.output.Output`.
+    It neither raises nor waits for a reader: see `jacaros.runtime.output.Output`.
 
     Args:
         level: the lowest level that is shown.
@@ -90,7 +90,7 @@ class StandardConsole:
         self._output.when_gone = callback
 
     def close(self, patience: float | None = CLOSING, limit: float | None = None) -> None:
-        """Write what waits for a slow reader. See `jacaros.output.Output.close`."""
+        """Write what waits for a slow reader. See `jacaros.runtime.output.Output.close`."""
         self._output.close(patience, limit)
         self._errors.close(patience, limit)
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from jacaros.asl.diagnostics import Diagnostic, render_all
-from jacaros.asl.source import Span
+from jacaros.agents.language.diagnostics import Diagnostic, Span, render_all
 from jacaros.errors import JacarosError
 
 CARTAGO_ENVIRONMENTS = frozenset(
@@ -52,7 +51,7 @@ class AgentSpec:
         declared_name: name in the project file, without the number of the instance.
         source_path: its AgentSpeak program, or the Python file of its class.
         options: settings such as ``verbose`` and ``events``, and user-defined keys, as text.
-        beliefs, goals: literals separated by commas, as text (see `jacaros.asl.loader.parse_literals`).
+        beliefs, goals: literals separated by commas, as text (see `jacaros.agents.language.loader.parse_literals`).
         join: workspaces it joins at its start, in order. They include all workspaces of ``focus``.
         focus: artifacts it focuses at its start, in order.
         agent_class: name of the class as written.
@@ -84,9 +83,9 @@ class AgentSpec:
 class ArtifactSpec:
     """An artifact to be created at the start.
 
-    ``arguments`` are plain values: numbers, Booleans, strings, lists, `jacaros.env.values.Atom` for names without
-    quotes, and `jacaros.env.values.Structure`. ``focused_by`` are agents as written (``*``: all); they also have it in
-    their ``focus``. ``span`` and ``type_span`` are the locations of its name and type.
+    ``arguments`` are plain values: numbers, Booleans, strings, lists, `jacaros.artifacts.env.values.Atom` for names without
+    quotes, and `jacaros.artifacts.env.values.Structure`. ``focused_by`` are agents as written (``*``: all); they also have
+    it in their ``focus``. ``span`` and ``type_span`` are the locations of its name and type.
     """
 
     name: str

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from jacaros.bdi.mind import Mind
-from jacaros.clock import Clock, Timer
+from jacaros.agents.mind.mind import Mind
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.ros.errors import RosError
+from jacaros.runtime.clock import Clock, Timer
 
 if TYPE_CHECKING:
     from jacaros.ros.backend import Backend, Publisher

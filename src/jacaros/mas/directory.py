@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Generic, Protocol, TypeVar
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules import belief_update
-from jacaros.bdi.state.plan import Failure
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.terms.collections import detached, holds_collection
-from jacaros.terms.substitution import is_ground, rename
-from jacaros.terms.values import BY_SELF, Annotated, String, Term, atom, functor
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules import belief_update
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.plan import Failure
+from jacaros.agents.terms.collections import detached, holds_collection
+from jacaros.agents.terms.substitution import is_ground, rename
+from jacaros.agents.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 
 
 class Mailbox(Protocol):

@@ -7,19 +7,20 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.bdi.mind import Mind
-from jacaros.body.body import AgentBody
-from jacaros.body.percepts import PerceptWriter
-from jacaros.body.values import References
-from jacaros.clock import Clock
-from jacaros.env.environment import Environment
-from jacaros.env.errors import OperationFailed, UnknownArtifactType
-from jacaros.env.kernel.kinds import Unsuitable
-from jacaros.env.kernel.signature import Parameter
-from jacaros.env.ports import Workspace, ignore_made
-from jacaros.env.presence.presence import Presence
-from jacaros.env.values import Atom
+from jacaros.agents.body.body import AgentBody
+from jacaros.agents.body.percepts import PerceptWriter
+from jacaros.agents.body.values import References
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.mind.mind import Mind
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import OperationFailed, UnknownArtifactType
+from jacaros.artifacts.env.ports import Workspace, ignore_made
+from jacaros.artifacts.env.values import Atom
+from jacaros.artifacts.kernel.acceptance import Unsuitable
+from jacaros.artifacts.kernel.declaration import Parameter
+from jacaros.artifacts.presence.presence import Presence
+from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
+from jacaros.files.texts import close_matches
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
@@ -33,12 +34,11 @@ from jacaros.mas.deployment import (
     has_own_artifacts,
 )
 from jacaros.mas.idleness import Activity
-from jacaros.project_modules import ModuleUnreadable, NotImported, ProjectModules
-from jacaros.suggestions import close_matches
+from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
-    from jacaros.env.ids import ArtifactId
+    from jacaros.artifacts.env.artifact import Artifact
+    from jacaros.artifacts.env.errors import ArtifactId
 
 
 class Resources(Mapping[str, object]):

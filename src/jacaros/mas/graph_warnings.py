@@ -8,13 +8,13 @@ import asyncio
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 
-from jacaros.clock import Clock
+from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.ros.backend import Backend, Subscription
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER
-from jacaros.suggestions import close_matches, did_you_mean
+from jacaros.runtime.clock import Clock
 
 SIM_TIME = "use_sim_time"
 PATIENCE = 5.0

@@ -7,8 +7,8 @@ import asyncio
 from collections.abc import Callable
 from typing import Protocol
 
-from jacaros.bdi.architecture import Timer
-from jacaros.clock import Clock
+from jacaros.agents.mind.state.ports import Timer
+from jacaros.runtime.clock import Clock
 
 
 class Activity:

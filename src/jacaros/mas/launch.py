@@ -16,8 +16,6 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn
 
-from jacaros.alarm import Alarm
-from jacaros.clock import Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.loading import load_deployment, mapped
@@ -25,6 +23,7 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
 from jacaros.ros import lifetime
+from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, new_event_loop
 
 GARBAGE_THRESHOLD = 100_000
 """Programs create and drop millions of terms, mostly without cycles. More frequent garbage collection costs 10 % of the

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.files.texts import is_file
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.source_path import PROJECTS, source_folders
-from jacaros.text_files import is_file
 
 
 def load_deployment(path: str | Path) -> Deployment:

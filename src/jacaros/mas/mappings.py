@@ -4,14 +4,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.artifacts.mapping.checking import UNCERTAIN, type_problems
 from jacaros.artifacts.mapping.file import find_mapping, read_with_problems, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile, Span
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Problem
 from jacaros.mas.deployment import ArtifactSpec, Deployment, FocusSpec, ProjectError, WorkspaceSpec
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Problem
 
 MAIN = "main"
 """The workspace of mapped artifacts."""

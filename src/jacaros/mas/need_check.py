@@ -4,16 +4,16 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import clauses as clauses_of
-from jacaros.asl.checks.needs import needs_of
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.walk import ByKind
-from jacaros.env.resources.resource import local_name, read_uses
-from jacaros.suggestions import close_matches, did_you_mean
+from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.checks.plans import needs_of
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import ByKind
+from jacaros.artifacts.resources.claim import local_name, read_uses
+from jacaros.files.texts import close_matches, did_you_mean
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
+    from jacaros.artifacts.env.artifact import Artifact
 
 
 def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifact]]") -> Iterator[Diagnostic]:

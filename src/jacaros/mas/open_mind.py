@@ -3,18 +3,18 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from jacaros.asl.loader import parse_formula, parse_literal
-from jacaros.asl.lowering import Names, lower_value
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules import belief_update, goals
-from jacaros.bdi.state.act import Percept
-from jacaros.bdi.state.belief_base import parts
-from jacaros.body.values import to_value
-from jacaros.terms.order import annotation_set
-from jacaros.terms.substitution import is_ground, resolve
-from jacaros.terms.text import text
-from jacaros.terms.unifier import undo
-from jacaros.terms.values import BY_SELF, SOURCE_PERCEPT, Term, annotations_of, bare
+from jacaros.agents.body.values import to_value
+from jacaros.agents.language.loader import parse_formula, parse_literal
+from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules import belief_update, goals
+from jacaros.agents.mind.state.act import Percept
+from jacaros.agents.mind.state.belief_base import parts
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.substitution import is_ground, resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.unifier import undo
+from jacaros.agents.terms.values import BY_SELF, SOURCE_PERCEPT, Term, annotations_of, bare
 
 
 class OpenMind:

@@ -5,16 +5,15 @@ from dataclasses import replace
 from errno import ENOTDIR
 from pathlib import Path
 
-from jacaros.asl import nodes
-from jacaros.asl.checker import check_for_run
-from jacaros.asl.checks.actions import KnownActions
-from jacaros.asl.diagnostics import AslError, Diagnostic
-from jacaros.asl.loader import load_program, parse_literals
-from jacaros.asl.suppression import wanted
+from jacaros.agents.checks.actions import KnownActions
+from jacaros.agents.checks.checker import check_for_run, wanted
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, Diagnostic
+from jacaros.agents.language.loader import load_program, parse_literals
+from jacaros.files.texts import file_text
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_path import SourcePath, name_of
-from jacaros.text_files import file_text
 
 NEVER_SELECTED = "plan-never-selected"
 """Code of the warning about unreachable plans. Agents of user-defined classes may select them."""

@@ -5,15 +5,15 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.bdi.actions.internal_action import STANDARD, ActionError, InternalAction
-from jacaros.bdi.rules.context import Context
-from jacaros.bdi.state.circumstance import Circumstance, ProjectFunctions
-from jacaros.project_modules import ModuleUnreadable, ProjectModules
-from jacaros.terms.values import Term
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.mind.actions.internal_action import STANDARD, ActionError, InternalAction
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.state.circumstance import Circumstance, ProjectFunctions
+from jacaros.agents.terms.values import Term
+from jacaros.files.python_modules import ModuleUnreadable, ProjectModules
 
 if TYPE_CHECKING:
-    from jacaros.extension.declaring import Additions, Limits
+    from jacaros.agents.python.declaring import Additions, Limits
 
 _ASSERTIONS: Final = "jacaros.testing.assertions"
 """The module with the internal actions for assertion goals."""
@@ -79,7 +79,7 @@ class PythonCode:
 
     def _read_module(self, module: str) -> None:
         # Imported on demand: most projects have no Python code.
-        from jacaros.extension.declaring import Additions
+        from jacaros.agents.python.declaring import Additions
 
         if self._additions is None:
             self._additions = Additions()

@@ -1,7 +1,7 @@
 """The internal actions ``cartago.*``: agents create Python objects, call their methods, and list their workspaces.
 
-In CArtAgO they are for Java objects. Values are converted as for artifacts (`jacaros.body.values`). Anything else is an
-opaque reference. All errors fail the step with ``error(internal_action)``.
+In CArtAgO they are for Java objects. Values are converted as for artifacts (`jacaros.agents.body.values`). Anything else is
+an opaque reference. All errors fail the step with ``error(internal_action)``.
 """
 
 import builtins
@@ -9,17 +9,17 @@ import importlib
 from collections.abc import Iterable
 from typing import Any
 
-from jacaros.bdi.actions.internal_action import ActionError, InternalAction, Registry
-from jacaros.bdi.rules.context import Context
-from jacaros.body.body import AgentBody
-from jacaros.body.call import name_of
-from jacaros.body.values import UNKEPT, to_term, to_value
-from jacaros.env.values import Out, plain
+from jacaros.agents.body.body import AgentBody
+from jacaros.agents.body.call import name_of
+from jacaros.agents.body.values import UNKEPT, to_term, to_value
+from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, Registry
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.python.calling import FAULTS
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Reference, Term, bare, is_list, make_list
+from jacaros.artifacts.env.values import Out, plain
 from jacaros.errors import InternalError
-from jacaros.extension.calling import FAULTS
-from jacaros.project_modules import ProjectModules
-from jacaros.terms.text import text
-from jacaros.terms.values import Reference, Term, bare, is_list, make_list
+from jacaros.files.python_modules import ProjectModules
 
 PACKAGE = "cartago."
 """Common prefix of their names."""

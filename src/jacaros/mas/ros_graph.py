@@ -9,22 +9,22 @@ from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.clock import Clock
+from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import ProjectError
 from jacaros.mas.options import RunOptions
+from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:
-    from jacaros.asl.source import Span
+    from jacaros.agents.language.diagnostics import Span
     from jacaros.mas.graph_warnings import EmptyGraph, GraphTime, UndeclaredParameters
     from jacaros.mas.guarding import RunGuard
     from jacaros.ros.backend import Backend
     from jacaros.ros.parameter import GivenParameters
     from jacaros.ros.ros_clock import RosClock
+    from jacaros.runtime.trace import Tracer
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
-    from jacaros.trace import Tracer
 
 DEFAULT_WORLD = "empty"
 """The world of a project that does not name one: an open floor with one robot, whose odometry is exact."""

@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from jacaros.clock import Clock, real_time, run_context
+from jacaros.runtime.clock import Clock, real_time, run_context
 
 
 class Runnable(Protocol):

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from jacaros import asl
-from jacaros.text_files import file_text, is_file
+from jacaros.agents import language
+from jacaros.files.texts import file_text, is_file
 
 _USUAL: Final = (
     *(".", "src/agt", "src/agt/inc", "src/asl", "asl", "agents", "inc"),
@@ -19,7 +19,7 @@ _PROGRAMS: Final = (".asl", ".py")
 _ROOTS: Final = (".git", "pyproject.toml", "build.gradle", "package.xml", "setup.py")
 _LEVELS: Final = 6
 _LIBRARY: Final = "$jacaros/"
-_LIBRARY_FOLDER: Final = Path(asl.__file__).parent / "library"
+_LIBRARY_FOLDER: Final = Path(language.__file__).parent / "library"
 TEST_LIBRARY: Final = (
     "mock_agent.asl",
     "test_assert.asl",

@@ -8,10 +8,10 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-import jacaros.bdi.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.asl.nodes import Program
-from jacaros.bdi.mind import Mind
-from jacaros.clock import Clock, of_run
+import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.language.nodes import Program
+from jacaros.agents.mind.mind import Mind
+from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
@@ -25,16 +25,16 @@ from jacaros.mas.programs import Programs, asks_why
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
-from jacaros.project_modules import ProjectModules
+from jacaros.runtime.clock import Clock, of_run
 
 if TYPE_CHECKING:
-    from jacaros.env.environment import Environment
+    from jacaros.artifacts.env.environment import Environment
     from jacaros.mas.debugging.debugger import Debugger
     from jacaros.mas.diagnostics import Diagnostics
     from jacaros.mas.environment import RunEnvironment
     from jacaros.mas.history.explanation import Explanation
     from jacaros.mas.history.history import History
-    from jacaros.trace import Tracer
+    from jacaros.runtime.trace import Tracer
 
 
 OUT_OF_MEMORY = 137

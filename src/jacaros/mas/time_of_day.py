@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile, Span
-from jacaros.text_files import file_text, shown_from
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.files.texts import file_text, shown_from
 
 _INSTEAD: Final = {
     "time": "self.clock.now()",

@@ -11,11 +11,11 @@ from itertools import takewhile
 from pathlib import Path
 from types import FrameType
 
-from jacaros.asl.formatter import format_term
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.applicable_plans import Selection
-from jacaros.bdi.rules.body_steps import Step
-from jacaros.bdi.state.plan import FAILED, Plan
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.add_im import Selection
+from jacaros.agents.mind.rules.body_steps import Step
+from jacaros.agents.mind.state.plan import FAILED, Plan
 from jacaros.mas.agent_host import AgentHost
 
 INTERVAL = 1.0

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from jacaros.asl import nodes
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.loader import read_program
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
+from jacaros.agents.language.loader import read_program
+from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.action_check import artifact_types
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
@@ -16,7 +16,6 @@ from jacaros.mas.source_path import TEST_LIBRARY, SourcePath
 from jacaros.metrics.agentspeak import clauses_of, identifiers_of, names_of
 from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.sources import Sources
-from jacaros.project_modules import ProjectModules
 
 _LIBRARY: Final = "$jacaros/"
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from jacaros.asl import nodes
-from jacaros.asl.checks.formulas import conditions
-from jacaros.asl.lexer import Comment, tokenize
-from jacaros.asl.source import SourceFile
-from jacaros.asl.walk import parts_of, walk
+from jacaros.agents.checks.formulas import conditions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.language.lexer import Comment, tokenize
+from jacaros.agents.language.nodes import parts_of, walk
 from jacaros.metrics.comments import Stretch, line_starts
 
 

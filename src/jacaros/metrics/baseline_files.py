@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.files.texts import is_file
 from jacaros.metrics import python_source
 from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.groups import Group
 from jacaros.metrics.library import Library
 from jacaros.metrics.program_files import absolute_imports, is_launch_file, is_test, source_files
 from jacaros.metrics.sources import PythonFile, Sources
-from jacaros.text_files import is_file
 
 
 def read_baseline(

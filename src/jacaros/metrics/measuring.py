@@ -3,15 +3,15 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from jacaros.asl.diagnostics import Diagnostic, render_all
+from jacaros.agents.language.diagnostics import Diagnostic, render_all
 from jacaros.errors import JacarosError
+from jacaros.files.texts import suggestion
 from jacaros.metrics.baseline_files import read_baseline
 from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.groups import Group, ProgramMetrics
 from jacaros.metrics.library import DEFAULT, Library
 from jacaros.metrics.program_files import ProgramFiles, no_programs
 from jacaros.metrics.sources import Sources
-from jacaros.suggestions import suggestion
 
 
 class MetricsError(JacarosError):

@@ -4,10 +4,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.artifacts.mapping.file import SHIPPED, find_mapping, is_mapping, read_with_problems
 from jacaros.artifacts.registry import type_finder
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile
+from jacaros.files.python_modules import ProjectModules
+from jacaros.files.texts import is_file
+from jacaros.files.yaml import plain_values
 from jacaros.mas.checking import MAPPINGS, PROJECTS, files_below
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.mappings import diagnostics_of
@@ -21,11 +23,8 @@ from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.groups import Group
 from jacaros.metrics.library import Library
 from jacaros.metrics.sources import PythonFile, Sources, counted
-from jacaros.project_modules import ProjectModules
 from jacaros.sim.faults.file import fault_file_problems, is_fault_file
 from jacaros.sim.files.world import is_world, shipped_worlds, world_problems
-from jacaros.text_files import is_file
-from jacaros.yaml_nodes import plain_values
 
 _TEST_FOLDERS: Final = frozenset({"test", "tests"})
 _TEST_MODULES: Final = ("jacaros.testing", "pytest", "unittest")

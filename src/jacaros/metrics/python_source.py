@@ -7,8 +7,7 @@ import warnings
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from jacaros.asl.diagnostics import AslError, Diagnostic
-from jacaros.asl.source import SourceFile, Span
+from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile, Span
 from jacaros.metrics.comments import Stretch, line_starts
 
 _RECEIVERS: Final = frozenset({"self", "cls"})

@@ -4,13 +4,12 @@ import ast
 from pathlib import Path
 from typing import NamedTuple
 
-from jacaros.asl.diagnostics import AslError, Diagnostic
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
+from jacaros.files.texts import file_bytes
 from jacaros.mas.programs import text_of
 from jacaros.metrics import agentspeak, python_source
 from jacaros.metrics.comments import Stretch
 from jacaros.metrics.counted_file import CountedFile
-from jacaros.text_files import file_bytes
 
 
 class PythonFile(NamedTuple):

@@ -10,7 +10,6 @@ from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
 from typing import Any, Protocol
 
-from jacaros.clock import Clock, Timer
 from jacaros.ros.action import SERVER_LOST_AFTER, Outcome
 from jacaros.ros.calling import RETRY, settle
 from jacaros.ros.errors import (
@@ -27,6 +26,7 @@ from jacaros.ros.orphans import Orphans
 from jacaros.ros.pending_goal import ENDING, LeavingGoals, PendingGoal
 from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Absence, Waiting, within
+from jacaros.runtime.clock import Clock, Timer
 
 
 class GoalWire(Protocol):

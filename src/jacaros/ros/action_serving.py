@@ -8,12 +8,12 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Clock, Timer
 from jacaros.ros.action import Abort, ActionPolicy, Execute, GoalStatus, Outcome, ServerGoal
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.message import MessageFactory, field_names
 from jacaros.ros.names import feedback_type, result_type
 from jacaros.ros.serving import checked_message
+from jacaros.runtime.clock import Clock, Timer
 
 PREEMPTED = "preempted by a newer goal"
 CLOSED = "the server was closed"

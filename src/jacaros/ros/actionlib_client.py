@@ -4,7 +4,6 @@ import itertools
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Clock, Timer
 from jacaros.ros.action import GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
@@ -27,6 +26,7 @@ from jacaros.ros.protocols.actionlib import (
     part_type,
 )
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import Clock, Timer
 
 LOOKING = 0.02
 """Seconds between two checks for a server that a caller waits for."""

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_serving import ServedGoals
 from jacaros.ros.actionlib_client import ActionTopicsNode
@@ -24,6 +23,7 @@ from jacaros.ros.protocols.actionlib import (
     part_type,
     time_of,
 )
+from jacaros.runtime.clock import Timer
 
 NO_TIME = (0, 0)
 AFTER_FEEDBACK = 0.01

@@ -10,10 +10,10 @@ from jacaros.ros.middleware import MIDDLEWARES, Middleware, middleware
 
 # Code that only programs with robots need is imported in functions: every run has an address among its options.
 if TYPE_CHECKING:
-    from jacaros.clock import Clock
     from jacaros.ros.backend import Backend
     from jacaros.ros.orphans import OrphanPolicy
     from jacaros.ros.parameter import ParameterValue
+    from jacaros.runtime.clock import Clock
 
 LAST_DOMAIN = 232
 """The highest domain id whose ports all exist (ROS 2 documentation, "The ROS_DOMAIN_ID")."""

@@ -9,14 +9,14 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Protocol
 
-from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters, Parameters
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.trace import Cause, Tracer
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.trace import Cause, Tracer
 
 TOPICS = "topics"
 SERVICES = "services"

@@ -5,13 +5,13 @@ import sys
 from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Clock, Timer
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import request_type
 from jacaros.ros.serving import checked_message
 from jacaros.ros.waiting import Absence, Waiting
+from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
 """Seconds between two checks whether the server of a call is still there."""

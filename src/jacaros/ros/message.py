@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
+from jacaros.files.texts import aside
 from jacaros.ros.errors import MessageMismatch, NameInvalid
 from jacaros.ros.fields import DURATION, TIME, FieldType
 from jacaros.ros.values import array_of_numbers, single_value, written
-from jacaros.suggestions import aside
 
 TIMES = (TIME, DURATION)
 DEFAULTS: Mapping[str, Mapping[str, object]] = {

@@ -7,8 +7,8 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 
+from jacaros.files.texts import close_matches
 from jacaros.ros.errors import NameInvalid
-from jacaros.suggestions import close_matches
 
 _SEGMENT = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*")

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
 from weakref import WeakKeyDictionary
 
-from jacaros.clock import Clock
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
 from jacaros.ros.backend import (
     DEADLINES,
@@ -37,7 +36,8 @@ from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
 from jacaros.ros.waiting import Waiting
-from jacaros.trace import Tracer
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.trace import Tracer
 
 
 def to_stderr(text: str) -> None:

@@ -5,12 +5,12 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from jacaros.clock import Clock
 from jacaros.errors import UsageError
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import BackendUnavailable
 from jacaros.ros.middleware import Middleware, middleware
 from jacaros.ros.node import NodeSettings
+from jacaros.runtime.clock import Clock
 
 
 def open_backend(kind: str, clock: Clock, node_name: str, namespace: str = "", **options: Any) -> Backend:

@@ -5,11 +5,11 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Clock
 from jacaros.ros.action import Outcome
 from jacaros.ros.calling import settle
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.waiting import within
+from jacaros.runtime.clock import Clock
 
 ENDING = 5.0
 """Seconds that a server has to end a goal after a request to cancel."""

@@ -9,10 +9,9 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Timer
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import QoS
-from jacaros.timer_queue import TimerQueue
+from jacaros.runtime.clock import Timer, TimerQueue
 
 CLOCK_TOPIC = "/clock"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"

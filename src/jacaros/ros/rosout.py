@@ -2,11 +2,11 @@
 
 from typing import Any, Protocol
 
-from jacaros.clock import Clock
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import RosError
 from jacaros.ros.names import NodeNames
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import Clock
 
 TOPIC = "/rosout"
 QUALITY = QoS(durability="transient_local", depth=1000)

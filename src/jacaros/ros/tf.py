@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from jacaros.clock import Clock
 from jacaros.ros.backend import Publisher, Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
 from jacaros.ros.message import to_seconds
@@ -12,6 +11,7 @@ from jacaros.ros.protocols.tf_buffer import TransformBuffer
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import Waiting, within
+from jacaros.runtime.clock import Clock
 
 TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)

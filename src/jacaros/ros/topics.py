@@ -13,7 +13,7 @@ from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.node import Node, Wanted
 from jacaros.ros.qos import QoS
 from jacaros.ros.serving import published_message
-from jacaros.trace import CURRENT
+from jacaros.runtime.trace import CURRENT
 
 N = TypeVar("N", bound=Node)
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import TypeVar
 
-from jacaros.clock import Clock, Timer
-from jacaros.excerpts import is_worth_a_line
+from jacaros.files.texts import is_worth_a_line
+from jacaros.runtime.clock import Clock, Timer
 
 T = TypeVar("T")
 

@@ -8,10 +8,10 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from jacaros.excerpts import help_line, printable
+from jacaros.files.texts import help_line, printable
+from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.sim.interface import EVERYTHING, Interface
 from jacaros.sim.trigonometry import PI, radians
-from jacaros.yaml_nodes import Problem, YamlFileError
 
 
 class Segment(NamedTuple):

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from jacaros.errors import JacarosError
+from jacaros.files.texts import file_text
 from jacaros.sim.description import Pose
-from jacaros.text_files import file_text
 
 Record = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""

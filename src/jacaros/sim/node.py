@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import cast
 
-from jacaros.clock import Clock, Timer
 from jacaros.ros.backend import Backend
+from jacaros.runtime.clock import Clock, Timer
 from jacaros.sim.door_server import DoorServer
 from jacaros.sim.faults.graph import FaultyGraph
 from jacaros.sim.map_server import MapServer

@@ -11,11 +11,11 @@ from io import FileIO
 from pathlib import Path
 from types import FrameType, TracebackType
 
-from jacaros.clock import Clock, Timer
-from jacaros.output import Output
 from jacaros.ros import lifetime
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
+from jacaros.runtime.clock import Clock, Timer
+from jacaros.runtime.output import Output
 from jacaros.sim.ground_truth import Record, event_record, header
 from jacaros.sim.node import SimNode
 from jacaros.sim.world import World

@@ -2,7 +2,7 @@
 
 import math
 
-from jacaros.clock import Clock
+from jacaros.runtime.clock import Clock
 from jacaros.sim.world import STEP, World
 
 SET_BACK = 0.1

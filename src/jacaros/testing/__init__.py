@@ -10,11 +10,20 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.running_agent import PursuedGoal
     from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
-    from jacaros.testing.outcomes import Outcome, Problem, SuiteOutcome, write_junit
     from jacaros.testing.paths import Verdict, judge
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
-    from jacaros.testing.run import RunResult, run_project
-    from jacaros.testing.suites import AgentTest, Suite, collect, suite_of
+    from jacaros.testing.run import (
+        AgentTest,
+        Outcome,
+        Problem,
+        RunResult,
+        Suite,
+        SuiteOutcome,
+        collect,
+        run_project,
+        suite_of,
+        write_junit,
+    )
     from jacaros.testing.trial import TrialOptions, run_suite
 
 __all__ = [

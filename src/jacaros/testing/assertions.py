@@ -10,13 +10,13 @@ from itertools import groupby
 from types import MappingProxyType
 from typing import Final
 
-from jacaros.bdi.actions.internal_action import ActionError, InternalAction, WrongArguments, members
-from jacaros.bdi.rules.context import Context
+from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, WrongArguments, members
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.terms.substitution import equal
+from jacaros.agents.terms.text import display, text
+from jacaros.agents.terms.unifier import undo
+from jacaros.agents.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
 from jacaros.errors import InternalError
-from jacaros.terms.substitution import equal
-from jacaros.terms.text import display, text
-from jacaros.terms.unifier import undo
-from jacaros.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
 from jacaros.testing.probe import Asserting, Probe
 from jacaros.testing.recorded import matches
 

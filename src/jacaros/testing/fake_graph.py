@@ -7,6 +7,8 @@ from typing import Any
 
 from jacaros.artifacts.mapping.encoding import builder
 from jacaros.artifacts.mapping.read_operations import read_values
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Problem, read_document
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.backend import Publisher, Sample, Service
 from jacaros.ros.drivers.memory.services import MemoryClient
@@ -14,8 +16,6 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.message import to_seconds
 from jacaros.ros.names import message_type, request_type, response_type, service_type
 from jacaros.ros.qos import LATCHED, QoS
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Problem, read_document
 
 NODE = "test"
 """Name of the fake node."""

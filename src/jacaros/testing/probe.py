@@ -6,11 +6,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from jacaros.asl.source import Span
-from jacaros.bdi.actions.internal_action import ActionError
-from jacaros.bdi.explaining.failure_reason import place_of_call
-from jacaros.bdi.rules.context import Context
-from jacaros.bdi.state.intention import GOAL, PLAN
+from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.mind.actions.internal_action import ActionError
+from jacaros.agents.mind.explaining.failure_reason import place_of_call
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.state.intention import GOAL, PLAN
 from jacaros.testing.recorded import Fakes
 
 if TYPE_CHECKING:

@@ -6,15 +6,14 @@ A fake answers external actions instead of an environment.
 from collections.abc import Callable
 from typing import NamedTuple
 
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.state.act import Act, Completion
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.body.values import References, to_term, to_value
-from jacaros.terms.substitution import free_variables, rename, resolve
-from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import ACTION, String, Term, Var, atom, functor, functor_of
+from jacaros.agents.body.values import References, to_term, to_value
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import Act, Completion, SpeechAct
+from jacaros.agents.terms.substitution import free_variables, rename, resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import ACTION, String, Term, Var, atom, functor, functor_of
 
 ERROR_MSG = functor("error_msg", 1)
 REASON = functor("env_failure_reason", 1)
@@ -52,8 +51,8 @@ class RecordedAct:
 
     Attributes:
         name: name of the action.
-        arguments: plain values (numbers, strings, `jacaros.env.values.Atom`, `Structure`, lists); None for an output.
-        pending: whether the action has not ended yet.
+        arguments: plain values (numbers, strings, `jacaros.artifacts.env.values.Atom`, `Structure`, lists); None for an
+        output. pending: whether the action has not ended yet.
         cancelled: whether its intention was dropped.
         paused: whether its intention is suspended.
     """

@@ -1,15 +1,33 @@
 """Run a whole project in a test, on virtual time."""
 
-from collections.abc import Callable
+import os
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
+from xml.etree import ElementTree
 
-from jacaros.errors import JacarosError
-from jacaros.mas.deployment import Deployment
+from jacaros.agents.checks.formulas import labelled
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, Diagnostic, Span, excerpt
+from jacaros.agents.language.loader import load_program, parse_literals
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import rebuilt
+from jacaros.errors import JacarosError, UsageError
+from jacaros.files.python_modules import ProjectModules
+from jacaros.files.texts import file_text, help_line, is_file
+from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.launch import launch
+from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
+from jacaros.mas.programs import Programs
+from jacaros.mas.python_code import PythonCode
+from jacaros.mas.source_path import PROJECTS, SourcePath, project_folders, source_folders
 from jacaros.mas.system import System
+from jacaros.testing.assertions import UNTESTED
+from jacaros.testing.probe import Assertion
 
 TEST_RUN: Final = RunOptions(fast=True, seed=0, keep_ground_truth=True)
 """Default options of a run in a test."""
@@ -88,3 +106,497 @@ def run_project(
         result.seconds = mas.clock.now() - began
         result.ground_truth = mas.ros.world.ground_truth if mas.ros.world is not None else None
     return result
+
+
+# Find agent tests: plans labelled ``test`` in programs and projects.
+#
+# A plan for an achievement goal whose label has the annotation ``test`` is a test::
+#
+# @charges_when_low[test]
+# +!test_charging <- ... .
+#
+# ``[test, timeout(2000)]`` sets its time limit in milliseconds; ``[test, mapping("robot.yaml")]`` adds the artifacts of a
+# mapping file, in a ROS graph without a robot.
+#
+# In a folder and its subfolders, test files are the programs that contain such a plan, and the projects (`.jcm`, `.mas2j`)
+# named ``test_...`` or ``..._test``, whose agents are all searched. A program named ``test_...`` or ``..._test`` that
+# cannot be read is a test file, too.
+
+
+LIBRARY: Final = "tester_agent.asl"
+_HARNESS_GOAL: Final = "execute_test_plans"
+_LABELLED: Final = re.compile(r"@[\w.]*\s*\[[^\]]*\btest\b")
+_COMMENT: Final = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_NAMED_TEST: Final = re.compile(r"test_.*|.*_test")
+
+
+@dataclass(frozen=True)
+class AgentTest:
+    """One test.
+
+    Attributes:
+        name: label of the plan, or the goal if the plan has no label of its own.
+        agent: name of the agent that receives the goal.
+        goal: goal to achieve.
+        span: place of the plan.
+        timeout: time limit in seconds; None for the default.
+        mappings: mapping files whose artifacts the run creates.
+    """
+
+    name: str
+    agent: str
+    goal: nodes.Literal
+    span: Span | None
+    timeout: float | None = None
+    mappings: tuple[str, ...] = ()
+
+
+@dataclass
+class Suite:
+    """The tests of one program or project.
+
+    Attributes:
+        path: path of the file.
+        tests: tests in the order of the program.
+        deployment: what to run for each test; None if the file has errors.
+        error: why the file cannot be run.
+        warnings: warnings about its programs.
+    """
+
+    path: Path
+    tests: list[AgentTest] = field(default_factory=list)
+    deployment: Deployment | None = None
+    error: str | None = None
+    warnings: list[str] = field(default_factory=list)
+
+
+def with_assertions(program: nodes.Program) -> nodes.Program:
+    """Return a program prepared for tests: with all assertion goals, without the initial goal of Jason's test harness."""
+    labels = {plan.label.functor for plan in program.plans if isinstance(plan.label, nodes.Literal)}
+    added = tuple(plan for plan in _library() if _label(plan) not in labels)
+    goals = tuple(goal for goal in program.goals if goal.functor != _HARNESS_GOAL)
+    return replace(program, goals=goals, plans=(*program.plans, *added))
+
+
+@cache
+def _library() -> tuple[nodes.Plan, ...]:
+    """Return the assertion goals, and the rest of Jason's test harness."""
+    library = SourcePath(())
+    return load_program(*library.include(f"$jacaros/{LIBRARY}", "<tests>"), library.include)[0].plans
+
+
+def collect(paths: Sequence[Path]) -> list[Suite]:
+    """Return the suites in files and folders, in order and without repetition.
+
+    Files that cannot be read become suites with a `Suite.error`.
+
+    Raises:
+        UsageError: a path does not exist, or is not a program, a project or a folder.
+    """
+    found: dict[Path, Suite] = {}
+    for path in paths:
+        for suite in _in_folder(path) if path.is_dir() else _of_file(path):
+            found.setdefault(suite.path.resolve(), suite)
+    _without_repetitions(list(found.values()))
+    return list(found.values())
+
+
+def suite_of(path: Path) -> Suite:
+    """Return the suite of one program or project file."""
+    suite = Suite(path)
+    try:
+        deployment = load_deployment(path) if path.suffix in PROJECTS else _lone(path)
+        texts = _programs(deployment, suite.warnings.append)
+        problems: list[Diagnostic] = []
+        declared: set[str] = set()
+        for spec, program in zip(deployment.agents, texts, strict=True):
+            if spec.declared_name not in declared:
+                declared.add(spec.declared_name)
+                suite.tests += _tests(spec.name, program, problems)
+        suite.warnings += [each.render() for each in problems if each.severity == "warning"]
+        wrong = [each for each in problems if each.severity == "error"]
+        if wrong:
+            raise AslError(wrong)
+        suite.deployment = deployment
+    except JacarosError as fault:
+        suite.tests.clear()
+        suite.error = str(fault)
+    return suite
+
+
+def is_test_file(path: Path) -> bool:
+    """Return whether a program or project in a folder is a test file; see the module docstring."""
+    if path.suffix in PROJECTS:
+        return bool(_NAMED_TEST.fullmatch(path.stem))
+    if path.suffix != ".asl":
+        return False
+    try:
+        text = file_text(path)
+    except (OSError, UnicodeError):
+        return bool(_NAMED_TEST.fullmatch(path.stem))
+    if _LABELLED.search(_COMMENT.sub("", text)):
+        return True
+    return bool(_NAMED_TEST.fullmatch(path.stem)) and suite_of(path).error is not None
+
+
+def _in_folder(folder: Path) -> Iterator[Suite]:
+    projects: list[Path] = []
+    programs: list[Path] = []
+    for file in _files(folder):
+        (projects if file.suffix in PROJECTS else programs).append(file)
+    suites = [suite_of(file) for file in projects]
+    # Programs that a test project runs are not run again as single programs.
+    run = {
+        spec.source_path.resolve()
+        for suite in suites
+        if suite.deployment is not None
+        for spec in suite.deployment.agents
+    }
+    suites += [suite_of(file) for file in programs if file.resolve() not in run]
+    yield from sorted(suites, key=lambda suite: suite.path)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        for name in sorted(names):
+            file = Path(place) / name
+            if file.suffix in (".asl", *PROJECTS) and is_test_file(file):
+                yield file
+
+
+def _of_file(path: Path) -> Iterator[Suite]:
+    if path.suffix not in (".asl", *PROJECTS):
+        raise UsageError(
+            f"error: unsupported file type: `{path}`\n{help_line('expected .asl, .mas2j, .jcm or a folder')}"
+        )
+    if not is_file(path):
+        raise UsageError(f"error: file not found: `{path}`")
+    suite = suite_of(path)
+    folders = list(_folders_of_the_manager(suite))
+    if suite.tests or suite.error or not folders:
+        yield suite
+    for folder in folders:
+        yield from _in_folder(folder)
+
+
+def _folders_of_the_manager(suite: Suite) -> Iterator[Path]:
+    """Yield the folders that a test project of Jason names in the goal of its agent test_manager."""
+    if suite.deployment is None:
+        return
+    for spec in suite.deployment.agents:
+        for goal in parse_literals(spec.goals) if spec.goals.strip() else ():
+            if goal.functor == "create_tester_agents" and isinstance(goal.arguments[0], nodes.String):
+                written = goal.arguments[0].value
+                # Jason searches the folder in which it is started.
+                folders = (suite.deployment.base_path / written, Path(written))
+                yield from [folder for folder in folders if folder.is_dir()][:1]
+
+
+def _without_repetitions(suites: list[Suite]) -> None:
+    """Drop tests from included files that are suites themselves."""
+    own = {suite.path.resolve() for suite in suites if suite.path.suffix == ".asl"}
+    for suite in suites:
+        if suite.path.suffix == ".asl":
+            others = own - {suite.path.resolve()}
+            suite.tests = [test for test in suite.tests if _file_of(test) not in others]
+
+
+def _file_of(test: AgentTest) -> Path | None:
+    return Path(test.span.file.name).resolve() if test.span is not None else None
+
+
+# programs
+
+
+def _programs(deployment: Deployment, warn: Callable[[str], None]) -> list[nodes.Program]:
+    """Read the programs of all agents.
+
+    Raises:
+        AslError: with the errors of all programs.
+    """
+    code = PythonCode(ProjectModules(deployment.base_path, *deployment.source_paths))
+    code.actions.update(UNTESTED)
+    programs = Programs(deployment.source_paths, warn, code, lambda program, _: with_assertions(program))
+    return programs.load_all(deployment.agents)
+
+
+def _lone(path: Path) -> Deployment:
+    """Return the deployment of a single program; its project is searched in the folders above."""
+    folders = project_folders(path.parent)
+    base = next((folder for folder in folders if has_own_artifacts(folder)), folders[-1])
+    agent = AgentSpec(path.stem, path, path.stem)
+    sources = source_folders(path.parent, above=folders[1:])
+    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=sources)
+
+
+def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> Iterator[AgentTest]:
+    known: dict[str, nodes.Plan] = {}
+    for plan in program.plans:
+        if not _marks(plan, "test"):
+            continue
+        literal = plan.trigger.literal
+        if plan.trigger.operator + plan.trigger.kind != "+!" or not isinstance(literal, nodes.Literal):
+            help = "as in @name[test] +!goal <- ..."
+            problems.append(Diagnostic("error", "a test is a plan for a goal", plan.span, help))
+            continue
+        goal = nodes.replace(literal, annotations=None)
+        signature = _signature(goal)
+        first = known.setdefault(signature, plan)
+        if first is not plan:
+            # Several plans for one goal are alternatives of one test, unless the first one is always applicable.
+            if first.context is not None:
+                continue
+            message = f"unreachable test: an earlier plan for !{signature} is always applicable"
+            problems.append(Diagnostic("warning", message, plan.span, "give the test a different goal"))
+        mappings = tuple(_mappings(plan, problems))
+        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(plan), mappings)
+
+
+def _marks(plan: nodes.Plan, functor: str) -> list[nodes.Literal]:
+    """Return the annotations of a plan's label with that functor."""
+    return [annotation for annotation in labelled(plan) if annotation.functor == functor]
+
+
+def _timeout(plan: nodes.Plan) -> float | None:
+    for mark in _marks(plan, "timeout"):
+        match mark.arguments:
+            case (nodes.Number(value=milliseconds),):
+                return milliseconds / 1000.0
+    return None
+
+
+def _mappings(plan: nodes.Plan, problems: list[Diagnostic]) -> Iterator[str]:
+    """Yield the mapping files of a test: next to its file, in the current folder, or shipped with the package."""
+    for mark in _marks(plan, "mapping"):
+        for argument in mark.arguments or (None,):
+            if not isinstance(argument, nodes.String):
+                message = "mapping(...) expects a file name"
+                problems.append(
+                    Diagnostic("error", message, plan.span, 'as in @name[test, mapping("robot.yaml")]')
+                )
+                continue
+            beside = Path(plan.span.file.name).parent / argument.value if plan.span is not None else None
+            yield str(beside) if beside is not None and is_file(beside) else argument.value
+
+
+def _label(plan: nodes.Plan) -> str | None:
+    return plan.label.functor if isinstance(plan.label, nodes.Literal) else None
+
+
+def _name(plan: nodes.Plan, goal: nodes.Literal) -> str:
+    label = _label(plan)
+    return goal.functor if label is None or label.startswith("p__") else label
+
+
+def _signature(goal: nodes.Literal) -> str:
+    """Return the goal as text, with all variables written alike."""
+    return format_term(rebuilt(goal, lambda node: _ANY if isinstance(node, nodes.Variable) else node))
+
+
+_ANY: Final = nodes.Variable("_")
+
+
+# Outcomes of tests: as data, as text and as JUnit XML.
+
+
+Paint = Callable[[str, str], str]
+"""``paint(text, kind)``: returns *text* in the colour of *kind*: ``passed``, ``failed``, ``place`` or ``quiet``."""
+
+_WORTH_TELLING = 0.5
+"""Seconds: faster tests are not listed as slow."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One reason why a test failed.
+
+    Attributes:
+        message: the error, in one line.
+        details: further lines, such as the expected value.
+        span: place in the program; None if unknown.
+    """
+
+    message: str
+    details: tuple[str, ...] = ()
+    span: Span | None = None
+
+    @staticmethod
+    def of(assertion: Assertion) -> "Problem":
+        """Return the problem for a failed assertion."""
+        details = []
+        if assertion.expected:
+            details.append(f"expected  {assertion.expected}")
+        if assertion.actual:
+            details.append(f"{'but' if assertion.expected else 'because':9} {assertion.actual}")
+        return Problem(f"{assertion.name} failed", tuple(details), assertion.span)
+
+    def lines(self) -> list[str]:
+        """Return the problem as text: place and message, source line, details."""
+        place = (
+            f"{self.span.file.name}:{self.span.line}:{self.span.column}: " if self.span is not None else ""
+        )
+        shown = excerpt(self.span) if self.span is not None else []
+        return [f"{place}{self.message}", *shown, *(f"  {detail}" for detail in self.details)]
+
+
+@dataclass(slots=True)
+class Outcome:
+    """The outcome of one test.
+
+    Attributes:
+        problems: reasons for the failure; empty if the test passed.
+        assertions: number of assertions evaluated.
+        output: output of agents and log lines, in order.
+        seconds: duration on the wall clock.
+        simulated: duration on the clock of the run, in seconds.
+    """
+
+    test: AgentTest
+    problems: list[Problem] = field(default_factory=list)
+    assertions: int = 0
+    output: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+    simulated: float = 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether the test passed."""
+        return not self.problems
+
+    def lines(self) -> list[str]:
+        """Return all problems and the output as text."""
+        found = [line for problem in self.problems for line in problem.lines()]
+        if self.output:
+            found += ["printed:", *(f"  {line}" for text in self.output for line in text.splitlines())]
+        return found
+
+
+@dataclass(slots=True)
+class SuiteOutcome:
+    """The outcomes of the tests of one file, in the order in which they ran."""
+
+    suite: Suite
+    outcomes: list[Outcome] = field(default_factory=list)
+
+    @property
+    def path(self) -> Path:
+        return self.suite.path
+
+    @property
+    def passed(self) -> bool:
+        """Whether the file could be run and none of its tests failed."""
+        return self.suite.error is None and all(outcome.passed for outcome in self.outcomes)
+
+
+def line_of(outcome: Outcome, paint: Paint, timed: bool) -> str:
+    """Return the line of one test, with its duration if *timed*."""
+    verdict = paint("ok    ", "passed") if outcome.passed else paint("FAILED", "failed")
+    took = paint(f"  {outcome.seconds:.2f} s", "quiet") if timed else ""
+    return f"  {verdict}  {outcome.test.name}{took}"
+
+
+def failures(suites: Sequence[SuiteOutcome], paint: Paint) -> Iterator[str]:
+    """Yield the lines about failures."""
+    for suite in suites:
+        if suite.suite.error is not None:
+            yield from ("", paint(f"{suite.path}: cannot run the file", "failed"), suite.suite.error)
+        for outcome in suite.outcomes:
+            if not outcome.passed:
+                yield from ("", paint(f"{suite.path}::{outcome.test.name}", "failed"))
+                yield from (f"  {line}" for line in outcome.lines())
+
+
+def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
+    """Yield the lines about the slowest tests."""
+    outcomes = [(outcome, suite) for suite in suites for outcome in suite.outcomes]
+    outcomes.sort(key=lambda pair: -pair[0].seconds)
+    slow = [pair for pair in outcomes[:number] if pair[0].seconds >= _WORTH_TELLING]
+    if slow:
+        yield from ("", "slowest:")
+    for outcome, suite in slow:
+        simulated = f" ({outcome.simulated:.1f} s simulated)" if outcome.simulated >= 1.0 else ""
+        yield f"  {outcome.seconds:6.2f} s  {suite.path}::{outcome.test.name}{simulated}"
+
+
+def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> str:
+    """Return the last line, with the counts."""
+    outcomes = [outcome for suite in suites for outcome in suite.outcomes]
+    failed = sum(not outcome.passed for outcome in outcomes)
+    errors = sum(suite.suite.error is not None for suite in suites)
+    counts = [f"{len(outcomes) - failed} passed"]
+    if failed:
+        counts.append(f"{failed} failed")
+    if errors:
+        counts.append(f"{errors} {'file' if errors == 1 else 'files'} cannot be run")
+    assertions = sum(outcome.assertions for outcome in outcomes)
+    text = f"{', '.join(counts)}; {assertions} assertions, seed {seed}"
+    return paint(text, "failed" if failed or errors else "passed")
+
+
+_UNFIT = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML does not allow."""
+
+
+def write_junit(path: Path, suites: Sequence[SuiteOutcome]) -> None:
+    """Write outcomes as JUnit XML to *path*, creating its folder.
+
+    A file that could not be run becomes one test case with an error.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    root = ElementTree.Element("testsuites", _counts(suites), name="jacaros")
+    for suite in suites:
+        counts = _counts([suite])
+        element = ElementTree.SubElement(root, "testsuite", counts, name=str(suite.path))
+        if suite.suite.error is not None:
+            case = _case(element, suite, "the file", 0.0)
+            _text(ElementTree.SubElement(case, "error", message="cannot run the file"), suite.suite.error)
+        for outcome in suite.outcomes:
+            _add(element, suite, outcome)
+    ElementTree.indent(root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _counts(suites: Sequence[SuiteOutcome]) -> dict[str, str]:
+    outcomes = [outcome for suite in suites for outcome in suite.outcomes]
+    errors = sum(suite.suite.error is not None for suite in suites)
+    return {
+        "tests": str(len(outcomes) + errors),
+        "failures": str(sum(not outcome.passed for outcome in outcomes)),
+        "errors": str(errors),
+        "skipped": "0",
+        "time": f"{sum(outcome.seconds for outcome in outcomes):.3f}",
+    }
+
+
+def _add(element: ElementTree.Element, suite: SuiteOutcome, outcome: Outcome) -> None:
+    case = _case(element, suite, outcome.test.name, outcome.seconds)
+    case.set("assertions", str(outcome.assertions))
+    if outcome.test.span is not None:
+        case.set("file", outcome.test.span.file.name)
+        case.set("line", str(outcome.test.span.line))
+    if outcome.problems:
+        failure = ElementTree.SubElement(case, "failure", message=_fit(outcome.problems[0].message))
+        _text(failure, "\n".join(line for problem in outcome.problems for line in problem.lines()))
+    if outcome.output:
+        _text(ElementTree.SubElement(case, "system-out"), "\n".join(outcome.output))
+
+
+def _case(
+    element: ElementTree.Element, suite: SuiteOutcome, name: str, seconds: float
+) -> ElementTree.Element:
+    group = ".".join(part for part in suite.path.with_suffix("").parts if part not in ("/", "..", "."))
+    return ElementTree.SubElement(
+        element, "testcase", classname=group, name=name, time=f"{seconds:.3f}", file=str(suite.path)
+    )
+
+
+def _text(element: ElementTree.Element, text: str) -> None:
+    element.text = _fit(text)
+
+
+def _fit(text: str) -> str:
+    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)

@@ -10,17 +10,16 @@ from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from jacaros.alarm import Alarm
-from jacaros.asl import nodes
-from jacaros.asl.lowering import lower_value
-from jacaros.asl.source import Span
-from jacaros.bdi.explaining.failure_reason import FailureReason
-from jacaros.bdi.explaining.lost_goals import details
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.watched import WatchedGoal
-from jacaros.bdi.state.intention import PLAN, STEP, Intention
-from jacaros.bdi.state.pending import is_action
-from jacaros.clock import Clock, VirtualClock, WallClock, run
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.explaining.failure_reason import FailureReason
+from jacaros.agents.mind.explaining.lost_goals import details
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.goals import WatchedGoal
+from jacaros.agents.mind.state.intention import PLAN, STEP, Intention
+from jacaros.agents.mind.state.pending import is_action
+from jacaros.agents.terms.text import text
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment, ProjectError
@@ -29,12 +28,11 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
-from jacaros.terms.text import text
+from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
 from jacaros.testing.assertions import actions
-from jacaros.testing.outcomes import Outcome, Problem
 from jacaros.testing.probe import Assertion, Probe
 from jacaros.testing.recorded import Fakes
-from jacaros.testing.suites import AgentTest, Suite, with_assertions
+from jacaros.testing.run import AgentTest, Outcome, Problem, Suite, with_assertions
 
 if TYPE_CHECKING:
     from jacaros.testing.fake_graph import FakeGraph

@@ -5,9 +5,9 @@ from typing import Any, ClassVar
 from fake_actions import FakeServer
 from robot_lab import Lab, Run
 
+from jacaros.artifacts import Out, internal_operation, operation
 from jacaros.artifacts.kit.options import number, positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import Out, internal_operation, operation
 from jacaros.ros.errors import CallTimedOut
 
 ACTION = "nav2_msgs/action/NavigateToPose"

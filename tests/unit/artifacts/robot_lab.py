@@ -5,8 +5,7 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from jacaros.clock import VirtualClock, run
-from jacaros.env import (
+from jacaros.artifacts import (
     Artifact,
     ArtifactId,
     Environment,
@@ -17,6 +16,7 @@ from jacaros.env import (
 )
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 from jacaros.sim.files.world import load_world
 

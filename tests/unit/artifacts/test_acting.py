@@ -8,9 +8,9 @@ from fake_actions import FakeServer
 from navigator import Navigator, begun, failed, succeeded
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.kit.acting import ACCEPTANCE, error_code, missing_number
 from jacaros.artifacts.kit.connection import GUARD_TIMEOUT
-from jacaros.env import Out, Structure
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.guarded import guarded_by
 

@@ -5,8 +5,8 @@ import math
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan, sampled
-from jacaros.env import Out, Structure
 
 
 def scan(lab: Lab, ranges: list[float], topic: str = "/scan", longest: float = 8.0) -> None:

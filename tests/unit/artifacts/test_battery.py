@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.robots.battery import ArtSimBattery, diagnosis
 from jacaros.artifacts.robots.velocity import ArtCmdVelMuxAndOdometry
-from jacaros.env import Out, Structure
 from jacaros.inspector.graph_scene import SeenRobot
 from jacaros.ros.backend import Backend
 

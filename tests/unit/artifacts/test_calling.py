@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import Out, operation
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.open import open_backend
 

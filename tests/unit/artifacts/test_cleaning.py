@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Environment, Out, Structure
+from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Environment, Out, Structure
-from jacaros.env.errors import OperationFailed
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def heard(lab: Lab, topic: str = "/cleaning/task") -> list[str]:

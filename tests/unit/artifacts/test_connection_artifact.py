@@ -6,13 +6,13 @@ from typing import Any
 
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Environment, Out, Structure
 from jacaros.artifacts.registry import find_type
 from jacaros.artifacts.robots.connection_artifact import ArtRos
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Environment, Out, Structure
 from jacaros.ros.open import open_backend
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.ros_clock import RosClock
+from jacaros.runtime.clock import VirtualClock, run
 
 
 async def other_node(lab: Lab, name: str) -> Any:

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Structure
 from jacaros.artifacts.robots import drift
 from jacaros.artifacts.robots.control import Pose, Velocity
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.env import Structure
 
 SLIPPERY = """
 seed: 3

@@ -3,8 +3,8 @@
 import pytest
 from robot_lab import STANDSTILL, Lab, apart, assert_at, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.env import Out, Structure
 
 ON_MAP = Structure("frame", ("map",))
 NOISE = "{noise_per_metre: 0.05, noise_degrees_per_turn: 5, noise_degrees_per_metre: 3}"

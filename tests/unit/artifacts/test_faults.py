@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, Watcher, in_lab
 
+from jacaros.artifacts import Atom, Structure
 from jacaros.artifacts.kit.faults import FAR, SILENCE, Faults, Stamps
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.laser import ArtBaseScan
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
-from jacaros.clock import VirtualClock
-from jacaros.env import Atom, Structure
+from jacaros.runtime.clock import VirtualClock
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 

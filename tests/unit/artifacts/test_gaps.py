@@ -5,12 +5,12 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.robots.motion_claim import GUARD_TRIPPED
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.clock import VirtualClock
-from jacaros.env.values import Structure
 from jacaros.ros.drivers.memory.graph import delayed, dropped
 from jacaros.ros.guarded import guarded_by
+from jacaros.runtime.clock import VirtualClock
 
 A_SECOND = 1000 * VirtualClock.CYCLES_PER_MILLISECOND
 """Cycles of agents that move the virtual clock by a second, while nothing else has a turn."""

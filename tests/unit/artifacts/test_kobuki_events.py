@@ -3,8 +3,8 @@
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Structure
 from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
-from jacaros.env import Structure
 
 
 def send(lab: Lab, topic: str, kind: str, **fields: int) -> None:

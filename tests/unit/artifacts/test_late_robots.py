@@ -13,7 +13,7 @@ import pytest
 
 import jacaros
 from jacaros import Mas
-from jacaros.env.values import Structure
+from jacaros.artifacts.env.values import Structure
 
 TRACK = 0.23
 STEP = 0.01

@@ -2,8 +2,8 @@
 
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import internal_operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import internal_operation
 from jacaros.ros.backend import Sample
 
 

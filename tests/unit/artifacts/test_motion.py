@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 from robot_lab import STANDSTILL, Lab, apart, assert_at, in_lab
 
+from jacaros.artifacts import OperationFailed, Out, Structure
 from jacaros.artifacts.robots.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
@@ -13,7 +14,6 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelMuxAndOdometry,
     ArtVelocity,
 )
-from jacaros.env import OperationFailed, Out, Structure
 from jacaros.ros.backend import Sample
 
 # Accuracy.

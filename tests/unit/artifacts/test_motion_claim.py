@@ -2,11 +2,11 @@
 
 import asyncio
 
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.robots.motion_claim import Claim, Motions, motions_of
-from jacaros.clock import VirtualClock, WallClock, run
-from jacaros.env.values import Structure
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import RosClock
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 
 def test_a_wake_up_before_the_wait_is_not_lost() -> None:

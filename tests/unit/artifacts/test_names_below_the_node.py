@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 from robot_lab import Lab
 
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.clock import VirtualClock, run
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 

@@ -5,11 +5,11 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import OperationFailed, Out, Structure
 from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.env import OperationFailed, Out, Structure
 from jacaros.ros.drivers.memory.backend import MemoryBackend
-from jacaros.trace import Cause
+from jacaros.runtime.trace import Cause
 
 
 def test_verbose_odometry_gives_one_change_and_no_signal_for_each_new_message() -> None:

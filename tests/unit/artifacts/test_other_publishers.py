@@ -5,10 +5,10 @@ from typing import Any
 
 from robot_lab import TWIST, Lab, in_lab
 
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.env.values import Structure
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 

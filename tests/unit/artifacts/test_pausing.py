@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from robot_lab import STANDSTILL, Lab, assert_at, in_lab
 
+from jacaros.artifacts import Structure
 from jacaros.artifacts.robots.velocity import ArtCmdVel, ArtCmdVelMux, ArtCmdVelMuxAndOdometry
-from jacaros.env import Structure
 
 
 def test_a_drive_continues_with_the_remaining_distance() -> None:

@@ -2,8 +2,8 @@
 
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.thesis.perception import ArtPerception
-from jacaros.env import Out, Structure
 
 
 def test_the_texts_of_the_newest_message_are_properties() -> None:

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from jacaros.artifacts import Atom, Structure
 from jacaros.artifacts.kit.options import WrongOption, read_arguments
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, Values
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Atom, Structure
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Passed:

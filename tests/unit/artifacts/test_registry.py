@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
+from jacaros.artifacts import Artifact, Environment, InvalidArtifact, UnknownArtifactType
 from jacaros.artifacts.registry import BUILT_IN, find_type, type_finder
 from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Artifact, Environment, InvalidArtifact, UnknownArtifactType
-from jacaros.project_modules import ModuleUnreadable
+from jacaros.files.python_modules import ModuleUnreadable
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 
 COUNTER = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Counter(Artifact):
     SIZE = {size}
@@ -50,7 +50,7 @@ def test_a_dotted_python_path_is_imported() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["os.path", "json.JSONDecoder", "jacaros.env.Artifact", "nowhere.Thing", "a b.C", ""]
+    "name", ["os.path", "json.JSONDecoder", "jacaros.artifacts.Artifact", "nowhere.Thing", "a b.C", ""]
 )
 def test_other_names_are_unknown_artifact_types(name: str) -> None:
     with pytest.raises(UnknownArtifactType):
@@ -108,8 +108,8 @@ def test_a_package_of_artifacts_is_searched_file_by_file(tmp_path: Path, entry: 
 
 
 def test_a_dotted_name_leads_to_a_module_beside_the_project(tmp_path: Path) -> None:
-    (tmp_path / "board.py").write_text("from jacaros.env import Artifact\nclass Board(Artifact): ...\n")
-    (tmp_path / "broken.py").write_text("from jacaros.env import Artifact\nclass Broken(Artifact:\n")
+    (tmp_path / "board.py").write_text("from jacaros.artifacts import Artifact\nclass Board(Artifact): ...\n")
+    (tmp_path / "broken.py").write_text("from jacaros.artifacts import Artifact\nclass Broken(Artifact:\n")
     find = type_finder(tmp_path)
     assert find("board.Board").__name__ == "Board"
     with pytest.raises(UnknownArtifactType):

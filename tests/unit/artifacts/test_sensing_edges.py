@@ -7,6 +7,7 @@ from fake_actions import FakeServer
 from navigator import Navigator, failed, succeeded, suspended
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
 from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.sensing_artifact import RangeOfView
@@ -20,8 +21,7 @@ from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.artifacts.mapping.rows import extractor
 from jacaros.artifacts.mapping.units import Line, conversion
 from jacaros.artifacts.robots.control import Pose
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Out, Structure
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def test_a_number_that_appears_or_disappears_differs_whatever_the_dead_band_is() -> None:

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import ArtifactId, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import ArtifactId, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.ros.action import ActionPolicy, GoalStatus
 from jacaros.ros.errors import CallFailed
 

@@ -5,8 +5,8 @@ from fake_actions import FakeServer
 from navigator import Navigator, begun, failed, succeeded, suspended
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Structure
 from jacaros.artifacts.kit.acting import ENDING
-from jacaros.env import Structure
 from jacaros.ros.action import GoalStatus
 
 

@@ -2,10 +2,17 @@
 
 import pytest
 
+from jacaros.artifacts import (
+    Artifact,
+    ArtifactId,
+    Environment,
+    Observation,
+    OperationOutcome,
+    OperationRequest,
+)
 from jacaros.artifacts.registry import find_type
 from jacaros.artifacts.tools import Barrier, Clock, Latch
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Artifact, ArtifactId, Environment, Observation, OperationOutcome, OperationRequest
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Watcher:

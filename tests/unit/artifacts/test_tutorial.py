@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.thesis.tutorial import ArtTutorial
-from jacaros.env import Out, Structure
 
 ADD = "example_interfaces/srv/AddTwoInts"
 

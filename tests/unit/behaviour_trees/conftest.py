@@ -6,9 +6,9 @@ import py_trees
 import pytest
 from py_trees.composites import Selector, Sequence
 
+from jacaros.artifacts import Artifact, Atom, Environment, Out, Session, operation
 from jacaros.behaviour_trees import TreeRunner
-from jacaros.clock import VirtualClock, run
-from jacaros.env import Artifact, Atom, Environment, Out, Session, operation
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Cart(Artifact):

@@ -6,8 +6,8 @@ import pytest
 from py_trees.blackboard import Blackboard
 from py_trees.common import Status
 
+from jacaros.artifacts import Out, Structure
 from jacaros.behaviour_trees import Act, Failure, FromBlackboard, HasProperty, PropertyCheck, ToBlackboard
-from jacaros.env import Out, Structure
 
 
 def test_an_operation_runs_and_succeeds(on_rails):

@@ -5,8 +5,8 @@ import asyncio
 import pytest
 from py_trees.common import Status
 
+from jacaros.artifacts import Artifact, operation
 from jacaros.behaviour_trees import Act, PropertyCheck
-from jacaros.env import Artifact, operation
 
 
 class Wheels(Artifact):

@@ -7,6 +7,7 @@ from py_trees.blackboard import Blackboard
 from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Parallel, Sequence
 
+from jacaros.artifacts import Atom
 from jacaros.behaviour_trees import (
     Act,
     HasProperty,
@@ -17,7 +18,6 @@ from jacaros.behaviour_trees import (
     WaitForProperty,
     WaitForSignal,
 )
-from jacaros.env import Atom
 
 
 def status_of(on_rails, behaviour):

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Selector, Sequence
 
+from jacaros.artifacts import WorkspaceError
 from jacaros.behaviour_trees import (
     Act,
     ArtifactBehaviour,
@@ -21,7 +22,6 @@ from jacaros.behaviour_trees import (
     TreeRunner,
     WaitForProperty,
 )
-from jacaros.env import WorkspaceError
 
 
 class Wrong(Behaviour):

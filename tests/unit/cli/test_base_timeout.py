@@ -10,10 +10,10 @@ import pytest
 from jacaros.cli.graph.base_timeout import GUARDED, SPEED, WATCHED, Ceased, Drive, find_base, verdict
 from jacaros.cli.graph.joining import Joined, NothingThere, clock_for, joined
 from jacaros.cli.main import call
-from jacaros.clock import run
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.ros.backend import Sample
+from jacaros.runtime.clock import run
 
 TWIST = "geometry_msgs/msg/Twist"
 HALL = "size: [8, 8]\nrobots:\n"

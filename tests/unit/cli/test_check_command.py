@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.asl.diagnostics import KINDS
+from jacaros.agents.language.diagnostics import KINDS
 from jacaros.cli.main import call
 
 ROOT = Path(__file__).parents[3]

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros import alarm
 from jacaros.cli.main import call
+from jacaros.runtime import clock
 from jacaros.sim import GroundTruth
 
 
@@ -33,9 +33,9 @@ def test_a_program_prints_and_sets_the_exit_code(folder: Path, capsys: pytest.Ca
 
 
 def test_signal_handlers_are_restored_after_a_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)]
+    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)]
     outcome(capsys, "run", "hello.asl", "--clock", "fast")
-    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, alarm.SIGNAL)] == before
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)] == before
 
 
 def test_run_is_the_default_command(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -203,9 +203,15 @@ NOT_FOR_A_LONE_PROGRAM = (
     *("argparse", "decimal", "difflib", "http.server", "importlib.metadata", "importlib.resources"),
     *("multiprocessing", "sqlite3", "tempfile", "unittest", "xml", "zipfile"),
     # ours: what other commands, projects and robots need
-    *("jacaros.artifacts", "jacaros.asl.layout", "jacaros.body", "jacaros.env", "jacaros.extension"),
+    *(
+        "jacaros.artifacts",
+        "jacaros.agents.language.layout",
+        "jacaros.agents.body",
+        "jacaros.artifacts",
+        "jacaros.agents.python",
+    ),
     *("jacaros.inspector", "jacaros.mas.checking", "jacaros.mas.project.jcm", "jacaros.mas.project.mas2j"),
-    *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.streams"),
+    *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.artifacts.streams"),
     *("jacaros.testing",),
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime
     *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node", "jacaros.ros.open"),

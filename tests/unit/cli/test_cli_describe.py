@@ -10,7 +10,7 @@ from jacaros.cli.main import call
 ARTIFACTS = '''
 """Artifacts of a test."""
 
-from jacaros.env import Artifact, Out, link, operation
+from jacaros.artifacts import Artifact, Out, link, operation
 
 
 class Lamp(Artifact):

@@ -47,7 +47,7 @@ def test_the_listing_is_python_and_explains_its_names(
     lines = shown(capsys, program, "--show")
     compile("\n".join(lines), "listing", "exec")
     meanings = {line.rpartition(": ")[2] for line in lines if line.startswith("# K_")}
-    assert {"left/1", "+!count/1", "the plan go", "jacaros.bdi.actions.output.print_"} <= meanings
+    assert {"left/1", "+!count/1", "the plan go", "jacaros.agents.mind.actions.output.print_"} <= meanings
     assert lines == shown(capsys, program, "--show")
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jacaros.asl.formatting import format_program
+from jacaros.agents.language.formatting import format_program
 from jacaros.cli import demo, pages, run
 from jacaros.cli.main import call
 from jacaros.errors import UsageError

@@ -71,7 +71,7 @@ def test_a_program_with_errors_is_kept_and_the_others_are_formatted(
 def test_a_program_whose_meaning_would_change_is_kept(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("jacaros.asl.formatting._laid_out", lambda text: "p.")
+    monkeypatch.setattr("jacaros.agents.language.formatting._laid_out", lambda text: "p.")
     code, output, errors = outcome(capsys, ".")
     assert (code, output) == (1, "")
     assert errors.count("would change the meaning of") == 2

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.inspector.graph_scene import GraphScene
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.page import frames, records
@@ -19,6 +18,7 @@ from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import UNKNOWN
 from jacaros.inspector.watch import Watch
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 PICTURE = """

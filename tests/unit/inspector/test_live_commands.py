@@ -10,7 +10,7 @@ from live_client import LivePage, live_page
 
 import jacaros
 from jacaros import Mas, Out
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 from jacaros.inspector import view
 from jacaros.inspector.live import run_view
 from jacaros.mas.history.explanation import Explanation

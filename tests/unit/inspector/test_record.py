@@ -71,7 +71,7 @@ PROJECT = """mas work {
     workspace w { artifact wheels: Wheels }
 }"""
 WORKER = """from jacaros import Atom, OperationFailed, PythonAgent
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 
 class Wheels(Artifact):

@@ -9,7 +9,6 @@ from random import Random
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.errors import JacarosError
 from jacaros.inspector import recording as reading
 from jacaros.inspector.line_format import CompressedLines, Lines, unpacked
@@ -18,6 +17,7 @@ from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import EmbeddedScene, RobotView
 from jacaros.inspector.watch import Watch
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 

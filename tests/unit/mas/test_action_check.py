@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.mas.checking import check_files
 
 ARTIFACTS = """
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 class Counter(Artifact):
     def init(self, start: int = 0):

@@ -1,7 +1,7 @@
 """Timers of agents."""
 
-from jacaros.clock import VirtualClock, run
 from jacaros.mas.idleness import Activity, AgentTimer
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def test_a_timer_counts_until_it_fires_or_is_cancelled() -> None:

@@ -2,15 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 
-from jacaros.bdi.state.act import Act, Completion, Percept
-from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import VirtualClock, run
+from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
+from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Term, atom, functor
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.idleness import Activity
 from jacaros.mas.scheduler import Scheduler
-from jacaros.terms.text import text
-from jacaros.terms.values import Term, atom, functor
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Mind:

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.checks.beliefs import is_misspelt
-from jacaros.asl.diagnostics import Diagnostic
+from jacaros.agents.checks.beliefs import is_misspelt
+from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.mas.checking import check_files
 
 ARTIFACTS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Radar(Artifact):
     def init(self):

@@ -4,14 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from jacaros.bdi.mind import Mind
-from jacaros.clock import VirtualClock, run
+from jacaros.agents.mind.mind import Mind
 from jacaros.mas.console import Console
 from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentHealth
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 
 Statuses = dict[str, Any]
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.mas.graph_warnings import EmptyGraph
 from jacaros.ros.errors import CallFailed
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def told(contents: GraphContents | Exception, close: bool = False) -> list[str]:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.bdi.fast.compiler import Compiler
+from jacaros.agents.mind.generated.compiler import Compiler
 from jacaros.mas.launch import launch
 from jacaros.mas.options import RunOptions
 

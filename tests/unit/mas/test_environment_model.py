@@ -8,7 +8,7 @@ from environment_model import NAMES, OBSERVERS, Model
 
 import jacaros
 from jacaros import GoalFailed, Mas
-from jacaros.env import Artifact, OperationFailed, operation
+from jacaros.artifacts import Artifact, OperationFailed, operation
 
 PLANS = """
 +!make(N, Script) <- makeArtifact(N, "Puppet", [Script]).

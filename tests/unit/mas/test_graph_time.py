@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.mas.graph_warnings import GraphTime
 from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Graph:

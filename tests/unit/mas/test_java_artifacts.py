@@ -15,7 +15,7 @@ PROJECT = """mas room {
 }
 """
 PORTED = """
-from jacaros.env import Artifact
+from jacaros.artifacts import Artifact
 
 
 class Heater(Artifact):

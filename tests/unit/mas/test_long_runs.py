@@ -4,15 +4,15 @@ import gc
 from pathlib import Path
 from typing import Any
 
-from jacaros.bdi.state.act import Percept
-from jacaros.env.ids import ArtifactId
-from jacaros.env.kernel.steps import Steps
-from jacaros.env.property import ObservableProperty
-from jacaros.terms.values import Reference
+from jacaros.agents.mind.state.act import Percept
+from jacaros.agents.terms.values import Reference
+from jacaros.artifacts.env.errors import ArtifactId
+from jacaros.artifacts.env.property import ObservableProperty
+from jacaros.artifacts.kernel.steps import Steps
 from jacaros.testing import run_project
 
 ARTIFACTS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Lamp(Artifact):
     def init(self, number: int = 0) -> None:

@@ -2,12 +2,12 @@
 
 import pytest
 
-from jacaros.bdi.state.plan import Failure
-from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.plan import Failure
+from jacaros.agents.terms.collections import SetValue
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Term, Var, atom, structure
 from jacaros.mas.directory import Directory, Mailboxes
-from jacaros.terms.collections import SetValue
-from jacaros.terms.text import text
-from jacaros.terms.values import Term, Var, atom, structure
 
 
 def said(content: Term, receiver: str = "bob") -> SpeechAct:

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.nodes import Literal
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.nodes import Literal
+from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
-from jacaros.project_modules import ProjectModules
 
 
 def programs(*folders: Path) -> Programs:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.project_modules import ProjectModules
+from jacaros.files.python_modules import ProjectModules
 
 
 @pytest.mark.parametrize(("where", "times"), [(".venv/lib/python3.11/site-packages", 1), ("more", 2)])

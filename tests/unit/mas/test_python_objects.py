@@ -118,7 +118,7 @@ def test_errors_fail_the_internal_action(tmp_path: Path, body: str, message: str
 
 
 ARTIFACTS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 
 class Counter(Artifact):

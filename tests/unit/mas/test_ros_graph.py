@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.errors import BackendUnavailable
 from jacaros.ros.open import open_backend as _open
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.sim import Event, WorldError
 
 

@@ -7,7 +7,7 @@ import pytest
 from jacaros.testing import run_project
 
 ARTIFACTS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Counter(Artifact):
     made = []
@@ -264,7 +264,7 @@ def test_all_failed_creations_are_reported(folder: Path) -> None:
 def test_strings_become_numbers_where_the_type_expects_numbers(folder: Path) -> None:
     (folder / "artifacts.py").write_text(
         """
-from jacaros.env import Artifact
+from jacaros.artifacts import Artifact
 
 class Taken(Artifact):
     def init(self, text: str, number: int, real: float, truth: bool, anything):

@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.errors import InternalError
 from jacaros.mas.scheduler import Scheduler
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 
 class Worker:

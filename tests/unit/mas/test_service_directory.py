@@ -2,10 +2,10 @@
 
 import pytest
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.terms.text import text
 from jacaros.mas.directory import ServiceDirectory
-from jacaros.terms.text import text
 from jacaros.testing import AgentHarness
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.clock import VirtualClock
 from jacaros.errors import InternalError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.system import System
+from jacaros.runtime.clock import VirtualClock
 from jacaros.testing import RunResult, run_project
 
 Project = Callable[..., Path]

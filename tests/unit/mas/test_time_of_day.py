@@ -8,7 +8,7 @@ from jacaros.cli.main import call
 
 PROJECT = "mas rooms { agent bob : bob.asl\n workspace w { artifact heater: Heater() } }"
 HEATER = """
-from jacaros.env import Artifact
+from jacaros.artifacts import Artifact
 {imports}
 
 class Heater(Artifact):

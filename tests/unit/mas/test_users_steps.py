@@ -4,8 +4,8 @@ import asyncio
 import sys
 from types import FrameType
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.mas.watchdog import is_of_user
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 
 def test_the_program_that_started_the_loop_is_not_a_step() -> None:

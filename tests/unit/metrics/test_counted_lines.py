@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.loader import read_program
-from jacaros.asl.nodes import Program
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.nodes import Program
 from jacaros.metrics import CountedFile, Group, MetricsError, measure
 from jacaros.metrics.agentspeak import comments_of
 

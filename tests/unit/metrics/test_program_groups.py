@@ -38,7 +38,7 @@ PROGRAM = {
     "  asl-path: ., shared }\n",
     "ann.asl": '{ include("watering.asl") }\n!go.\n+!go <- !water; tools.beep.\n',
     "shared/watering.asl": "+!water.\n",
-    "bob.py": "from jacaros.extension import PythonAgent as Agent\n\nclass bob(Agent): pass\n",
+    "bob.py": "from jacaros.agents.python import PythonAgent as Agent\n\nclass bob(Agent): pass\n",
     "carl.py": "import jacaros\n\nclass Carl(jacaros.PythonAgent): pass\n",
     "dora.asl": "!go.\n+!go.\n",
     "artifacts.py": "LIMIT = 1\n",

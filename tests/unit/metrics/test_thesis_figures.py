@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
+from jacaros.files.yaml import plain_values
 from jacaros.metrics import MEASURES
-from jacaros.yaml_nodes import plain_values
 
 FILE = Path(__file__).parents[3] / "experiment" / "thesis.yaml"
 

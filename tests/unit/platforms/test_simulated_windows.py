@@ -17,8 +17,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.output import PLAIN
-from jacaros.text_files import path_between
+from jacaros.files.texts import path_between
+from jacaros.runtime.output import PLAIN
 
 ROOT = Path(__file__).parents[3]
 SIMULATION = Path(__file__).with_name("simulated_windows.py")

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import ActionPolicy, GoalStatus
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import GoalUnderWay
@@ -19,6 +18,7 @@ from jacaros.ros.open import open_backend
 from jacaros.ros.orphans import OrphanPolicy
 from jacaros.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema
+from jacaros.runtime.clock import VirtualClock, run
 
 COUNT = "jacaros_interfaces/action/Count"
 

@@ -10,7 +10,6 @@ import hypothesis.strategies as st
 from hypothesis import settings
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, rule
 
-from jacaros.clock import VirtualClock, new_event_loop
 from jacaros.ros.action import SERVER_LOST_AFTER, Abort, ActionPolicy, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender, PendingGoal
 from jacaros.ros.action_serving import CLOSED, PREEMPTED, ServedGoals
@@ -18,6 +17,7 @@ from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.pending_goal import ENDING
 from jacaros.ros.typestore import DefinitionSchema
+from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 COUNT = "jacaros_interfaces/action/Count"
 FACTORY = MessageFactory(DefinitionSchema())

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.errors import ServerUnavailable
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import DefinitionSchema
+from jacaros.runtime.clock import VirtualClock, run
 
 COUNT = "jacaros_interfaces/action/Count"
 

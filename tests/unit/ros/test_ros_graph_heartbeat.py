@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import WallClock, run
 from jacaros.ros import graph_heartbeat
 from jacaros.ros.backend import Publisher
 from jacaros.ros.graph_heartbeat import TEXT, GraphHeartbeat, topics_of
@@ -16,6 +15,7 @@ from jacaros.ros.guarded import Guarded, guarded_by
 from jacaros.ros.guarding import Watch
 from jacaros.ros.heartbeat import Heartbeat
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import WallClock, run
 
 TWIST = "geometry_msgs/msg/Twist"
 FORWARD = {"linear": {"x": 0.3}}

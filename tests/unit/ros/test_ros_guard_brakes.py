@@ -5,9 +5,9 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.guard import CANCELLED, CANCELLING, ENDING, PERIOD, Guard
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class FakeBrakes:

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
 from jacaros.ros.address import GraphAddress
@@ -20,6 +19,7 @@ from jacaros.ros.guarded import STAMPED, Guarded
 from jacaros.ros.guarding import LEAVING, Watch
 from jacaros.ros.heartbeat import LOCAL, Heartbeat, line
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 TWIST = "geometry_msgs/msg/Twist"
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.handoff import Handoff, LoopEnded, ask, in_thread, post
+from jacaros.runtime.clock import WallClock, run
 
 
 def in_other_thread(work: object) -> None:

@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import WallClock, run
 from jacaros.ros import lifetime as module
 from jacaros.ros.lifetime import Lifetime, State
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import WallClock, run
 
 POSIX = pytest.mark.skipif(
     sys.platform == "win32", reason="os.kill of Windows ends a process without a handler"
@@ -22,7 +22,7 @@ POSIX = pytest.mark.skipif(
 
 PROGRAM = """
 import asyncio, os, signal, sys, threading, time
-from jacaros.clock import WallClock, run
+from jacaros.runtime.clock import WallClock, run
 from jacaros.ros.lifetime import Lifetime
 
 def say(text):

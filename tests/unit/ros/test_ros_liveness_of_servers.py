@@ -4,11 +4,11 @@ import asyncio
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.calling import LOOK, ServerWatch
 from jacaros.ros.errors import ServerGone
 from jacaros.ros.waiting import Absence
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def ended(present: list[bool], seconds: float) -> float | None:

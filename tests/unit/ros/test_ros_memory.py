@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VIRTUAL_EPOCH, VirtualClock, run
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.drivers.memory.backend import MemoryGraph
 from jacaros.ros.errors import CallFailed, CallTimedOut
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, run
 
 ADD = "example_interfaces/srv/AddTwoInts"
 

@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import SERVER_LOST_AFTER, GoalStatus
 from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.memory.backend import MemoryGraph
@@ -15,6 +14,7 @@ from jacaros.ros.errors import CallFailed, RosError, ServerLost, ServiceUnavaila
 from jacaros.ros.open import open_backend
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import VirtualClock, run
 
 ADD, COUNT, INT = "example_interfaces/srv/AddTwoInts", "jacaros_interfaces/action/Count", "std_msgs/msg/Int32"
 

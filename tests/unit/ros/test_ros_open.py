@@ -5,11 +5,11 @@ import sys
 
 import pytest
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.errors import UsageError
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import BackendUnavailable, NameInvalid, RosError
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 
 def test_an_unknown_kind_is_a_usage_error() -> None:

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.drivers.ros1.streams import CHUNK, Inlet, Outbox
+from jacaros.runtime.clock import WallClock, run
 
 PATIENCE = 20.0
 

@@ -24,9 +24,9 @@ pytest.importorskip("websockets")
 from websockets.frames import Frame
 from websockets.server import ServerProtocol
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.drivers.rosbridge.link import BACKLOG, Link
 from jacaros.ros.protocols.rosbridge_wire import Wire
+from jacaros.runtime.clock import WallClock, run
 
 TEXT, BINARY, CONTINUATION = 1, 2, 0
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
 from jacaros.ros.waiting import Absence
+from jacaros.runtime.clock import VirtualClock, run
 
 
 def end_of_call(takes: float, offered: bool) -> str:

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.memory.backend import MemoryGraph
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Lab:

@@ -4,9 +4,9 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import Outcome
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"

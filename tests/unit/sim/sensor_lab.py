@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 

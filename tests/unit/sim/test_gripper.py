@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import GoalRejected
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World, WorldError, read_world
 
 TABLE = """\

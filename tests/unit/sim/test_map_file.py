@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
+from jacaros.files.maps import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim import World, WorldError
 from jacaros.sim.description import WorldDescription
 from jacaros.sim.files.map import OccupancyMap, map_of_world, read_map

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 from navigation_lab import NAVIGATE, Lab, in_world
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, WallClock, run
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import to_seconds
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.sim import GroundTruth, SimNode, World, serve
 from jacaros.sim.process import GroundTruthFile
 from jacaros.sim.robot.node import RobotNode

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from navigation_lab import Lab, in_world
 
-from jacaros.clock import VirtualClock, run
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.driver import Driver, Pace, Route

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock, run
 from jacaros.errors import UsageError
 from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import GroundTruth, SimNode, World
 from jacaros.sim.process import GroundTruthFile
 

@@ -7,8 +7,7 @@ import pytest
 
 from jacaros.mas.system import System
 from jacaros.testing import FakeGraph, run_project
-from jacaros.testing.outcomes import Outcome
-from jacaros.testing.suites import suite_of
+from jacaros.testing.run import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
 
 MAPPING = """

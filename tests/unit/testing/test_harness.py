@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.env.values import Atom
-from jacaros.terms.values import atom
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.terms.values import atom
+from jacaros.artifacts.env.values import Atom
 from jacaros.testing import ActionFailed, AgentHarness
 
 ROBOT = """

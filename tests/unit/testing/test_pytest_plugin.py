@@ -84,5 +84,13 @@ def test_time_limits_can_be_set(folder: Path) -> None:
 def test_the_plugin_imports_little() -> None:
     program = "import sys; import jacaros.testing.pytest_plugin; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    heavy = {"jacaros.asl", "jacaros.bdi", "jacaros.mas", "jacaros.sim", "numpy", "click", "rich"}
+    heavy = {
+        "jacaros.agents.language",
+        "jacaros.agents.mind",
+        "jacaros.mas",
+        "jacaros.sim",
+        "numpy",
+        "click",
+        "rich",
+    }
     assert heavy & set(done.stdout.split()) == set()

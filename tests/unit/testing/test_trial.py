@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from jacaros import alarm
 from jacaros.mas.checking import check_files
 from jacaros.mas.source_path import SourcePath
-from jacaros.testing.outcomes import Outcome
-from jacaros.testing.suites import suite_of
+from jacaros.runtime import clock
+from jacaros.testing.run import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
 
 Outcomes = Callable[..., list[Outcome]]
@@ -230,11 +229,11 @@ def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
     program = (
         "@t[test] +!t <- .findall(X, .range(X, 1, 100000000000), _). @u[test] +!u <- !assert_true(true)."
     )
-    before = signal.getsignal(alarm.SIGNAL)
+    before = signal.getsignal(clock.SIGNAL)
     hanging, other = outcomes(program, replace(BRIEF, patience=2.0))
     assert "did not end within 2 s of real time" in hanging.problems[0].message
     assert other.passed
-    assert signal.getsignal(alarm.SIGNAL) is before
+    assert signal.getsignal(clock.SIGNAL) is before
     assert sys.platform == "win32" or signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
 
 
@@ -343,7 +342,7 @@ def test_artifacts_of_the_project_can_be_used(outcomes: Outcomes) -> None:
           <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; .wait(count(1), 1000); !assert_true(count(1)).
         """,
         artifacts_py=(
-            "from jacaros.env import Artifact, operation\n\n\n"
+            "from jacaros.artifacts import Artifact, operation\n\n\n"
             "class Counter(Artifact):\n"
             "    def init(self) -> None:\n"
             "        self.define_property('count', 0)\n\n"

@@ -21,11 +21,11 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
-from jacaros.clock import Clock
-from jacaros.env.execution import OperationExecution
+from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
 from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
 from jacaros.ros.pending_goal import ENDING
+from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")
 

@@ -6,6 +6,10 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar, Protocol, TypeVar
 
+from jacaros.artifacts.env.artifact import Artifact, internal_operation
+from jacaros.artifacts.env.errors import InvalidArtifact
+from jacaros.artifacts.env.operation import marks_of
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.connection import (
     GUARD_TIMEOUT,
     MATCH_LOOK,
@@ -18,10 +22,6 @@ from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
 from jacaros.artifacts.kit.other_publishers import OtherPublishers
 from jacaros.artifacts.kit.services import ServedOperation
-from jacaros.env.artifact import Artifact, internal_operation
-from jacaros.env.errors import InvalidArtifact
-from jacaros.env.operation import marks_of
-from jacaros.env.values import Structure
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
 from jacaros.ros.backend import (
     DEFAULT_POLICY,

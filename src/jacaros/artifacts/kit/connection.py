@@ -9,12 +9,12 @@ from contextlib import suppress
 from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
-from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents, TopicInfo, latching
 from jacaros.ros.names import message_type
 from jacaros.ros.waiting import MISSING_AFTER
+from jacaros.runtime.clock import Clock
 
 LOOK = 0.5
 """Seconds between two checks of who publishes a topic."""

@@ -27,11 +27,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.clock import Clock
-from jacaros.env.values import Structure
-from jacaros.excerpts import is_worth_a_line
+from jacaros.artifacts.env.values import Structure
+from jacaros.files.texts import is_worth_a_line
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
+from jacaros.runtime.clock import Clock
 
 Report = Callable[[Structure, str], None]
 """Called with the reason, and with a text for the log."""

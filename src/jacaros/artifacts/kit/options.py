@@ -7,7 +7,7 @@ as a list or a map. The only plain text or atom among the arguments is the robot
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from jacaros.env.values import Atom, Structure
+from jacaros.artifacts.env.values import Atom, Structure
 
 
 class WrongOption(ValueError):

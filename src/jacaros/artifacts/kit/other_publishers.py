@@ -4,10 +4,10 @@ import asyncio
 from collections.abc import Callable
 from contextlib import suppress
 
-from jacaros.clock import Clock
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import guarded_by, guards_of
+from jacaros.runtime.clock import Clock
 
 EMBEDDED_WORLD = frozenset({"/world"})
 """The node of the embedded world, in this process or of `jacaros sim`: the robot itself, with its navigation."""

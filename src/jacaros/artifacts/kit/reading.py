@@ -23,9 +23,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from jacaros.artifacts.kit.options import Reader, bands, one_of, positive, yes_or_no
-from jacaros.clock import Clock, Timer
 from jacaros.ros.waiting import within
-from jacaros.trace import Cause
+from jacaros.runtime.clock import Clock, Timer
+from jacaros.runtime.trace import Cause
 
 Values = tuple[object, ...]
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
+from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.kit.acting import (
     GoalFailed,
     GoalOptions,
@@ -15,7 +16,6 @@ from jacaros.artifacts.kit.acting import (
 )
 from jacaros.artifacts.kit.sensing_artifact import SensingArtifact
 from jacaros.artifacts.kit.services import CallFailure, call
-from jacaros.env.errors import InvalidArtifact
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client
 from jacaros.ros.errors import MessageMismatch

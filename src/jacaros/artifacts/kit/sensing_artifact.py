@@ -5,10 +5,10 @@ import math
 from collections.abc import Callable, Iterable
 from functools import partial
 
+from jacaros.artifacts.env.artifact import internal_operation
 from jacaros.artifacts.kit.connected_artifact import ConnectedArtifact
 from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy, Values
-from jacaros.env.artifact import internal_operation
-from jacaros.trace import Cause
+from jacaros.runtime.trace import Cause
 
 FIRST_MESSAGE = 5.0
 """Seconds that an operation waits for the first message of a sensor."""

@@ -32,11 +32,11 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from jacaros.env.ids import ArtifactId
-from jacaros.env.kernel.declaration import DeclaredOperation
-from jacaros.env.kernel.steps import Steps
-from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.values import Atom, Structure
+from jacaros.artifacts.env.errors import ArtifactId
+from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.kernel.declaration import DeclaredOperation
+from jacaros.artifacts.kernel.steps import Steps
 from jacaros.ros.action import Abort, ServerGoal
 from jacaros.ros.backend import Backend, Client, Handler
 from jacaros.ros.errors import CallTimedOut, RosError, ServerGone, ServiceError, ServiceUnavailable

@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
 from jacaros.artifacts.robots.control import Pose, heading_of
-from jacaros.map_header import CELLS, OCCUPIED, UNKNOWN
+from jacaros.files.maps import CELLS, OCCUPIED, UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)

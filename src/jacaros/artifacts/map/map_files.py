@@ -11,10 +11,19 @@ from jacaros.artifacts.map.cells import FREE, Cell
 from jacaros.artifacts.map.grids import Grid
 from jacaros.artifacts.robots.control import Pose
 from jacaros.errors import JacarosError
-from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
-from jacaros.map_header import BLACK, GREY, WHITE, header_text, read_header
-from jacaros.text_files import file_text
-from jacaros.yaml_nodes import Problem, YamlFileError, read_document
+from jacaros.files.maps import (
+    BLACK,
+    GREY,
+    WHITE,
+    GreyImage,
+    ImageError,
+    header_text,
+    pgm_bytes,
+    read_header,
+    read_image,
+)
+from jacaros.files.texts import file_text
+from jacaros.files.yaml import Problem, YamlFileError, read_document
 
 
 class MapFileError(JacarosError):

@@ -4,6 +4,7 @@ import math
 from functools import partial
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text, yes_or_no
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
@@ -18,7 +19,6 @@ from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.control import Pose, heading_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
 from jacaros.artifacts.robots.poses import ORIGIN
-from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import LATCHED, SENSOR_DATA

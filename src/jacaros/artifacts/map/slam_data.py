@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.options import not_negative, positive, text
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.map.cells import FREE, GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells
 from jacaros.artifacts.map.inflation import inflated
 from jacaros.artifacts.map.picture import picture
 from jacaros.artifacts.map.route import DEGREES, compass, route
-from jacaros.env.artifact import Out, operation
-from jacaros.env.values import Atom, Structure
 
 ME = Atom("me")
 """The agent, as the first argument of ``pos2d(Object, X, Y)``."""

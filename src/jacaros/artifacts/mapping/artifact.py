@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.artifact import internal_operation
+from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
@@ -21,11 +23,9 @@ from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
 from jacaros.artifacts.mapping.type_search import TypeSearch
-from jacaros.env.artifact import internal_operation
-from jacaros.env.errors import UnknownArtifactType
+from jacaros.files.yaml import Problem, shown
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.ros.names import frame_name
-from jacaros.yaml_nodes import Problem, shown
 
 
 class MappedArtifact(RosArtifact):

@@ -19,11 +19,11 @@ from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
 from jacaros.artifacts.mapping.paths import WrongPath
 from jacaros.artifacts.mapping.rows import extractor
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Problem
 
 UNCERTAIN = "is not known here"
 """Part of the message for types that only the robot's middleware may know."""

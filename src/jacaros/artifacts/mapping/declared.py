@@ -8,11 +8,11 @@ from typing import NamedTuple
 from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
-from jacaros.env.resources.resource import Use
+from jacaros.artifacts.resources.claim import Use
+from jacaros.artifacts.streams.pattern import OCCURRENCE, Spec
+from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
-from jacaros.streams.schema import OCCURRENCE, Spec
-from jacaros.yaml_nodes import Problem, YamlFileError
 
 ALWAYS = ReadingPolicy()
 """Every change is published."""

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter, read_path
 from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES, to_seconds
 

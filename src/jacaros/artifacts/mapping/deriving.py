@@ -1,4 +1,4 @@
-"""Derived properties and signals: messages of other properties go through a pattern of `jacaros.streams`."""
+"""Derived properties and signals: messages of other properties go through a pattern of `jacaros.artifacts.streams`."""
 
 from collections import deque
 from functools import partial
@@ -7,13 +7,12 @@ from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FramePart
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.stamped_frames import StampedFrames
-from jacaros.clock import Timer
-from jacaros.excerpts import is_worth_a_line
+from jacaros.artifacts.streams.operators import HIDE, OCCUR, SHOW
+from jacaros.artifacts.streams.pattern import Pattern, Spec
+from jacaros.files.texts import is_worth_a_line
 from jacaros.ros.message import to_seconds
-from jacaros.streams.operator import HIDE, OCCUR, SHOW
-from jacaros.streams.pattern import Pattern
-from jacaros.streams.schema import Spec
-from jacaros.trace import Cause
+from jacaros.runtime.clock import Timer
+from jacaros.runtime.trace import Cause
 
 JUMP = 0.1
 """Seconds by which the clock must go back to count as a restart of time."""

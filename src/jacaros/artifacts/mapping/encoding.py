@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
@@ -11,12 +12,11 @@ from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.read_operations import ALL_OF_IT
-from jacaros.env.values import Atom, Structure, text
+from jacaros.files.yaml import Problem
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 from jacaros.ros.values import single_value
-from jacaros.yaml_nodes import Problem
 
 Fill = Callable[[Sequence[object], float], dict[str, Any]]
 """Takes the arguments of an operation and the time; returns the fields of a message as nested mappings.

@@ -21,9 +21,8 @@ from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
 from jacaros.artifacts.mapping.read_operations import read_operation
 from jacaros.artifacts.mapping.read_parameters import read_parameter
 from jacaros.artifacts.mapping.read_topics import read_frame, read_property, read_signal
-from jacaros.text_files import is_file
-from jacaros.yaml_nodes import Node, Problem, read_document
-from jacaros.yaml_syntax import read_text, top_keys
+from jacaros.files.texts import is_file
+from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Folder of the mappings that come with the package."""

@@ -3,11 +3,11 @@
 import math
 from collections.abc import Callable, Iterable
 
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import FieldPart, FramePart
 from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.host import Host
-from jacaros.env.values import Structure
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER

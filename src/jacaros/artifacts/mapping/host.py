@@ -3,18 +3,18 @@
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
 
+from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.kit.faults import Faults
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.artifacts.mapping.rows import Row
-from jacaros.clock import Clock
-from jacaros.env.execution import OperationExecution
+from jacaros.files.yaml import Problem
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.qos import QoS
-from jacaros.trace import Cause
-from jacaros.yaml_nodes import Problem
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.trace import Cause
 
 T = TypeVar("T")
 

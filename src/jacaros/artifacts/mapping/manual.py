@@ -6,6 +6,7 @@ Kind, unit and rounding of values come from the definitions of the messages.
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
+from jacaros.artifacts.env.values import text
 from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.checking import message_types
 from jacaros.artifacts.mapping.declared import (
@@ -35,14 +36,13 @@ from jacaros.artifacts.mapping.operation_methods import unlike, values_of
 from jacaros.artifacts.mapping.paths import Path, WrongPath, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.rows import fields_of
-from jacaros.env.values import text
+from jacaros.artifacts.streams.pattern import OPERATORS, VALUE, Spec
+from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.message import TIMES
 from jacaros.ros.parameter_store import kind_of
-from jacaros.streams.schema import OPERATORS, VALUE, Spec
-from jacaros.yaml_nodes import Problem
 
 _TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
 

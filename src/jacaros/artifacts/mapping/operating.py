@@ -4,6 +4,8 @@ import asyncio
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from jacaros.artifacts.env.artifact import Out
+from jacaros.artifacts.env.values import Atom, plain
 from jacaros.artifacts.kit.acting import error_code, error_text
 from jacaros.artifacts.kit.services import MESSAGES, failure_reason
 from jacaros.artifacts.mapping.checking import check_answer, message_types
@@ -17,19 +19,11 @@ from jacaros.artifacts.mapping.paths import getter, read_path
 from jacaros.artifacts.mapping.publishing import Publishing
 from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.env.artifact import Out
-from jacaros.env.values import Atom, plain
+from jacaros.files.yaml import Problem
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client
-from jacaros.ros.errors import (
-    CapabilityMissing,
-    NameInvalid,
-    ParameterRefused,
-    ParameterUnknown,
-    RosError,
-)
+from jacaros.ros.errors import CapabilityMissing, NameInvalid, ParameterRefused, ParameterUnknown, RosError
 from jacaros.ros.fields import FieldType
-from jacaros.yaml_nodes import Problem
 
 
 class Runner(Protocol):

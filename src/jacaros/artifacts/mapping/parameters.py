@@ -10,10 +10,11 @@ import math
 from collections.abc import Mapping
 from shlex import quote
 
+from jacaros.artifacts.env.values import Atom, text
 from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion, ParameterPart
 from jacaros.artifacts.mapping.decoding import Convert, Unshowable, converted
 from jacaros.artifacts.mapping.host import Host
-from jacaros.env.values import Atom, text
+from jacaros.files.yaml import Problem
 from jacaros.ros.backend import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION, Backend
 from jacaros.ros.errors import (
     CapabilityMissing,
@@ -24,7 +25,6 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import fault_of
-from jacaros.yaml_nodes import Problem
 
 PATIENCE = 2.0
 """Seconds to wait for a parameter: for the master of ROS 1 before the default applies, for a node before the next

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from jacaros.files.texts import suggestion
 from jacaros.ros.fields import FieldType
-from jacaros.suggestions import suggestion
 
 ALL = "*"
 """Stands for all elements of an array."""

@@ -4,22 +4,22 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from jacaros.artifacts.env.artifact import Out
+from jacaros.artifacts.env.execution import OperationExecution
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.acting import missing_number
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
+from jacaros.artifacts.resources.claim import WHEELS, Use
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
-from jacaros.env.artifact import Out
-from jacaros.env.execution import OperationExecution
-from jacaros.env.resources.resource import WHEELS, Use
-from jacaros.env.values import Atom, Structure
+from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.qos import DEFAULT_QOS
-from jacaros.yaml_nodes import Problem
 
 
 class Publishing:

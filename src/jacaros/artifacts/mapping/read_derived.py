@@ -6,9 +6,9 @@ from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, Place,
 from jacaros.artifacts.mapping.read_fields import place_of
 from jacaros.artifacts.mapping.read_names import belief_name
 from jacaros.artifacts.mapping.read_topics import plain_constant
-from jacaros.streams.schema import LONGEST, OPERATORS, PARTNERS_WAIT, Fault, Spec, faults, unknown
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Node, Problem
+from jacaros.artifacts.streams.pattern import LONGEST, OPERATORS, PARTNERS_WAIT, Fault, Spec, faults, unknown
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Node, Problem
 
 _COMMON = ("value", "lateness", "description")
 _EVENTS = frozenset({"count", "absent", "sequence"})

@@ -5,8 +5,8 @@ from typing import Any
 from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Place
 from jacaros.artifacts.mapping.paths import WHOLE, Path, WrongPath, read_path
 from jacaros.artifacts.mapping.units import UNITS, Line, conversion, usual
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Node
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Node
 
 ANGLES = ("yaw", "pitch", "roll")
 LISTS = ("count", "min", "max", "mean")

@@ -4,9 +4,9 @@ import re
 
 from jacaros.artifacts.mapping.declared import Written
 from jacaros.artifacts.mapping.read_fields import place_of, shown
+from jacaros.files.yaml import Node
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.names import action_type, message_type, service_type
-from jacaros.yaml_nodes import Node
 
 UNNAMED = "unnamed"
 """Replaces an invalid name."""

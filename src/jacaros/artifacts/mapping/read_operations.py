@@ -27,9 +27,9 @@ from jacaros.artifacts.mapping.read_fields import (
 )
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
-from jacaros.env.resources.resource import Use, read_use
-from jacaros.suggestions import close_matches, did_you_mean
-from jacaros.yaml_nodes import Node, Problem
+from jacaros.artifacts.resources.claim import Use, read_use
+from jacaros.files.texts import close_matches, did_you_mean
+from jacaros.files.yaml import Node, Problem
 
 _COMMON = ("parameters", "description", "uses")
 KEYS: dict[str, tuple[str, ...]] = {

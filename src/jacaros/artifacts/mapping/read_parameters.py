@@ -10,10 +10,10 @@ from jacaros.artifacts.mapping.read_fields import place_of, read_fields
 from jacaros.artifacts.mapping.read_names import belief_name, ros_name
 from jacaros.artifacts.mapping.read_operations import constant
 from jacaros.artifacts.mapping.read_topics import positive, read_policy
+from jacaros.files.yaml import Node
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import checked_value, fault_of
-from jacaros.yaml_nodes import Node
 
 _SHOWN = ("parameter", "fields", "dead_band", "description")
 OTHER = ("node", *_SHOWN, "rate")

@@ -4,21 +4,14 @@ import dataclasses
 from collections.abc import Iterator
 from typing import cast
 
+from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kit.reading import ReadingPolicy
-from jacaros.artifacts.mapping.declared import (
-    FieldPart,
-    FramePart,
-    Place,
-    RangeOfView,
-    TopicPart,
-    Written,
-)
+from jacaros.artifacts.mapping.declared import FieldPart, FramePart, Place, RangeOfView, TopicPart, Written
 from jacaros.artifacts.mapping.read_fields import ANGLES, path_of, place_of, read_field, read_fields, shown
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, is_type, ros_name, type_written
 from jacaros.artifacts.mapping.units import UNITS
-from jacaros.env.values import Atom
+from jacaros.files.yaml import Node, Problem
 from jacaros.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, Durability, QoS, Reliability
-from jacaros.yaml_nodes import Node, Problem
 
 _MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
 _POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")

@@ -8,10 +8,10 @@ from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import DerivedPart, FramePart
 from jacaros.artifacts.mapping.frames import values_of
 from jacaros.artifacts.mapping.host import Host
-from jacaros.excerpts import is_worth_a_line
+from jacaros.files.texts import is_worth_a_line
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.waiting import MISSING_AFTER
-from jacaros.trace import Cause
+from jacaros.runtime.trace import Cause
 
 Found = Callable[[float, Values, dict[int, Values], Cause | None], None]
 """Called with the time of a message, its values, those of each frame at that time by the number of its stream, and

@@ -7,6 +7,7 @@ import dataclasses
 import itertools
 from typing import Any
 
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
 from jacaros.artifacts.kit.reading import Outlet, Reading
 from jacaros.artifacts.kit.sensing_artifact import RangeOfView
@@ -16,14 +17,13 @@ from jacaros.artifacts.mapping.deriving import stamp_of
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.rows import Extract, Row, extractor
 from jacaros.artifacts.mapping.type_search import TypeSearch
-from jacaros.clock import Timer
-from jacaros.env.values import Structure
+from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import SENSOR_DATA, STATE, QoS
-from jacaros.trace import Cause
-from jacaros.yaml_nodes import Problem
+from jacaros.runtime.clock import Timer
+from jacaros.runtime.trace import Cause
 
 
 class TopicMultiplexer:

@@ -4,11 +4,11 @@ import math
 from functools import partial
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
 from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.charge import Charge
-from jacaros.env.artifact import Out, internal_operation, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant
 from jacaros.ros.qos import SENSOR_DATA

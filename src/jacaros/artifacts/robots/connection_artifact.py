@@ -4,11 +4,11 @@ import math
 from collections.abc import Awaitable
 from typing import ClassVar, NoReturn, TypeVar
 
+from jacaros.artifacts.env.artifact import Out, internal_operation, operation
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.options import positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.kit.services import failure_reason
-from jacaros.env.artifact import Out, internal_operation, operation
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import (
     ParameterRefused,
     ParameterUnknown,

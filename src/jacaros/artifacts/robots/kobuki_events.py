@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import internal_operation, operation
+from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env.artifact import internal_operation, operation
-from jacaros.env.values import Atom
 from jacaros.ros.backend import Sample
 
 SIDES: tuple[str, ...] = ("left", "center", "right")

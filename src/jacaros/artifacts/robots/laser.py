@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, not_finite
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
 

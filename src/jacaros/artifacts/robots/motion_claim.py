@@ -1,6 +1,6 @@
 """The motions of a robot: who drives, who waits, and what ends or interrupts them.
 
-The arbiter of resources (`jacaros.env.resources.arbiter`) decides which of them drives: all use ``wheels``.
+The arbiter of resources (`jacaros.artifacts.resources.arbiter`) decides which of them drives: all use ``wheels``.
 """
 
 import asyncio
@@ -8,13 +8,13 @@ from collections.abc import Awaitable, Callable
 from typing import Any, Protocol, Self
 from weakref import WeakKeyDictionary
 
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.resources.claim import Use
 from jacaros.artifacts.robots.control import Velocity
 from jacaros.artifacts.robots.drive_model import DriveModel
-from jacaros.clock import Clock
-from jacaros.env.resources.resource import Use
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.backend import Backend
 from jacaros.ros.guarded import guarded_by
+from jacaros.runtime.clock import Clock
 
 GAP = 0.5
 """Seconds by which a motion may be late, or the clock be set. More is a gap: the robot was not watched for longer

@@ -5,15 +5,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.faults import Faults, Header
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import Pose, Velocity, heading_of
-from jacaros.clock import Clock
-from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
+from jacaros.runtime.clock import Clock
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 

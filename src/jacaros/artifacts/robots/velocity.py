@@ -9,10 +9,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS, Matching
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.resources.claim import WHEELS
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.drift import LOCALISED, Drift
 from jacaros.artifacts.robots.drive_model import DriveModel
@@ -23,9 +26,6 @@ from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
 from jacaros.artifacts.robots.motion_claim import Motions, motions_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
 from jacaros.artifacts.robots.quality_file import read_quality, write_quality
-from jacaros.env.artifact import Out, operation
-from jacaros.env.resources.resource import WHEELS
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.names import frame_name

@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
+from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env.artifact import Out, operation
-from jacaros.env.values import Structure
 from jacaros.ros.backend import Publisher
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")

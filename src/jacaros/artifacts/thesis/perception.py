@@ -3,9 +3,9 @@
 import math
 from typing import ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.options import text, yes_or_no
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Sample
 
 

@@ -2,10 +2,10 @@
 
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env.artifact import Out, operation
 from jacaros.ros.backend import Client, Sample
 
 

@@ -8,15 +8,7 @@ from jacaros.cli.graph.joining import Joined, NothingThere
 from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import root
 from jacaros.cli.graph.standard_topics import robot_of, robots
-from jacaros.cli.graph.suggestions import (
-    Entry,
-    acting,
-    calling,
-    looking,
-    plain_name,
-    property_of,
-    publishing,
-)
+from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.ros.guarded import VELOCITIES
 
 _SECTIONS = ("properties", "signals", "frames", "operations")

@@ -6,7 +6,6 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass
 
 from jacaros.cli.usage import usage_error
-from jacaros.clock import Clock, VirtualClock, WallClock
 from jacaros.errors import JacarosError
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
@@ -14,6 +13,7 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.middleware import middleware
+from jacaros.runtime.clock import Clock, VirtualClock, WallClock
 
 FIRST_LOOK = 1.0
 """Seconds for which the embedded world runs before its graph is read."""

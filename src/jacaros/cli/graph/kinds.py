@@ -6,10 +6,10 @@ from enum import StrEnum
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
+from jacaros.files.texts import did_you_mean
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import near_names
-from jacaros.suggestions import did_you_mean
 
 
 class Kind(StrEnum):

@@ -5,8 +5,8 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.output import beneath
 from jacaros.ros.graph import GraphContents, TopicInfo
+from jacaros.runtime.output import beneath
 
 UNKNOWN = "(unknown)"
 """Shown instead of a type that the middleware does not report."""

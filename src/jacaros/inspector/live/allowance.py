@@ -4,7 +4,7 @@ from collections.abc import Callable, Coroutine, Generator
 from types import coroutine
 from typing import Any, TypeVar
 
-from jacaros.clock import real_time
+from jacaros.runtime.clock import real_time
 
 SHARE = 0.05
 """Share of the loop's time for the commands of all pages together."""

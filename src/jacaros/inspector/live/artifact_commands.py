@@ -4,17 +4,17 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any
 
-from jacaros.asl.loader import parse_literal
-from jacaros.asl.lowering import Names, lower_value
-from jacaros.body.values import Outputs, to_value
-from jacaros.clock import of_run
-from jacaros.env.environment import Environment
-from jacaros.env.ids import ArtifactId
-from jacaros.env.operation import OperationOutcome, OperationRequest
-from jacaros.env.values import text as value_text
+from jacaros.agents.body.values import Outputs, to_value
+from jacaros.agents.language.loader import parse_literal
+from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.terms.values import Var, bare
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import ArtifactId
+from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
+from jacaros.artifacts.env.values import text as value_text
 from jacaros.inspector.live.commands import Command, Given, Refused, text_in
 from jacaros.mas.system import System
-from jacaros.terms.values import Var, bare
+from jacaros.runtime.clock import of_run
 
 YOU = "you"
 """Caller of operations called on the page."""

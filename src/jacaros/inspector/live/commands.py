@@ -5,11 +5,10 @@ import math
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.source import TEXT
-from jacaros.clock import of_run
-from jacaros.env.errors import OperationFailed
+from jacaros.agents.language.diagnostics import TEXT, AslError
+from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.errors import JacarosError
+from jacaros.runtime.clock import of_run
 
 LONGEST = 2_000
 """Maximum number of characters of a text in a command: parsing it takes about 10 ms."""

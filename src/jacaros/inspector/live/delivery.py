@@ -4,8 +4,8 @@ import asyncio
 from collections import deque
 from typing import Protocol
 
-from jacaros.clock import real_time
 from jacaros.inspector.live.records import LiveRecord, json_text
+from jacaros.runtime.clock import real_time
 
 QUEUED = 10_000
 """Maximum number of records waiting for one page."""

@@ -3,30 +3,29 @@
 from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.actions.internal_action import ActionError
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.read_only import Impure, ReadOnly, reading
-from jacaros.bdi.state.budget import SearchLimit
-from jacaros.bdi.state.plan import Failure
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.body.values import UNKEPT, to_term
+from jacaros.agents.body.values import UNKEPT, to_term
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.actions.internal_action import ActionError
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.context import Impure, ReadOnly, reading
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.budget import SearchLimit
+from jacaros.agents.mind.state.plan import Failure
+from jacaros.agents.terms.substitution import resolve
+from jacaros.agents.terms.text import excerpt, text
+from jacaros.agents.terms.values import Term, Var
 from jacaros.inspector.live.commands import LONGEST, Command, Given, Refused, choice_in, text_in
 from jacaros.inspector.live.time_limit import within
 from jacaros.mas.open_mind import OpenMind, question
 from jacaros.mas.system import System
-from jacaros.terms.excerpt import excerpt
-from jacaros.terms.substitution import resolve
-from jacaros.terms.text import text
-from jacaros.terms.values import Term, Var
 
 YOU = "you"
 """Sender of messages written on the page."""
 ANSWERS = 20
 """Number of answers shown for a query."""
 QUESTION_STEPS, QUESTION_TIME = 10_000, 0.1
-"""Limits of a query: steps (see `jacaros.bdi.rules.read_only.reading`), and seconds."""
+"""Limits of a query: steps (see `jacaros.agents.mind.rules.context.reading`), and seconds."""
 PERFORMATIVES = (
     "tell",
     "untell",
@@ -141,7 +140,7 @@ class _MindCommands:
 def _ask(mind: OpenMind, formula: str) -> str:
     """Return the answers of a formula, one per line: ``X = 3, Y = kitchen``; ``yes`` or ``no`` without variables.
 
-    A question changes nothing, whatever it calls; see `jacaros.bdi.rules.read_only`.
+    A question changes nothing, whatever it calls; see `jacaros.agents.mind.rules.context`.
     """
     agent = mind.mind
     if agent.running:

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from jacaros.clock import outside_run, start_thread
 from jacaros.inspector.live.access import LOOPBACK, Access
 from jacaros.inspector.live.artifact_commands import artifact_commands
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
@@ -19,6 +18,7 @@ from jacaros.inspector.watch import Watch
 from jacaros.mas.history.past import Record
 from jacaros.mas.history.why import explain
 from jacaros.mas.system import System
+from jacaros.runtime.clock import outside_run, start_thread
 from jacaros.sim import World
 
 FIRST_VISIT = 5.0

@@ -19,7 +19,6 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from jacaros.clock import real_time
 from jacaros.errors import UsageError
 from jacaros.inspector.live.access import LOOPBACK, Access
 from jacaros.inspector.live.allowance import Allowance, Allowances, metered
@@ -27,6 +26,7 @@ from jacaros.inspector.live.beat import Beat
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.pages import Pages, security_headers
 from jacaros.inspector.live.records import json_text
+from jacaros.runtime.clock import real_time
 
 LIVE = "live"
 """Path of the WebSocket below the token."""

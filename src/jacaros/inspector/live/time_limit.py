@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from jacaros.clock import real_time
+from jacaros.runtime.clock import real_time
 
 
 class TimeIsUp(BaseException):

@@ -3,21 +3,27 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from jacaros.asl import nodes
-from jacaros.asl.loader import parse_trigger
-from jacaros.asl.lowering import Names, lower_value
-from jacaros.asl.walk import nodes_in
-from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import EVENT_ANNOTATIONS, EVENT_GOAL, Event
-from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations, literal_of
-from jacaros.bdi.state.plan import Plan, StepInfo
-from jacaros.bdi.state.triggers import Goal
+from jacaros.agents.language import nodes
+from jacaros.agents.language.loader import parse_trigger
+from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.language.nodes import nodes_in
+from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.intention import (
+    EVENT_ANNOTATIONS,
+    EVENT_GOAL,
+    PLAN,
+    STEP,
+    Event,
+    Frame,
+    Intention,
+)
+from jacaros.agents.mind.state.plan import Plan, StepInfo
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import annotations_of, functor_of
 from jacaros.errors import UsageError
 from jacaros.mas.debugging.condition import Condition
-from jacaros.terms.text import text
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import annotations_of, functor_of
 
 
 class Breakpoint(Protocol):

@@ -1,16 +1,16 @@
 """Conditions on an agent, evaluated without effects and with limited search."""
 
-from jacaros.asl import nodes
-from jacaros.asl.loader import parse_formula
-from jacaros.asl.lowering import Names, lower
-from jacaros.asl.walk import nodes_in
-from jacaros.bdi.actions.internal_action import STANDARD
-from jacaros.bdi.rules.read_only import reading
-from jacaros.bdi.state.circumstance import Circumstance
+from jacaros.agents.language import nodes
+from jacaros.agents.language.loader import parse_formula
+from jacaros.agents.language.lowering import Names, lower
+from jacaros.agents.language.nodes import nodes_in
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.mind.rules.context import reading
+from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.errors import UsageError
 
 MOST_STEPS = 1_000
-"""Maximum number of steps of one evaluation, see `jacaros.bdi.rules.read_only.reading`."""
+"""Maximum number of steps of one evaluation, see `jacaros.agents.mind.rules.context.reading`."""
 
 
 class Condition:

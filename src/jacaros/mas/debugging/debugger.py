@@ -5,13 +5,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, Protocol, get_args
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.holding import observe_steps
-from jacaros.bdi.state.circumstance import Circumstance
-from jacaros.bdi.state.event import Annotations, Event
-from jacaros.bdi.state.intention import PLAN, STEP, Intention
-from jacaros.bdi.state.triggers import Goal
-from jacaros.clock import Clock, WallClock, outside_run
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.sel_ev import observe_steps
+from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
+from jacaros.agents.mind.state.triggers import Goal
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_lifecycle import AgentLifecycle
@@ -30,6 +28,7 @@ from jacaros.mas.directory import Directory
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Runnable, Scheduler
+from jacaros.runtime.clock import Clock, WallClock, outside_run
 
 Step = Literal["cycle", "step", "event"]
 """The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
@@ -284,7 +283,7 @@ class Debugger:
         self._change(self._state)
         return lines
 
-    # ---- called by minds, see `jacaros.bdi.state.circumstance.StepObserver`
+    # ---- called by minds, see `jacaros.agents.mind.state.circumstance.StepObserver`
 
     def holds_event(self, agent: Circumstance, event: Event) -> bool:
         """Return whether *agent* is held before it selects a plan for *event*."""

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from jacaros.asl import nodes
-from jacaros.asl.formatter import format_term
-from jacaros.asl.walk import shape
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules import deriving
-from jacaros.bdi.rules.reloading import outdated_plans, replace_plans, replace_rules
+from jacaros.agents.language import nodes
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import shape
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules import deriving
+from jacaros.agents.mind.rules.plan_changes import outdated_plans, replace_plans, replace_rules
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory

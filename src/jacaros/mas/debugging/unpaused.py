@@ -1,12 +1,12 @@
 """What a pause of the run does not stop, and the command that stops robots on a real graph."""
 
-from jacaros.bdi.mind import Mind
-from jacaros.clock import Clock
+from jacaros.agents.mind.mind import Mind
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.ros.guarded import guarded_by
+from jacaros.runtime.clock import Clock
 
 
 def command_standstill(ros: RosGraph, options: RunOptions) -> None:

@@ -10,7 +10,7 @@ JacarosError
 from collections.abc import Iterable
 
 from jacaros.errors import JacarosError
-from jacaros.suggestions import suggestion
+from jacaros.files.texts import suggestion
 
 
 class UnknownAgent(JacarosError):
@@ -38,7 +38,7 @@ class GoalFailed(JacarosError):
     Attributes:
         goal: the goal as it was given.
         message: the message of the failure.
-        reasons: its terms as plain values (see `jacaros.env.values`), such as ``error(no_relevant)``.
+        reasons: its terms as plain values (see `jacaros.artifacts.env.values`), such as ``error(no_relevant)``.
     """
 
     def __init__(self, text: str, goal: str, message: str = "", reasons: tuple[object, ...] = ()) -> None:

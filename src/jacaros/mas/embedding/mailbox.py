@@ -4,19 +4,19 @@ import asyncio
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.body.values import UNKEPT, to_term
+from jacaros.agents.body.values import UNKEPT, to_term
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.python.agent import Message
+from jacaros.agents.terms.substitution import rename
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import Term, bare, is_list, list_items
 from jacaros.errors import UsageError
-from jacaros.extension.views import Message
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.embedding.stream import Stream
 from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.open_mind import question, values_of
-from jacaros.terms.substitution import rename
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Term, bare, is_list, list_items
 
 Send = Callable[[SpeechAct], bool]
 """Delivers a message. Returns False if the receiver is unknown."""
@@ -54,7 +54,7 @@ class Mailbox(Stream[Message]):
         Args:
             receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``askOne``, ``signal`` …
-            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.env.values`).
+            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.artifacts.env.values`).
             reply_to: the message that this one answers.
 
         Raises:

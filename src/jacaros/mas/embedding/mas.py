@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jacaros.bdi.snapshot import restore
+from jacaros.agents.mind.storage import restore
 from jacaros.errors import UsageError
 from jacaros.mas.agent_lifecycle import begin
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
@@ -18,12 +18,12 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.source_path import source_folders
 
 if TYPE_CHECKING:
-    from jacaros.env.artifact import Artifact
-    from jacaros.env.environment import Environment
-    from jacaros.env.ids import ArtifactId
-    from jacaros.env.ports import Workspace
-    from jacaros.env.session.session import Session
-    from jacaros.extension.python_agent import PythonAgent
+    from jacaros.agents.python.python_agent import PythonAgent
+    from jacaros.artifacts.env.artifact import Artifact
+    from jacaros.artifacts.env.environment import Environment
+    from jacaros.artifacts.env.errors import ArtifactId
+    from jacaros.artifacts.env.ports import Workspace
+    from jacaros.artifacts.presence.session import Session
     from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
     from jacaros.mas.environment import RunEnvironment
     from jacaros.ros.backend import Backend
@@ -199,7 +199,7 @@ class Mas(EmbeddedRun):
         Args:
             receiver: name of the agent.
             performative: ``tell``, ``achieve``, ``untell``, ``signal`` …
-            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.env.values`).
+            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.artifacts.env.values`).
             sender: name of the sender. Answers reach the `mailbox` with this name, if it exists.
 
         Raises:
@@ -331,7 +331,7 @@ class Mas(EmbeddedRun):
 
     def session(self, name: str, workspace: str = "/main") -> "Session":
         """Return a working session, with which Python code uses artifacts itself. See
-        `jacaros.env.session.session.Session`.
+        `jacaros.artifacts.presence.session.Session`.
 
         It is closed at the end of the run at the latest.
 
@@ -342,7 +342,7 @@ class Mas(EmbeddedRun):
         Raises:
             OperationFailed: the workspace does not exist.
         """
-        from jacaros.env.session.session import Session
+        from jacaros.artifacts.presence.session import Session
         from jacaros.mas.embedding.session_account import SessionAccount
 
         environment = self.environment

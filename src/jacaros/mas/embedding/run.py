@@ -7,7 +7,6 @@ from functools import partial
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
-from jacaros.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.embedding.errors import RunEnded
@@ -16,6 +15,7 @@ from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.history.explanation import Explanation
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
+from jacaros.runtime.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
 
 if TYPE_CHECKING:
     from jacaros.mas.debugging.debugger import Debugger

@@ -4,23 +4,23 @@ import asyncio
 from collections.abc import Callable, Generator
 from typing import Any
 
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.explaining.lost_goals import loss_of
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules import goals
-from jacaros.bdi.rules.failure import told
-from jacaros.bdi.rules.watched import WatchedCondition, WatchedGoal
-from jacaros.bdi.snapshot import stored
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.body.values import to_value
+from jacaros.agents.body.values import to_value
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.explaining.lost_goals import loss_of
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules import goals
+from jacaros.agents.mind.rules.failure import told
+from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.storage import stored
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Functor, String, Term, bare, deref
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.embedding.errors import AgentEnded, GoalFailed
 from jacaros.mas.embedding.waits import Waits
 from jacaros.mas.open_mind import OpenMind, literal, question, values_of
-from jacaros.terms.text import text
-from jacaros.terms.values import Functor, String, Term, bare, deref
 
 
 class PursuedGoal:

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
-from jacaros.env.kernel.faults import error_text
+from jacaros.artifacts.kernel.faults import error_text
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.embedding.errors import RunEnded
 from jacaros.mas.embedding.waits import Waits

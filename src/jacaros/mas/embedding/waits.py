@@ -5,9 +5,9 @@ import threading
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from jacaros.clock import Clock
 from jacaros.errors import UsageError
 from jacaros.mas.embedding.errors import AgentEnded, RunEnded
+from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")
 

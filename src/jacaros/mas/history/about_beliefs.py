@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
+from jacaros.files.texts import suggestion
 from jacaros.mas.history.chains import chain, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of
-from jacaros.suggestions import suggestion
 
 MOST_CHANGES = 5
 """Number of earlier changes that an answer lists."""

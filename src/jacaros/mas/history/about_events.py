@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 from jacaros.errors import UsageError
+from jacaros.files.texts import suggestion
 from jacaros.mas.history.chains import chain, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Data, Past, of_agent
 from jacaros.mas.history.patterns import Pattern, name_of, unsigned
-from jacaros.suggestions import suggestion
 
 MOST_PLANS = 8
 """Maximum number of plans in an answer."""

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.bdi.mind import Mind
-from jacaros.clock import Clock
+from jacaros.agents.mind.mind import Mind
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.mas.history.deliberations import IN_ALL, Allowance, Links
@@ -13,7 +12,8 @@ from jacaros.mas.history.intentions import Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.minds import MindRecords, Records
 from jacaros.mas.history.programs import ProgramRecords
-from jacaros.trace import Cause
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.trace import Cause
 
 if TYPE_CHECKING:
     from jacaros.mas.python_agents.host import PythonAgentHost

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.clock import Clock
 from jacaros.mas.history.values import call_text, limited, message_text, request_text
-from jacaros.trace import Cause, Tracer
+from jacaros.runtime.clock import Clock
+from jacaros.runtime.trace import Cause, Tracer
 
 _GENERATION = 4096
 """Number of causes that are kept at least, until something needs them; at most twice as many."""
@@ -120,7 +120,7 @@ class CauseRecords:
         return end
 
     def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
-        """Create the next link of a chain. See `jacaros.trace.Tracer`."""
+        """Create the next link of a chain. See `jacaros.runtime.trace.Tracer`."""
         self._last = number = self._last + 1
         made = Cause(number, 0 if parent is None else parent.id, kind, what)
         if kind in RECORDED:
@@ -135,7 +135,7 @@ class CauseRecords:
         return made
 
     def received_message(self, topic: str, message: Any) -> Cause:
-        """Create the first link of a chain. See `jacaros.trace.Tracer`."""
+        """Create the first link of a chain. See `jacaros.runtime.trace.Tracer`."""
         # Called for each sensor message: most of the cost of a recording would be here.
         try:
             traffic = self.received[topic]
@@ -159,7 +159,7 @@ class CauseRecords:
             self._young[cause.id] = Cause(*link[:4]), self._clock.now(), link[4]
 
     def sent_message(self, topic: str, message: Any, parent: Cause | None) -> None:
-        """Create the last link of a chain, see `jacaros.trace.Tracer`.
+        """Create the last link of a chain, see `jacaros.runtime.trace.Tracer`.
 
         Frequent commands of one operation are thinned out.
         """

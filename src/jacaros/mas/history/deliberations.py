@@ -3,15 +3,14 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
-from jacaros.bdi.explaining.failing_context import FailingContexts
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.intention import PLAN, Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.plan import Plan
-from jacaros.bdi.state.triggers import Goal, Trigger
+from jacaros.agents.mind.explaining.lost_goals import FailingContexts
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
+from jacaros.agents.mind.state.plan import Plan
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.words import shown_event
-from jacaros.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause, Tracer
 
 PER_SECOND = 10
 """Maximum number of contexts of one agent that are examined per second of the run's clock, at about 50 µs each."""
@@ -116,7 +115,7 @@ class DeliberationRecords:
         frame: Frame | None,
         cause: Cause | None,
     ) -> Cause | None:
-        """Record a deliberation. See `jacaros.bdi.state.observing.MindObserver`."""
+        """Record a deliberation. See `jacaros.agents.mind.state.ports.MindObserver`."""
         plans = self._plans_for(goal[0])
         if not plans and frame is None and not goal[0].kind:
             return cause  # no plan is relevant for this event

@@ -3,15 +3,14 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from jacaros.clock import Clock
-from jacaros.env.environment import Environment
-from jacaros.env.execution import OperationExecution
-from jacaros.env.ids import ArtifactId
-from jacaros.env.observation import Observation
-from jacaros.env.operation import OperationOutcome
-from jacaros.env.property import ObservableProperty
-from jacaros.env.workspace import Workspace
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import ArtifactId
+from jacaros.artifacts.env.execution import OperationExecution
+from jacaros.artifacts.env.operation import OperationOutcome
+from jacaros.artifacts.env.property import ObservableProperty, Observation
+from jacaros.artifacts.env.workspace import Workspace
 from jacaros.mas.history.values import call_text, json_values, limited, output_texts, request_text
+from jacaros.runtime.clock import Clock
 
 PERIOD = 0.5
 """Seconds between two records of a property that changes continuously. The last value is always recorded."""

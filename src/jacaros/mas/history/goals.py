@@ -4,14 +4,13 @@ from collections.abc import Callable
 from functools import partial
 from itertools import count
 
-from jacaros.bdi.explaining.failure_reason import goal_text
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.meta_events import observe_goals
-from jacaros.bdi.state.literals import literal_of
-from jacaros.bdi.state.triggers import Goal
+from jacaros.agents.mind.explaining.failure_reason import goal_text
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.meta_events import observe_goals
+from jacaros.agents.mind.state.triggers import Goal, literal_of
+from jacaros.agents.terms.substitution import is_ground
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.history.words import named
-from jacaros.terms.substitution import is_ground
 
 Tell = Callable[[dict[str, object]], None]
 
@@ -64,7 +63,7 @@ class GoalRecords:
             host.observe(_Work(self, host.name))
 
     def __call__(self, agent: str, state: str, goal: Goal, which: int, intention: int, why: str = "") -> None:
-        """Record a change reported by a mind. See `jacaros.bdi.rules.meta_events.observe_goals`."""
+        """Record a change reported by a mind. See `jacaros.agents.mind.rules.meta_events.observe_goals`."""
         if goal[0].kind != "!" or state == "waiting":
             return
         known = self._goals.get((agent, which))
@@ -125,7 +124,7 @@ class _Work:
         self._at_work: dict[object, int] = {}
 
     def __call__(self, state: str, text: str, which: object, why: str) -> None:
-        """Record a change reported by the agent. See `jacaros.env.session.account.Observer`."""
+        """Record a change reported by the agent. See `jacaros.artifacts.presence.perception.Observer`."""
         if state == "executing":
             self._at_work[which] = next(self._numbers)
         number = self._at_work.get(which)

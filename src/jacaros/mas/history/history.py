@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from jacaros.clock import Clock
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory
@@ -12,6 +11,7 @@ from jacaros.mas.history.agents import AgentRecords, PopulatedSystem
 from jacaros.mas.history.run_environment import RunEnvironmentRecords, SituatedSystem
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
+from jacaros.runtime.clock import Clock
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:

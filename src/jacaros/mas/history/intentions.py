@@ -3,16 +3,16 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.urgency import Urgent
-from jacaros.bdi.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.pending import Waiting
-from jacaros.clock import Clock, Timer
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.urgency import Urgent
+from jacaros.agents.mind.state.intention import PLAN, STEP, Frame, Intention
+from jacaros.agents.mind.state.pending import Waiting
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.steps import Stacks
 from jacaros.mas.history.waiting import waits_for
 from jacaros.mas.history.words import shown
-from jacaros.trace import Cause
+from jacaros.runtime.clock import Clock, Timer
+from jacaros.runtime.trace import Cause
 
 PERIOD = 0.1
 """Seconds of the run's clock between two checks of an agent."""

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.bdi.state.speech_act import SpeechAct
+from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.mas.history.words import shown
-from jacaros.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause, Tracer
 
 KEPT = 5_000
 """Number of messages that are kept until they are read or answered."""

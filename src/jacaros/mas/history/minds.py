@@ -3,22 +3,21 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.rules.meta_events import observe_mind
-from jacaros.bdi.state.belief_base import literal
-from jacaros.bdi.state.intention import Frame, Intention
-from jacaros.bdi.state.literals import EventAnnotations
-from jacaros.bdi.state.rule import OpenFact, Rule
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.bdi.state.triggers import Goal
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.meta_events import observe_mind
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.belief_base import literal
+from jacaros.agents.mind.state.intention import Frame, Intention
+from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
+from jacaros.agents.terms.values import Annotated, Functor, Term, atom
 from jacaros.mas.history.deliberations import Allowance, DeliberationRecords, Links
 from jacaros.mas.history.intentions import IntentionRecords, Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.programs import ProgramRecords
 from jacaros.mas.history.steps import place_of
 from jacaros.mas.history.words import shown
-from jacaros.terms.values import Annotated, Functor, Term, atom
-from jacaros.trace import Cause
+from jacaros.runtime.trace import Cause
 
 MOST_BELIEFS = 1000
 """Maximum number of beliefs of one agent that are recorded when its observation begins."""
@@ -48,7 +47,7 @@ class Records(NamedTuple):
 
 
 class MindRecords:
-    """Records one mind. It is the mind's `jacaros.bdi.state.observing.MindObserver`.
+    """Records one mind. It is the mind's `jacaros.agents.mind.state.ports.MindObserver`.
 
     Args:
         mind: the mind.

@@ -2,14 +2,14 @@
 
 import re
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_literal
-from jacaros.asl.lowering import lower_value
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.loader import parse_literal
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.substitution import rename
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import Term, bare
 from jacaros.errors import UsageError
-from jacaros.terms.operators import ArithmeticFault
-from jacaros.terms.substitution import rename
-from jacaros.terms.unifier import Trail, undo, unify
-from jacaros.terms.values import Term, bare
 
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from jacaros.asl import nodes
-from jacaros.asl.formatter import format_term
-from jacaros.asl.source import SourceFile
-from jacaros.bdi.explaining.step_text import unbracketed
-from jacaros.bdi.mind import Mind
-from jacaros.bdi.state.plan import Plan, every_plan
-from jacaros.bdi.state.plan_library import ProgramPlans
-from jacaros.bdi.state.rule import Rule
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.mind.explaining.failure_reason import unbracketed
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.plan import Plan, every_plan
+from jacaros.agents.mind.state.plan_library import ProgramPlans
+from jacaros.agents.mind.state.rule import Rule
+from jacaros.agents.terms.text import text
 from jacaros.mas.history.words import named
-from jacaros.terms.text import text
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 

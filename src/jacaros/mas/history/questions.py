@@ -19,9 +19,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from jacaros.errors import UsageError
-from jacaros.excerpts import help_line
+from jacaros.files.texts import help_line, suggestion
 from jacaros.mas.history.patterns import Pattern
-from jacaros.suggestions import suggestion
 
 FORMS = (
     ("stopped", "why the robot stopped"),

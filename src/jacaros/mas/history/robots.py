@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from jacaros.clock import Clock
+from jacaros.runtime.clock import Clock
 
 MOST_RAYS = 90
 SCAN_PERIOD = 0.1

@@ -4,16 +4,16 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.clock import Clock, Timer
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.environment import EnvironmentRecords, robot_finder
 from jacaros.mas.history.graph import GraphRecords
 from jacaros.mas.history.robots import RobotRecords
 from jacaros.mas.ros_graph import RosGraph
-from jacaros.trace import Tracer
+from jacaros.runtime.clock import Clock, Timer
+from jacaros.runtime.trace import Tracer
 
 if TYPE_CHECKING:
-    from jacaros.env.environment import Environment
+    from jacaros.artifacts.env.environment import Environment
 
 PERIOD = 1.0
 """Seconds between two checks of what does not report its changes."""

@@ -2,14 +2,14 @@
 
 from typing import Any, NamedTuple
 
-from jacaros.asl.source import Span
-from jacaros.bdi.explaining.failure_reason import Place, place_of_call
-from jacaros.bdi.state.intention import GOAL, PLAN, STEP, Frame, Intention
-from jacaros.bdi.state.literals import literal_of
-from jacaros.bdi.state.plan import Plan, StepInfo
+from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.mind.explaining.failure_reason import Place, place_of_call
+from jacaros.agents.mind.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.agents.mind.state.plan import Plan, StepInfo
+from jacaros.agents.mind.state.triggers import literal_of
+from jacaros.agents.terms.substitution import is_ground
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.words import cut, named, shown_event
-from jacaros.terms.substitution import is_ground
 
 DEEPEST = 24
 """Maximum number of recorded goals of a stack: the lowest one, and those next to the top."""

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Any
 
-from jacaros.env.operation import OperationRequest
-from jacaros.env.values import Out, text
+from jacaros.artifacts.env.operation import OperationRequest
+from jacaros.artifacts.env.values import Out, text
 
 LONGEST = 200
 """Maximum number of characters of a recorded value or message."""

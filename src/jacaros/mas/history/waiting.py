@@ -1,7 +1,7 @@
 """What an intention waits for, in words."""
 
-from jacaros.bdi.actions.waiting import TIME
-from jacaros.bdi.state.pending import (
+from jacaros.agents.mind.actions.waiting import TIME
+from jacaros.agents.mind.state.pending import (
     ASK,
     GOAL_CONDITION,
     CoroutineWait,
@@ -10,8 +10,8 @@ from jacaros.bdi.state.pending import (
     Watch,
     is_action,
 )
+from jacaros.agents.terms.values import Term, annotations_of
 from jacaros.mas.history.words import shown
-from jacaros.terms.values import Term, annotations_of
 
 
 def waits_for(waiting: Waiting) -> str:
@@ -28,7 +28,7 @@ def waits_for(waiting: Waiting) -> str:
 
 
 def _awaited(waiting: Waiting) -> Term:
-    """Return the subject of a ``.wait``. See `jacaros.bdi.actions.waiting`."""
+    """Return the subject of a ``.wait``. See `jacaros.agents.mind.actions.waiting`."""
     found = annotations_of(waiting.reason)
     return found[0] if found else waiting.reason
 

@@ -2,13 +2,11 @@
 
 import re
 
-from jacaros.bdi.state.literals import EventAnnotations, literal_of
-from jacaros.bdi.state.triggers import Goal
-from jacaros.terms.excerpt import excerpt
-from jacaros.terms.operators import ArithmeticFault
-from jacaros.terms.substitution import is_flat
-from jacaros.terms.text import text
-from jacaros.terms.values import Term
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
+from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.substitution import is_flat
+from jacaros.agents.terms.text import excerpt, text
+from jacaros.agents.terms.values import Term
 
 LONGEST = 300
 """Maximum number of characters of a recorded term."""

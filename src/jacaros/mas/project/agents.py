@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_literals
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.loader import parse_literals
 from jacaros.mas.agent_options import check_option
 from jacaros.mas.deployment import AgentSpec, FocusSpec
 from jacaros.mas.project.parts import AgentPart, ProjectPart, Written

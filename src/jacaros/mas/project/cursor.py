@@ -6,9 +6,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final, NoReturn
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile, Span
-from jacaros.terms.text import unquoted
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
+from jacaros.agents.terms.text import unquoted
 
 _TOKEN: Final = re.compile(
     r"""

@@ -7,6 +7,7 @@ lists and structures as arguments, ``parent:`` of workspaces, paths as names of 
 from contextlib import suppress
 from typing import Final
 
+from jacaros.files.texts import suggestion
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.jcm_agents import KEYS as AGENT_KEYS
 from jacaros.mas.project.jcm_agents import JcmAgents
@@ -15,7 +16,6 @@ from jacaros.mas.project.jcm_values import NAME, SECTIONS, JcmValues
 from jacaros.mas.project.jcm_workspaces import ENTRIES, JcmWorkspaces
 from jacaros.mas.project.parts import ProjectPart, Written
 from jacaros.mas.project.unsupported import NODES, PACKAGES, PATHS, PLATFORMS
-from jacaros.suggestions import suggestion
 
 _KEYS: Final = ("asl-path", "org-path", "java-path", "class-path", "platform", "world", "mapping")
 _OWN_PLATFORMS: Final = ("cartago", "local", "centralised", "jacamo.platform.Cartago")

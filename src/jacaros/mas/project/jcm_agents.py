@@ -2,13 +2,13 @@
 
 from typing import Final
 
-from jacaros.asl.slips import is_slip_of
-from jacaros.asl.source import Span
+from jacaros.agents.language.cursor import is_slip_of
+from jacaros.agents.language.diagnostics import Span
+from jacaros.files.texts import did_you_mean
 from jacaros.mas.project.cursor import Token, text_of
 from jacaros.mas.project.jcm_values import NAME, JcmValues
 from jacaros.mas.project.parts import AgentPart, FocusPart, JoinPart
 from jacaros.mas.project.unsupported import INSPECTORS, NODES, ROLES, class_without_effect
-from jacaros.suggestions import did_you_mean
 
 KEYS: Final = (
     *("beliefs", "goals", "join", "focus", "instances", "roles"),

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterable
 from typing import Final
 
-from jacaros.asl.source import Span
-from jacaros.env.values import Atom, Structure
+from jacaros.agents.language.diagnostics import Span
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.files.texts import suggestion
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.parts import AgentName, ProjectPart, Written
 from jacaros.mas.project.unsupported import NODES, Topic, Unsupported
-from jacaros.suggestions import suggestion
 
 SECTIONS: Final = ("agent", "workspace", "institution", "organisation", "organization", "node", "uses")
 NAME: Final = ("word", "string")

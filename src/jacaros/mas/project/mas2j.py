@@ -3,8 +3,9 @@
 from contextlib import suppress
 from typing import Final, NoReturn
 
-from jacaros.asl.slips import is_slip_of
-from jacaros.asl.source import Span
+from jacaros.agents.language.cursor import is_slip_of
+from jacaros.agents.language.diagnostics import Span
+from jacaros.files.texts import did_you_mean, suggestion
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, text_of
 from jacaros.mas.project.parts import AgentPart, ProjectPart
@@ -17,7 +18,6 @@ from jacaros.mas.project.unsupported import (
     Unsupported,
     class_without_effect,
 )
-from jacaros.suggestions import did_you_mean, suggestion
 
 _SECTIONS: Final = (
     "infrastructure",

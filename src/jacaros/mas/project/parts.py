@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from jacaros.asl.source import Span
+from jacaros.agents.language.diagnostics import Span
 from jacaros.mas.deployment import ArtifactSpec
 from jacaros.mas.project.unsupported import Unsupported
 

@@ -1,12 +1,12 @@
 """The workspaces and artifacts of a project, found by name."""
 
-from jacaros.asl.source import Span
-from jacaros.env.ids import resolve_path
+from jacaros.agents.language.diagnostics import Span
+from jacaros.artifacts.env.errors import resolve_path
+from jacaros.files.texts import suggestion
 from jacaros.mas.deployment import FocusSpec, WorkspaceSpec
 from jacaros.mas.project.parts import FocusPart, JoinPart, ProjectPart, WorkspacePart
 from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import INSTITUTIONS, ORGANISATIONS, Unsupported
-from jacaros.suggestions import suggestion
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})

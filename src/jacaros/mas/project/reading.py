@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
+from jacaros.files.texts import file_text, is_file
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, AgentSpec, Deployment, ProjectError
 from jacaros.mas.project.agents import ProjectAgents
 from jacaros.mas.project.cursor import ProjectCursor
@@ -14,7 +14,6 @@ from jacaros.mas.project.places import ProjectPlaces
 from jacaros.mas.project.remarks import Remarks
 from jacaros.mas.project.unsupported import condensed, each
 from jacaros.mas.source_path import source_folders
-from jacaros.text_files import file_text, is_file
 
 _JCM: Final = ".jcm"
 _CODE_PATHS: Final = ("src", "src/env", "src/agt")

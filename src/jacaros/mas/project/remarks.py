@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import Span
+from jacaros.agents.language.diagnostics import Diagnostic, Span
 
 
 class Remarks:

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import Span
+from jacaros.agents.language.diagnostics import Diagnostic, Span
 
 CODE: Final = "no-effect"
 _NAMED: Final = 3

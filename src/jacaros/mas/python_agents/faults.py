@@ -3,7 +3,7 @@
 import sysconfig
 from pathlib import Path
 
-from jacaros.env.kernel.faults import error_text
+from jacaros.artifacts.kernel.faults import error_text
 
 _OURS = str(Path(__file__).parents[2])
 _STANDARD = sysconfig.get_path("stdlib")

@@ -6,9 +6,9 @@ from functools import partial
 from inspect import isawaitable
 from typing import Any
 
-from jacaros.env.session.session import Session
-from jacaros.extension.python_agent import PythonAgent
-from jacaros.extension.views import ReceivedMessage, overridden
+from jacaros.agents.python.agent import ReceivedMessage, overridden
+from jacaros.agents.python.python_agent import PythonAgent
+from jacaros.artifacts.presence.session import Session
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
 

@@ -5,20 +5,19 @@ from collections.abc import Callable, Coroutine, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from jacaros.asl.loader import parse_literals
-from jacaros.asl.lowering import lower_value
-from jacaros.asl.nodes import Literal as LiteralNode
-from jacaros.bdi.state.act import Completion
-from jacaros.bdi.state.options import Options
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import Clock
-from jacaros.env.errors import WorkspaceError
-from jacaros.env.kernel.faults import error_text
-from jacaros.env.session.account import Observer
-from jacaros.env.session.session import Session
+from jacaros.agents.language.loader import parse_literals
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.language.nodes import Literal as LiteralNode
+from jacaros.agents.mind.state.act import Completion, SpeechAct
+from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.python.agent import Literal, literal_of
+from jacaros.agents.python.python_agent import PythonAgent
+from jacaros.agents.terms.values import Term
+from jacaros.artifacts.env.errors import WorkspaceError
+from jacaros.artifacts.kernel.faults import error_text
+from jacaros.artifacts.presence.perception import Observer
+from jacaros.artifacts.presence.session import Session
 from jacaros.errors import JacarosError
-from jacaros.extension.literal import Literal, literal_of
-from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.agent_options import mind_options
 from jacaros.mas.coroutines import without_exit
@@ -27,7 +26,7 @@ from jacaros.mas.python_agents.faults import fault_lines, place_of_fault
 from jacaros.mas.python_agents.handlers import Handlers
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
-from jacaros.terms.values import Term
+from jacaros.runtime.clock import Clock
 
 _PATIENCE = 5.0
 """Seconds that an agent has for its clean-up at the end of a run."""

@@ -4,16 +4,15 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import Final
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.extension.python_agent import PythonAgent
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.python.python_agent import PythonAgent
+from jacaros.files.python_modules import UNSEEN, ModuleUnreadable, ProjectModules
+from jacaros.files.texts import suggestion
 from jacaros.mas.agent_host import Run
 from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.python_agents.faults import place_of_fault
 from jacaros.mas.python_agents.host import PythonAgentHost
-from jacaros.module_outlines import UNSEEN
-from jacaros.project_modules import ModuleUnreadable, ProjectModules
-from jacaros.suggestions import suggestion
 
 _OF_MINDS: Final = (
     "events",

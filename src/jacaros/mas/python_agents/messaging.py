@@ -5,13 +5,13 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from jacaros.bdi.state.speech_act import SpeechAct, message_id
-from jacaros.clock import Clock
-from jacaros.extension.views import ReceivedMessage
+from jacaros.agents.mind.state.act import SpeechAct, message_id
+from jacaros.agents.python.agent import ReceivedMessage
+from jacaros.agents.terms.values import Term
 from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.idleness import Activity, AgentTimer
 from jacaros.mas.python_agents.task_activity import TaskActivity
-from jacaros.terms.values import Term
+from jacaros.runtime.clock import Clock
 
 
 class Messaging:

@@ -1,6 +1,6 @@
 """The session of a Python agent at its start."""
 
-from jacaros.env.session.session import Session
+from jacaros.artifacts.presence.session import Session
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.environment import RunEnvironment

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.state.act import Act, Completion
-from jacaros.body.actions import keys
+from jacaros.agents.body.actions import keys
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import Act, Completion
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import String, Term, Var, deref, functor
 from jacaros.mas.history.chains import shown
 from jacaros.mas.history.past import Data, Past, Record
-from jacaros.terms.text import text
-from jacaros.terms.values import String, Term, Var, deref, functor
 
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)

@@ -3,10 +3,9 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from jacaros.asl import nodes
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_literal, read_program
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, SourceFile
+from jacaros.agents.language.loader import parse_literal, read_program
 from jacaros.mas.history.past import Data, Record
 from jacaros.mas.history.patterns import name_of
 

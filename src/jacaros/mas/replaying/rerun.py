@@ -7,12 +7,11 @@ from functools import partial
 from itertools import groupby
 from pathlib import Path
 
-from jacaros.asl.diagnostics import AslError
-from jacaros.asl.loader import parse_term
-from jacaros.asl.lowering import lower_value
-from jacaros.bdi.state.act import Act
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import VirtualClock, run
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import Act, SpeechAct
+from jacaros.agents.terms.text import text
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.embedding.mas import Mas
@@ -23,7 +22,7 @@ from jacaros.mas.history.well_formed import is_well_formed
 from jacaros.mas.replaying.differences import Comparison, compare
 from jacaros.mas.replaying.recorded_acts import RecordedAct, RecordedActs, completion
 from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
-from jacaros.terms.text import text
+from jacaros.runtime.clock import VirtualClock, run
 
 AT_ONCE = 1e-3
 """Seconds by which an action of the rerun may begin earlier or later than the recorded one, and still end with it."""

@@ -6,8 +6,8 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from jacaros.clock import Clock
 from jacaros.ros.errors import CallFailed, ServiceError, ServiceUnavailable
+from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")
 

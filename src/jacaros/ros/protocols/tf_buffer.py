@@ -8,9 +8,9 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable
 
+from jacaros.files.texts import aside
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.protocols.transform import Transform, interpolate
-from jacaros.suggestions import aside
 
 HISTORY = 10.0
 """Seconds for which moving transforms are kept, as in tf2."""

@@ -23,13 +23,12 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 from jacaros.sim.description import PersonDescription, Pose, WorldDescription, WorldError
 from jacaros.sim.faults.description import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
 from jacaros.sim.files.people import read_path
 from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose
-from jacaros.yaml_nodes import Node, Problem, read_document
-from jacaros.yaml_syntax import read_text, top_keys
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _COMMON = ("kind", "at", "for", "robot")

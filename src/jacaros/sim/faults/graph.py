@@ -9,12 +9,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, cast
 
-from jacaros.clock import Clock
 from jacaros.errors import UsageError
+from jacaros.files.texts import suggestion
 from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.runtime.clock import Clock
 from jacaros.sim.faults.schedule import Faults
-from jacaros.suggestions import suggestion
 
 
 class FaultyGraph:

@@ -5,9 +5,9 @@ box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}      # or color: "#
 
 import re
 
+from jacaros.files.yaml import Node
 from jacaros.sim.description import Furniture
 from jacaros.sim.files.room import corners_of
-from jacaros.yaml_nodes import Node
 
 COLORS = {
     "black": "#202020",

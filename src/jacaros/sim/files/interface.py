@@ -17,9 +17,9 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Node
 from jacaros.sim.interface import ACTIONS, SERVICES, TOPICS, Interface, OwnService, OwnTopic
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Node
 
 SECTIONS = ("topics", "services", "actions")
 _KNOWN: Mapping[str, tuple[str, ...]] = {"topics": TOPICS, "services": SERVICES, "actions": ACTIONS}

@@ -1,6 +1,6 @@
 """Maps of ROS's map_server (a YAML file and an image) as walls, and worlds as maps.
 
-The keys are those of `jacaros.map_header`; the origin must not be rotated.
+The keys are those of `jacaros.files.maps`; the origin must not be rotated.
 
 Unknown cells are not walls: laser beams and robots pass through them.
 """
@@ -9,8 +9,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from jacaros.grey_images import GreyImage, ImageError, pgm_bytes, read_image
-from jacaros.map_header import (
+from jacaros.files.maps import (
     BLACK,
     CELLS,
     FREE,
@@ -18,15 +17,18 @@ from jacaros.map_header import (
     OCCUPIED,
     UNKNOWN,
     WHITE,
+    GreyImage,
+    ImageError,
     MapHeader,
     header_text,
+    pgm_bytes,
     read_header,
+    read_image,
 )
+from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.grid import Grid
-from jacaros.suggestions import suggestion
-from jacaros.yaml_nodes import Node, Problem, read_document
-from jacaros.yaml_syntax import read_text, top_keys
 
 _ROOM_FOR_ROBOT = 0.4
 """Metres of free floor around an automatically placed robot."""

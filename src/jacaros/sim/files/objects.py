@@ -4,9 +4,9 @@ objects:
   - {name: cup, x: 1, y: 0.5, radius: 0.03, color: red}
 """
 
+from jacaros.files.yaml import Node
 from jacaros.sim.description import ObjectDescription
 from jacaros.sim.files.box import read_color
-from jacaros.yaml_nodes import Node
 
 
 def read_objects(node: Node) -> tuple[ObjectDescription, ...]:

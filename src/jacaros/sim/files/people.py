@@ -13,9 +13,9 @@ people:
 
 import itertools
 
+from jacaros.files.yaml import Node
 from jacaros.sim.description import PersonDescription, Segment, WorldDescription
 from jacaros.sim.files.box import read_color
-from jacaros.yaml_nodes import Node
 
 _TOUCHING = 0.001
 

@@ -24,6 +24,7 @@ All keys are optional; these are the defaults, except for the noise of odometry 
 import math
 import re
 
+from jacaros.files.yaml import Node
 from jacaros.sim.description import (
     BatterySettings,
     CleaningTool,
@@ -37,7 +38,6 @@ from jacaros.sim.description import (
 from jacaros.sim.files.interface import SECTIONS, read_interface
 from jacaros.sim.robot.kinds import KINDS, USUAL
 from jacaros.sim.trigonometry import TWO_PI, radians
-from jacaros.yaml_nodes import Node
 
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 

@@ -11,8 +11,8 @@ Lengths are metres, dirt is in grams::
         stains: {grams: 5, from: [4, 1], to: [5, 2]}          # only in this area
 """
 
+from jacaros.files.yaml import Node
 from jacaros.sim.description import Dirt, Rectangle, Room
-from jacaros.yaml_nodes import Node
 
 LARGEST = 10_000.0
 """Largest area of one field of dirt, in square metres: a million cells of 10 cm."""

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from jacaros.files.texts import shown_from
 from jacaros.sim.description import WorldError
 from jacaros.sim.files.map import free_place, read_map
-from jacaros.text_files import shown_from
 
 _NEW = """\
 # A world of two rooms. Lengths are metres, angles degrees counter-clockwise from the x axis.

@@ -34,6 +34,8 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+from jacaros.files.texts import is_file, suggestion
+from jacaros.files.yaml import Node, read_document, read_text, top_keys
 from jacaros.sim.description import (
     Dock,
     Door,
@@ -54,10 +56,6 @@ from jacaros.sim.files.people import check_people, read_person
 from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose, read_robot
 from jacaros.sim.files.room import read_rectangle, read_rooms
-from jacaros.suggestions import suggestion
-from jacaros.text_files import is_file
-from jacaros.yaml_nodes import Node, read_document
-from jacaros.yaml_syntax import read_text, top_keys
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
 _KEYS = (

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from jacaros.clock import Clock
 from jacaros.ros.backend import Backend, Publisher
+from jacaros.runtime.clock import Clock
 from jacaros.sim.navigation.driver import STOP, Command
 
 PERIOD = 0.1

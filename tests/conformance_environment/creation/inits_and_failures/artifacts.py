@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, initializer
+from jacaros.artifacts import Artifact, initializer
 
 
 class Box(Artifact):

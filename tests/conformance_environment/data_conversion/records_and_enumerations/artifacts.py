@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 
 @dataclass(frozen=True)

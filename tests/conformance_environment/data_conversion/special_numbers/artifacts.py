@@ -2,7 +2,7 @@
 
 import math
 
-from jacaros.env import Artifact, Atom
+from jacaros.artifacts import Artifact, Atom
 
 
 class Odd(Artifact):

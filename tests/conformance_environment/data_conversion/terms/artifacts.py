@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, Atom, Out, Structure, operation
+from jacaros.artifacts import Artifact, Atom, Out, Structure, operation
 
 
 class Echo(Artifact):

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 
 class Port(Artifact):

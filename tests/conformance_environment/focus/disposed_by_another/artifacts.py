@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 
 class Counter(Artifact):

@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 
 class Store(Artifact):

@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, internal_operation, operation
+from jacaros.artifacts import Artifact, internal_operation, operation
 
 
 class Clock(Artifact):

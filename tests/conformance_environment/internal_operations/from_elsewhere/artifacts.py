@@ -2,7 +2,7 @@
 
 import asyncio
 
-from jacaros.env import Artifact, internal_operation
+from jacaros.artifacts import Artifact, internal_operation
 
 
 class Sensor(Artifact):

@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, OperationFailed, Out, Structure, link, operation
+from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, link, operation
 
 
 class Lamp(Artifact):

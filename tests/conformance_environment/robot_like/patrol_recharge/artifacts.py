@@ -1,6 +1,6 @@
 """The artifacts of this case, written from its spec.md."""
 
-from jacaros.env import Artifact, Out, link, operation
+from jacaros.artifacts import Artifact, Out, link, operation
 
 HEADINGS = {0: (1, 0), 90: (0, 1), 180: (-1, 0), 270: (0, -1)}
 

@@ -8,8 +8,8 @@ import json
 import sys
 from typing import Any
 
-from jacaros.clock import WallClock, run
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import WallClock, run
 
 PATIENCE = 100.0
 

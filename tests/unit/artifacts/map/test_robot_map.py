@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from robot_lab import Lab, Watcher, in_lab
 
+from jacaros.artifacts import ArtifactId, Out, Structure
 from jacaros.artifacts.map.robot_map import ArtMap
 from jacaros.artifacts.robots.velocity import ArtCmdVelAndOdometry
-from jacaros.env import ArtifactId, Out, Structure
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import LATCHED
 

@@ -8,10 +8,10 @@ from itertools import pairwise
 import pytest
 from robot_lab import Lab, Watcher, in_lab
 
+from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.map.cells import Cell
 from jacaros.artifacts.map.route import route
 from jacaros.artifacts.map.slam_data import ArtSlamData
-from jacaros.env import ArtifactId, Atom, Out, Structure
 
 
 def cell(*arguments: object) -> Structure:

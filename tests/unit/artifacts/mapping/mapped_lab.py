@@ -5,9 +5,9 @@ from collections.abc import Awaitable, Callable
 
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import ArtifactId
 from jacaros.artifacts.mapping.artifact import MappedArtifact, mapped_type
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.env import ArtifactId
 
 
 def mapped(text: str) -> type[MappedArtifact]:

@@ -10,9 +10,9 @@ import pytest
 from mapped_lab import settle, with_mapped
 from robot_lab import TWIST, Lab, Watcher, apart
 
+from jacaros.artifacts import ArtifactId
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
-from jacaros.env import ArtifactId
 
 POINT = "geometry_msgs/msg/PointStamped"
 MAPPING = f"""

@@ -7,10 +7,10 @@ import pytest
 from mapped_lab import mapped, settle, with_mapped
 from robot_lab import STANDSTILL, Lab, in_lab
 
+from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.robots.motion_claim import motions_of
-from jacaros.env import ArtifactId, Atom, Out, Structure
 from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.parameter import Declaration

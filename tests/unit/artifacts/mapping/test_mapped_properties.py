@@ -8,9 +8,9 @@ import pytest
 from mapped_lab import mapped, settle, with_mapped
 from robot_lab import Lab, Watcher, in_lab
 
+from jacaros.artifacts import ArtifactId, OperationFailed
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.mapping.decoding import MessageHandle
-from jacaros.env import ArtifactId, OperationFailed
-from jacaros.env.values import Atom, Structure
 from jacaros.ros.qos import LATCHED, QoS
 
 POINT = "geometry_msgs/msg/Point"

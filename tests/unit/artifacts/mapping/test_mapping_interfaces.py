@@ -7,11 +7,11 @@ import pytest
 from mapped_lab import settle
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import load_mapping
 from jacaros.cli.main import call
-from jacaros.env import Out
 
 SHELF = """
 interfaces: types

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from jacaros.artifacts.env.manual import Manual, describe, manual_term
 from jacaros.artifacts.mapping.artifact import MappedArtifact, mapped_type
 from jacaros.artifacts.mapping.file import SHIPPED, load_mapping, read_mapping, shipped_mappings
-from jacaros.env.manual import Manual, describe, manual_term
 
 
 def manual(text: str) -> Manual:

@@ -6,8 +6,8 @@ import pytest
 from mapped_lab import mapped, settle
 from robot_lab import Lab, in_lab
 
-from jacaros.env import ArtifactId, Atom, Out
-from jacaros.env.errors import OperationFailed
+from jacaros.artifacts import ArtifactId, Atom, Out
+from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.parameter import Declaration
 

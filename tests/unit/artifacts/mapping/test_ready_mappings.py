@@ -8,16 +8,16 @@ import pytest
 from mapped_lab import settle
 from robot_lab import Lab, Watcher, in_lab
 
+from jacaros.artifacts import ArtifactId, Out
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.declared import OperationKind
 from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
-from jacaros.env import ArtifactId, Out
-from jacaros.env.values import Atom, Structure
+from jacaros.files.yaml import Problem
 from jacaros.ros.action import ServerGoal
 from jacaros.ros.fields import FieldType
-from jacaros.yaml_nodes import Problem
 
 TWIST = "geometry_msgs/msg/Twist"
 STAMPED = "geometry_msgs/msg/TwistStamped"

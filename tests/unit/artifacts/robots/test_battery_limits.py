@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Structure
 from jacaros.artifacts.robots.battery import ArtSimBattery
-from jacaros.env import Structure
 
 
 def option(name: str, value: Any) -> Structure:

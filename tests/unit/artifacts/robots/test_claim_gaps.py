@@ -4,9 +4,9 @@ import asyncio
 
 import pytest
 
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.robots.motion_claim import Claim
-from jacaros.clock import VirtualClock, run
-from jacaros.env.values import Atom, Structure
+from jacaros.runtime.clock import VirtualClock, run
 
 
 class Scene:

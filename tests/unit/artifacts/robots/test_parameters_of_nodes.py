@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from robot_lab import Lab, in_lab
 
+from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.robots.connection_artifact import ArtRos
-from jacaros.env import Out, Structure
 from jacaros.ros.errors import (
     CallTimedOut,
     ParameterRefused,

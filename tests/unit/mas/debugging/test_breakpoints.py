@@ -8,7 +8,7 @@ import pytest
 from debugged_runs import COUNTER, debugged
 
 from jacaros import Mas
-from jacaros.asl.diagnostics import AslError
+from jacaros.agents.language.diagnostics import AslError
 from jacaros.errors import UsageError
 from jacaros.mas.debugging import Debugger, DebugState
 from jacaros.mas.debugging.breakpoints import breakpoint_at

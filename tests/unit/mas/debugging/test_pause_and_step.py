@@ -10,8 +10,8 @@ from debugged_runs import debugged
 
 import jacaros
 from jacaros import Mas
+from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.errors import UsageError
-from jacaros.extension.python_agent import PythonAgent
 from jacaros.mas.debugging import Debugger, DebugState
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
@@ -194,7 +194,7 @@ def test_a_held_agent_can_receive_messages_and_its_goal_can_be_dropped() -> None
         await debugger.wait_until_paused()
         bob.add_belief("hello")
         mas.add_agent("ann", "!drop. +!drop <- .send(bob, achieve, stop).")
-        from jacaros.bdi.rules import goals
+        from jacaros.agents.mind.rules import goals
         from jacaros.mas.open_mind import literal
 
         goals.drop_desire(bob.mind, literal("go"))

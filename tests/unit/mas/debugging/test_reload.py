@@ -7,7 +7,7 @@ import pytest
 
 import jacaros
 from jacaros import Mas
-from jacaros.asl.diagnostics import AslError
+from jacaros.agents.language.diagnostics import AslError
 from jacaros.mas.debugging.reload import NOTHING
 
 OLD = """\
@@ -148,8 +148,8 @@ def test_plans_of_run_time_stay_and_removed_ones_stay_away(tmp_path: Path) -> No
         bob = mas.agent("bob")
         await bob.achieve("c")
         bob.mind.remove_plan(jacaros.mas.open_mind.literal("a"))
-        bob.mind.add_plan(jacaros.terms.values.String("+!d <- .print(own)."))
-        bob.mind.add_plan(jacaros.terms.values.String("+!c <- .print(first)."), first=True)
+        bob.mind.add_plan(jacaros.agents.terms.values.String("+!d <- .print(own)."))
+        bob.mind.add_plan(jacaros.agents.terms.values.String("+!c <- .print(first)."), first=True)
         write(file, old.replace("print(b)", "print(newb)"))
         mas.reload()
         for goal in ("b", "c", "d"):

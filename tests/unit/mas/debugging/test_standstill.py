@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
+from jacaros.artifacts import Environment, OperationRequest
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.clock import WallClock
-from jacaros.env import Environment, OperationRequest
 from jacaros.mas.debugging.unpaused import command_standstill, not_paused
 from jacaros.mas.options import RunOptions
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.open import open_backend
+from jacaros.runtime.clock import WallClock
 from jacaros.sim import SimNode, World
 
 sys.path.insert(0, str(Path(__file__).parents[2]))

@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable
 
 import jacaros
 from jacaros import Mas
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 Test = Callable[[Mas], Awaitable[None]]
 

@@ -8,9 +8,9 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Mas
-from jacaros.asl.diagnostics import AslError
-from jacaros.bdi.mind import Mind
-from jacaros.env import Artifact, operation
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.agents.mind.mind import Mind
+from jacaros.artifacts import Artifact, operation
 from jacaros.errors import InternalError
 from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
 

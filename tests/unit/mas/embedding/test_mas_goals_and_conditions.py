@@ -7,9 +7,9 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Atom, GoalFailed, Mas, Structure
-from jacaros.asl.diagnostics import AslError
-from jacaros.clock import VirtualClock
+from jacaros.agents.language.diagnostics import AslError
 from jacaros.mas.embedding.running_agent import RunningAgent
+from jacaros.runtime.clock import VirtualClock
 
 
 def test_until_waits_for_a_condition() -> None:

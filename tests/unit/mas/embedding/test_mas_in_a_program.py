@@ -10,12 +10,12 @@ from embedding_lab import Counter, run
 
 import jacaros
 from jacaros import Atom, Mas
-from jacaros.asl.diagnostics import AslError
-from jacaros.clock import VirtualClock, WallClock, clock_of, new_event_loop
-from jacaros.env import OperationFailed, Out
+from jacaros.agents.language.diagnostics import AslError
+from jacaros.artifacts import OperationFailed, Out
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, FocusSpec, ProjectError
 from jacaros.mas.embedding.errors import RunEnded, UnknownAgent
+from jacaros.runtime.clock import VirtualClock, WallClock, clock_of, new_event_loop
 
 
 def test_an_agent_from_a_text_achieves_a_goal() -> None:
@@ -62,7 +62,7 @@ def test_a_program_in_a_text_includes_files_of_the_folder(tmp_path: Path) -> Non
 
 def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
     (tmp_path / "artifacts.py").write_text(
-        "from jacaros.env import Artifact\n\n\nclass Lamp(Artifact):\n"
+        "from jacaros.artifacts import Artifact\n\n\nclass Lamp(Artifact):\n"
         "    def init(self) -> None:\n        self.define_property('lit', False)\n",
         encoding="utf-8",
     )

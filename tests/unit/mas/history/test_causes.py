@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.clock import VirtualClock
 from jacaros.mas.history import causes
 from jacaros.mas.history.causes import COMMAND_PERIOD, CauseRecords
 from jacaros.mas.history.why import explain
+from jacaros.runtime.clock import VirtualClock
 
 
 def recorder() -> tuple[CauseRecords, list[dict[str, Any]], VirtualClock]:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from jacaros.bdi.state.triggers import trigger
+from jacaros.agents.mind.state.triggers import trigger
+from jacaros.agents.terms.values import functor
 from jacaros.mas.history.goals import GoalRecords
-from jacaros.terms.values import functor
 
 
 @pytest.fixture

@@ -79,7 +79,7 @@ def test_beliefs_say_where_they_come_from():
     assert told["cause"] == of(records, "message")[0]["id"]
 
 
-LAMP = """from jacaros.env import Artifact, operation
+LAMP = """from jacaros.artifacts import Artifact, operation
 
 
 class Lamp(Artifact):

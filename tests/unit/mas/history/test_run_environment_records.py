@@ -6,11 +6,11 @@ from typing import Any
 
 import jacaros
 from jacaros import Mas
-from jacaros.clock import VirtualClock
 from jacaros.mas.history.robots import RobotRecords
+from jacaros.runtime.clock import VirtualClock
 
 LAMPS = """
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 class Lamp(Artifact):
     def init(self):

@@ -5,8 +5,8 @@ from textwrap import dedent
 
 import pytest
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.env.values import Atom
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.artifacts.env.values import Atom
 from jacaros.mas.checking import check_files
 from jacaros.mas.deployment import Deployment, FocusSpec, ProjectError
 from jacaros.mas.loading import load_deployment

@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 
-from jacaros.env.values import Atom, Structure
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec, ProjectError
 from jacaros.mas.loading import load_deployment
 

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jacaros.asl.diagnostics import Diagnostic
-from jacaros.asl.source import SourceFile
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.jcm import read_jcm
 from jacaros.mas.project.mas2j import read_mas2j

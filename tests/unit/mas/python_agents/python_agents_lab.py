@@ -6,7 +6,7 @@ from jacaros import Literal, PythonAgent
 from jacaros.testing import RunResult, run_project
 
 ARTIFACTS = """
-from jacaros.env import Artifact, Out, operation
+from jacaros.artifacts import Artifact, Out, operation
 
 
 class Counter(Artifact):

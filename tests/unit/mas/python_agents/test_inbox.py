@@ -5,12 +5,12 @@ import asyncio
 import pytest
 
 import jacaros
-from jacaros.bdi.state.speech_act import SpeechAct
-from jacaros.clock import clock_of
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.terms.values import atom
 from jacaros.mas.idleness import Activity
 from jacaros.mas.python_agents.messaging import Messaging
 from jacaros.mas.python_agents.task_activity import TaskActivity
-from jacaros.terms.values import atom
+from jacaros.runtime.clock import clock_of
 
 
 def message(number: int, reply: str | None = None, performative: str = "tell") -> SpeechAct:

@@ -8,8 +8,8 @@ import pytest
 
 import jacaros
 from jacaros import Mas
+from jacaros.artifacts import Artifact, Out, operation
 from jacaros.cli.main import call
-from jacaros.env import Artifact, Out, operation
 from jacaros.errors import UsageError
 from jacaros.inspector import Recording
 from jacaros.mas.replaying import Comparison, replay_against

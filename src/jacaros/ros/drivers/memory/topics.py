@@ -9,12 +9,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from jacaros.clock import Timer
 from jacaros.ros.drivers.memory.graph import GraphPublisher, GraphSubscription
 from jacaros.ros.drivers.memory.node import MemoryNode
 from jacaros.ros.node import Wanted
 from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.topics import TopicPublisher, TopicSubscription
+from jacaros.runtime.clock import Timer
 
 
 class MemoryPublisher(TopicPublisher[MemoryNode]):

@@ -11,10 +11,10 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
+from jacaros.files.texts import kept_files
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
 from jacaros.ros.interfaces import definition, split_action
-from jacaros.text_files import kept_files
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 """Types that are in another package on ROS 1 than on ROS 2."""

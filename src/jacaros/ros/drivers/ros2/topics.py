@@ -12,13 +12,7 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
     SubscriptionEventCallbacks,
 )
 
-from jacaros.ros.drivers.ros2.graph import (
-    endpoint,
-    foreign_types,
-    own_types,
-    profile,
-    publishers_in,
-)
+from jacaros.ros.drivers.ros2.graph import endpoint, foreign_types, own_types, profile, publishers_in
 from jacaros.ros.drivers.ros2.node import AGAIN, SENDING, STOPPING_ROBOTS, Ros2Node
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError

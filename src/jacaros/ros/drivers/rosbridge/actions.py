@@ -10,7 +10,6 @@ the bridge has already accepted each goal, so a rejected goal is aborted, with t
 import uuid
 from typing import Any
 
-from jacaros.clock import Timer
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender, GoalWire
 from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, SingleGoalListener, text_of
@@ -25,6 +24,7 @@ from jacaros.ros.node import Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
 from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
 from jacaros.ros.qos import QoS
+from jacaros.runtime.clock import Timer
 
 STATUS_TYPE = "action_msgs/msg/GoalStatusArray"
 STATUS_QUALITY = QoS(durability="transient_local", depth=100)

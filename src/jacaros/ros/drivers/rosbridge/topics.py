@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
-from jacaros.clock import Timer
 from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import Wanted
@@ -13,6 +12,7 @@ from jacaros.ros.orphans import Orphans
 from jacaros.ros.protocols.rosbridge_requests import LOOK_STEADILY, Polled
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
+from jacaros.runtime.clock import Timer
 
 WAITING = 300
 """Number of messages of each of an action's topics that may wait for the loop: none is dropped, and their order is

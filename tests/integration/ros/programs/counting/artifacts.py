@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from jacaros.artifacts import Out, internal_operation, operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.env import Out, internal_operation, operation
 
 
 class CountingRobot(RosArtifact):

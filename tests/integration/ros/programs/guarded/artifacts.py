@@ -2,7 +2,7 @@
 
 import time
 
-from jacaros.env import Artifact, operation
+from jacaros.artifacts import Artifact, operation
 
 
 class Trap(Artifact):

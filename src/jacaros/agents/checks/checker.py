@@ -1,0 +1,186 @@
+"""Warnings about programs that run but probably do not do what you mean.
+
+>>> from jacaros.agents.language.loader import load_program
+>>> program, _ = load_program("robot.asl", "!start. +!start <- !leave.")
+>>> [each.message for each in check(program, KnownActions({}))]
+['no plan for `!leave/0`']
+"""
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Final
+
+from jacaros.agents.checks.actions import (
+    KnownActions,
+    acting_conditions,
+    doubtful_values,
+    unknown_actions,
+    unknown_performatives,
+    wrong_arguments,
+)
+from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.checks.formulas import singletons, singletons_of_facts, vain_comparisons
+from jacaros.agents.checks.goals import goals_without_plan
+from jacaros.agents.checks.plans import (
+    contexts_never_true,
+    narrow_handlers,
+    never_selected,
+    wrong_labels,
+    wrong_needs,
+    wrong_supervision,
+)
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import KINDS, Diagnostic, SourceFile, Span, problem
+from jacaros.agents.language.lexer import Comment, Token, tokenize
+from jacaros.agents.language.nodes import ByKind
+
+# Comments that switch warnings off.
+#
+# p(X) :- q(Y).     // jacaros: ignore singleton-variable       for this line
+# // jacaros: ignore singleton-variable                         on its own line: for the next clause or line
+# // jacaros: ignore-file singleton-variable, missing-context   for the file
+#
+# Errors cannot be switched off. Text after ``(`` is a comment for the reader.
+
+
+_ORDER: Final = re.compile(r"jacaros:\s*ignore(?P<file>-file)?\b(?P<codes>[^(\n]*)")
+_CODE: Final = re.compile(r"[A-Za-z][\w-]*")
+
+
+class Suppressions:
+    """The suppression comments of one file; ``unknown`` warns of unknown codes."""
+
+    def __init__(self, file: SourceFile) -> None:
+        self.unknown: list[Diagnostic] = []
+        self._everywhere: set[str] = set()
+        self._lines: list[tuple[range, frozenset[str]]] = []
+        comments: list[Comment] = []
+        if "jacaros:" in file.text:
+            tokens = tokenize(file, lambda _: None, comments)
+            for comment in comments:
+                self._take(file, comment, tokens)
+
+    def _take(self, file: SourceFile, comment: Comment, tokens: list[Token]) -> None:
+        order = _ORDER.search(comment.text)
+        if order is None:
+            return
+        codes = frozenset(_CODE.findall(order["codes"]))
+        for code in sorted(codes - KINDS.keys()):
+            span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
+            self.unknown.append(problem("unknown-code", f"unknown code `{code}`", span))
+        if order["file"]:
+            self._everywhere |= codes
+        else:
+            self._lines.append((_lines_of(comment, tokens), codes))
+
+    def switch_off(self, diagnostic: Diagnostic) -> bool:
+        """Return whether a comment suppresses *diagnostic*, which is about this file."""
+        if diagnostic.severity == "error" or diagnostic.span is None:
+            return False
+        if diagnostic.code in self._everywhere:
+            return True
+        line = diagnostic.span.line
+        return any(line in lines and diagnostic.code in codes for lines, codes in self._lines)
+
+
+def _lines_of(comment: Comment, tokens: list[Token]) -> range:
+    """Return the lines that a comment applies to: its own, or the clause that begins below, or the next line."""
+    if any(token.line == comment.line and token.column < comment.column for token in tokens[:-2]):
+        return range(comment.line, comment.line + 1)
+    at = comment.next_token
+    first = tokens[at].line
+    last = first
+    if at == 0 or tokens[at - 1].kind in (".", "}"):
+        while tokens[at].kind not in (".", "end"):
+            at += 1
+        last = tokens[at].line
+    return range(first, last + 1)
+
+
+def wanted(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Yield the diagnostics that no comment of their files suppresses."""
+    known: dict[str, Suppressions] = {}
+    for diagnostic in diagnostics:
+        if diagnostic.severity == "error" or diagnostic.span is None:
+            yield diagnostic
+            continue
+        file = diagnostic.span.file
+        orders = known.get(file.name)
+        if orders is None:
+            orders = known[file.name] = Suppressions(file)
+        if not orders.switch_off(diagnostic):
+            yield diagnostic
+
+
+def check(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic] = ()) -> list[Diagnostic]:
+    """Return warnings and notes about *program*, in source order.
+
+    Args:
+        program: the clauses that could be parsed.
+        known: the internal actions that the program may use.
+        errors: its syntax errors. Clauses with errors are skipped. So are the checks that need all clauses,
+            because a definition that seems to be missing may be in a clause with errors.
+    """
+    warnings = _mistakes(program, known, errors)
+    warnings += doubtful_values(ByKind(*_sound(program, errors)))
+    for clause in _sound(program, errors):
+        warnings += singletons(clause)
+    facts = (belief for belief in program.beliefs if not isinstance(belief, nodes.Rule))
+    warnings += [*singletons_of_facts(facts, "belief"), *singletons_of_facts(program.goals, "goal")]
+    if not errors:
+        warnings += narrow_handlers(program)
+    return sorted(dict.fromkeys(warnings), key=place)
+
+
+def check_for_run(program: nodes.Program, known: KnownActions) -> list[Diagnostic]:
+    """Return the warnings of `check` that nearly always point to a mistake; matters of style are left out."""
+    return sorted(dict.fromkeys(_mistakes(program, known, ())), key=place)
+
+
+def _mistakes(program: nodes.Program, known: KnownActions, errors: Sequence[Diagnostic]) -> list[Diagnostic]:
+    clauses = _sound(program, errors)
+    facts = [belief for belief in program.beliefs if not isinstance(belief, nodes.Rule)]
+    # One walk for all checks: a program may have many thousands of beliefs.
+    found = ByKind(*facts, *clauses)
+    warnings = [
+        *unknown_actions(program, found, known),
+        *wrong_arguments(found, known),
+        *acting_conditions(found, known),
+        *unknown_performatives(found, known),
+        *contexts_never_true(found),
+        *wrong_labels(found),
+        *wrong_supervision(program.goals, found),
+        *wrong_needs(found),
+    ]
+    for clause in clauses:
+        warnings += vain_comparisons(clause)
+    if not errors:
+        warnings += [*goals_without_plan(program, found, known), *never_selected(program, found, known)]
+    return warnings
+
+
+def _sound(program: nodes.Program, errors: Sequence[Diagnostic]) -> list[nodes.Plan | nodes.Rule]:
+    """Return the plans and rules without errors."""
+    wrong: dict[int, list[int]] = {}
+    for error in errors:
+        if error.span is not None:
+            wrong.setdefault(id(error.span.file), []).append(error.span.line)
+    for lines in wrong.values():
+        lines.sort()
+    return [clause for clause in clauses_of(program) if not _holds_any(clause.span, wrong)]
+
+
+def place(diagnostic: Diagnostic) -> tuple[str, int, int]:
+    """Sort key of diagnostics: file, line, column."""
+    span = diagnostic.span
+    return ("", 0, 0) if span is None else (span.file.name, span.line, span.column)
+
+
+def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
+    """Return whether a line with errors (sorted, by file) belongs to the clause."""
+    lines = wrong.get(id(span.file)) if span is not None else None
+    if span is None or lines is None:
+        return False
+    at = bisect_left(lines, span.line)
+    return at < len(lines) and lines[at] <= span.end_line

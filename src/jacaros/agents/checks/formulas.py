@@ -1,0 +1,309 @@
+"""Find the conditions in a program, and those that never hold.
+
+>>> from jacaros.agents.language.loader import parse_formula
+>>> contradiction(parse_formula("X < 3 & X > 5"))
+'X cannot be both above 5 and below 3'
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
+from typing import Any, Final, cast
+
+from jacaros.agents.language import nodes
+from jacaros.agents.language.cursor import MOST_ASKED
+from jacaros.agents.language.diagnostics import Diagnostic, problem
+from jacaros.agents.language.lowering import format_term
+from jacaros.agents.language.nodes import children, names_in, nodes_in, operands, variables_in, walk
+from jacaros.agents.terms.operators import BINARY
+from jacaros.files.texts import did_you_mean, suggestion
+
+Clause = nodes.Plan | nodes.Rule
+
+
+def clauses(program: nodes.Program) -> Iterator[Clause]:
+    """Yield the plans, then the rules."""
+    yield from program.plans
+    for belief in program.beliefs:
+        if isinstance(belief, nodes.Rule):
+            yield belief
+
+
+CONDITIONED: Final[tuple[type[Any], ...]] = (
+    nodes.Plan,
+    nodes.Rule,
+    nodes.If,
+    nodes.While,
+    nodes.For,
+    nodes.Test,
+)
+"""The kinds of nodes that have conditions, besides labels with ``while``."""
+
+
+def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
+    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, ``while`` of labels."""
+    if isinstance(node, nodes.Plan):
+        if node.context is not None:
+            yield node.context
+        if node.goal_condition is not None:
+            yield node.goal_condition
+    elif isinstance(node, nodes.If | nodes.While | nodes.For):
+        yield node.condition
+    elif isinstance(node, nodes.Test):
+        yield node.formula
+    elif isinstance(node, nodes.Rule):
+        yield node.body
+    elif isinstance(node, nodes.Literal) and node.functor == "while" and len(node.arguments) == 1:
+        yield node.arguments[0]
+
+
+def labelled(plan: nodes.Plan) -> list[nodes.Literal]:
+    """Return the annotations of a plan's label that are literals."""
+    return annotations_of(plan.label) if isinstance(plan.label, nodes.Literal) else []
+
+
+def annotations_of(term: nodes.Node) -> list[nodes.Literal]:
+    """Return the annotations of a literal or variable that are literals."""
+    annotations = term.annotations if isinstance(term, nodes.Literal | nodes.Variable) else None
+    return (
+        [] if annotations is None else [item for item in annotations.items if isinstance(item, nodes.Literal)]
+    )
+
+
+def in_order(root: nodes.Node) -> Iterator[tuple[nodes.Node, bool]]:
+    """Yield all nodes below *root* in source order, each with whether it is used as a condition."""
+    stack: list[tuple[nodes.Node, bool]] = [(root, False)]
+    while stack:
+        node, asked = stack.pop()
+        yield node, asked
+        below = list(children(node))
+        roots = [id(condition) for condition in conditions(node)]
+        inherits = asked and isinstance(node, nodes.Connective)
+        step = isinstance(node, nodes.Constraint)
+        stack.extend((child, inherits or step or id(child) in roots) for child in reversed(below))
+
+
+def is_true(formula: nodes.Term | None) -> bool:
+    """Return whether *formula* always holds: it is missing or ``true``."""
+    return formula is None or (
+        isinstance(formula, nodes.Literal) and formula.functor == "true" and not formula.arguments
+    )
+
+
+def contradiction(formula: nodes.Term) -> str | None:
+    """Explain why *formula* never holds, or return None if that is not evident."""
+    parts = cast("list[nodes.Term]", operands(formula)) if isinstance(formula, nodes.And) else [formula]
+    return _constant(parts) or _both_ways(parts) or _two_values(parts) or _empty_range(parts)
+
+
+def _constant(parts: Sequence[nodes.Term]) -> str | None:
+    """``false``, ``not true`` or ``2 > 3``."""
+    for part in parts:
+        if isinstance(part, nodes.Literal) and part.functor == "false" and not part.arguments:
+            return "its condition is false"
+        if isinstance(part, nodes.Not) and is_true(part.operand):
+            return "`not true` never holds"
+        if (
+            isinstance(part, nodes.Relation)
+            and isinstance(part.left, nodes.Number)
+            and isinstance(part.right, nodes.Number)
+            and (holds := BINARY[part.operator].numbers) is not None
+            and not holds(part.left.value, part.right.value)
+        ):
+            return f"`{format_term(part)}` never holds"
+    return None
+
+
+def _both_ways(parts: Sequence[nodes.Term]) -> str | None:
+    """``p(X) & not p(X)``."""
+    plain = [part for part in parts if isinstance(part, nodes.Literal) and _is_fixed(part)]
+    for part in parts:
+        if isinstance(part, nodes.Not) and part.operand in plain:
+            text = format_term(part.operand)
+            return f"`{text}` and `not {text}` cannot both hold"
+    return None
+
+
+def _is_fixed(term: nodes.Term) -> bool:
+    """Return whether two occurrences of *term* mean the same."""
+    return not any(variable.unnamed for variable in variables_in(term))
+
+
+def _two_values(parts: Sequence[nodes.Term]) -> str | None:
+    """``X == 1 & X == 2``."""
+    values: dict[str, nodes.Term] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or found[1] not in ("=", "=="):
+            continue
+        name, _, value = found
+        if values.setdefault(name, value) != value:
+            return f"{name} cannot be both {format_term(values[name])} and {format_term(value)}"
+    return None
+
+
+def _empty_range(parts: Sequence[nodes.Term]) -> str | None:
+    """``X < 3 & X > 5``."""
+    below: dict[str, float] = {}
+    above: dict[str, float] = {}
+    for part in parts:
+        found = _variable_and_constant(part)
+        if found is None or not isinstance(found[2], nodes.Number):
+            continue
+        name, operator, number = found[0], found[1], found[2].value
+        if operator in ("<", "<="):
+            below[name] = min(below.get(name, inf), number)
+        elif operator in (">", ">="):
+            above[name] = max(above.get(name, -inf), number)
+    for name, most in below.items():
+        if above.get(name, -inf) > most:
+            return f"{name} cannot be both above {above[name]:g} and below {most:g}"
+    return None
+
+
+def _variable_and_constant(part: nodes.Term) -> tuple[str, str, nodes.Term] | None:
+    """Return the variable, the operator and the constant of ``X op constant``."""
+    if not isinstance(part, nodes.Relation) or not isinstance(part.left, nodes.Variable):
+        return None
+    left, right = part.left, part.right
+    plain = left.annotations is None and not left.unnamed
+    atom = isinstance(right, nodes.Literal) and not right.arguments and right.annotations is None
+    if not plain or not (atom or isinstance(right, nodes.Number | nodes.String)):
+        return None
+    return left.name, part.operator, right
+
+
+# Check for variables that occur once, and comparisons with variables that have no value.
+
+
+_WORD: Final = re.compile(r"\b[A-Z]\w*")
+_CONSTANTS: Final = {
+    "True": "write `true` in lower case",
+    "TRUE": "write `true` in lower case",
+    "False": "write `false` in lower case",
+    "FALSE": "write `false` in lower case",
+    "None": "use an atom such as `none`; the language has no null value",
+    "Null": "use an atom such as `null`; the language has no null value",
+    "NULL": "use an atom such as `null`; the language has no null value",
+    "Nil": "write the empty list as `[]`",
+}
+"""Variables that are constants in other languages."""
+
+
+def singletons(clause: Clause) -> Iterator[Diagnostic]:
+    """Warn of variables that occur once in *clause*.
+
+    One in a trigger (or in the head of a rule) may only document the argument: it causes no warning, but may be the name
+    that a misspelt variable was meant to have.
+    """
+    occurrences: Counter[str] = Counter()
+    first: dict[str, nodes.Variable] = {}
+    in_texts: set[str] = set()
+    for node in walk(clause):
+        if isinstance(node, nodes.Variable) and not node.unnamed and not node.name.startswith("_"):
+            occurrences[node.name] += 1
+            first.setdefault(node.name, node)
+        elif isinstance(node, nodes.String):
+            # .puts and .term2string find variables in their texts.
+            in_texts.update(_WORD.findall(node.value))
+    in_head = _in_head(clause)
+    what = "plan" if isinstance(clause, nodes.Plan) else "rule"
+    once = [name for name, count in occurrences.items() if count == 1 and name not in in_texts]
+    for number, name in enumerate(once):
+        if name in _CONSTANTS:
+            yield problem(
+                "capital-constant",
+                f"`{name}` is a variable here, not a value",
+                first[name].span,
+                _CONSTANTS[name],
+            )
+        elif name not in in_head:
+            yield problem(
+                "singleton-variable",
+                f"variable `{name}` occurs only once in this {what}",
+                first[name].span,
+                _meant_variable(name, occurrences) if number < MOST_ASKED else None,
+            )
+
+
+def singletons_of_facts(facts: Iterable[nodes.Literal], what: str) -> Iterator[Diagnostic]:
+    """Warn of variables that occur once in an initial belief or goal: most often a name is meant.
+
+    Args:
+        facts: all of one kind.
+        what: the kind, for the message.
+    """
+    for fact in facts:
+        named = [node for node in variables_in(fact) if not node.name.startswith("_")]
+        counted = Counter(node.name for node in named)
+        for node in named:
+            if counted[node.name] == 1 and not node.unnamed:
+                name = node.name
+                lower = name[0].lower() + name[1:]
+                yield problem(
+                    "singleton-variable",
+                    f"`{name}` is a variable (capital {name[0]}), so this {what} matches any value",
+                    node.span,
+                    f"{did_you_mean([lower])} If any value is meant, write `_{name}`",
+                )
+
+
+def _in_head(clause: Clause) -> list[str]:
+    return (
+        names_in(*nodes_in(nodes.Trigger, clause))
+        if isinstance(clause, nodes.Plan)
+        else names_in(clause.head)
+    )
+
+
+def _meant_variable(name: str, occurrences: Counter[str]) -> str:
+    meant = suggestion(name, (other for other in occurrences if other != name))
+    return f"{meant} Otherwise write `_{name}`" if meant else f"if this is intended, write `_{name}`"
+
+
+def vain_comparisons(clause: Clause) -> Iterator[Diagnostic]:
+    """Warn of comparisons that never hold (``X == 3`` with an unbound X, ``X = X + 1``) or ignore x (``x > 3``)."""
+    met: set[str] = set()
+    for node, asked in in_order(clause):
+        if isinstance(node, nodes.Relation) and BINARY[node.operator].orders:
+            yield from _ordered_atom(node)
+        if isinstance(node, nodes.Variable):
+            met.add(node.name)
+        elif asked and isinstance(node, nodes.Relation) and isinstance(node.left, nodes.Variable):
+            yield from _vain(node, node.left, met)
+
+
+def _ordered_atom(relation: nodes.Relation) -> Iterator[Diagnostic]:
+    for atom, other in ((relation.left, relation.right), (relation.right, relation.left)):
+        if (
+            isinstance(atom, nodes.Literal)
+            and not atom.arguments
+            and isinstance(other, nodes.Number | nodes.Arithmetic)
+        ):
+            yield problem(
+                "ordered-atom",
+                f"`{atom.functor}` is an atom, and an atom is greater than any number",
+                atom.span,
+                f"begin a variable with a capital letter: `{atom.functor[:1].upper()}{atom.functor[1:]}`",
+            )
+
+
+def _vain(relation: nodes.Relation, variable: nodes.Variable, met: set[str]) -> Iterator[Diagnostic]:
+    name, right = variable.name, relation.right
+    if variable.unnamed:
+        return
+    if relation.operator == "==" and name not in met:
+        yield problem(
+            "comparison-without-value",
+            f"`{name}` has no value here, so this comparison never holds",
+            relation.span,
+            f"to give {name} a value, write `{name} = ...`",
+        )
+    elif relation.operator == "=" and isinstance(right, nodes.Arithmetic) and name in names_in(right):
+        yield problem(
+            "changed-variable",
+            f"`{name}` cannot be equal to a sum that contains it: variables keep their value",
+            relation.span,
+            f"use another variable, as in `New{name} = {name} + 1`",
+        )

@@ -1,0 +1,249 @@
+"""Internal actions on beliefs, their namespaces, rules and conditions."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from jacaros.agents.language import nodes
+from jacaros.agents.language.lowering import fresh_names, lower
+from jacaros.agents.mind.actions.internal_action import WrongArguments, elements, internal_action
+from jacaros.agents.mind.rules import belief_update
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.state.belief_base import Table, parts, without_sources
+from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.triggers import own_annotations
+from jacaros.agents.terms.order import annotation_set, compare, ordered_by_python
+from jacaros.agents.terms.plans import RULE
+from jacaros.agents.terms.substitution import rename, resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.unifier import undo, unify, unify_annotations
+from jacaros.agents.terms.values import (
+    FALSE,
+    TRUE,
+    Annotated,
+    Functor,
+    Term,
+    Var,
+    atom,
+    bare,
+    functor_of,
+    is_list,
+    make_list,
+)
+
+
+@internal_action(".abolish", arity=1)
+def abolish(ctx: Context, pattern: Term) -> None:
+    """``.abolish(P)`` deletes all beliefs that match, with all their sources."""
+    belief_update.abolish(ctx.agent, pattern)
+
+
+def _assert(ctx: Context, term: Term, last: bool) -> None:
+    if term.__class__ is tuple and term[0] is RULE:
+        ctx.agent.change_rule("+>" if last else "+", term)
+        return
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        raise WrongArguments(f"expected a literal or a rule, found {text(term)}")
+    own = own_annotations(annotations)
+    new = belief_update.insert(ctx.agent, symbol, row, own, last)
+    if new is not None:
+        belief_update.external_change(ctx.agent, "+", symbol, row, new)
+
+
+@internal_action(".asserta", arity=1)
+def asserta(ctx: Context, term: Term) -> None:
+    """``.asserta(L)`` adds a belief or rule at the beginning."""
+    _assert(ctx, term, last=False)
+
+
+@internal_action(".assertz", arity=1)
+def assertz(ctx: Context, term: Term) -> None:
+    """``.assertz(L)`` adds a belief or rule at the end."""
+    _assert(ctx, term, last=True)
+
+
+@internal_action(".belief", arity=1, backtracks=True, pure=True)
+def belief(ctx: Context, pattern: Term) -> Iterator[None]:
+    """``.belief(P)``: *P* is a matching belief; rules are not considered."""
+    wanted = functor_of(pattern)
+    for literal in list(ctx.agent.beliefs.literals()):
+        if (wanted is None or functor_of(literal) is wanted) and ctx.unify(pattern, literal):
+            yield
+
+
+@internal_action(".list_rules", arity=0)
+def list_rules(ctx: Context) -> None:
+    """``.list_rules`` prints the rules."""
+    for table in ctx.agent.beliefs.values():
+        for entry, _ in _rules(table):
+            lookup = fresh_names()
+            head = Annotated(bare(lower(entry.node.head, lookup)), entry.head_annotations())
+            ctx.architecture.print(f"{text(head)} :- {text(lower(entry.node.body, lookup))}")
+
+
+def _rules(table: Table) -> Iterator[tuple[Any, tuple[Term, ...]]]:
+    """Yield the rules of a table with their annotations; a fact of the program with variables is one without conditions."""
+    for entry, held in table.entries():
+        if isinstance(entry, Rule | OpenFact) and entry.node is not None:
+            yield entry, held
+
+
+@internal_action(".relevant_rules", arity=2)
+def relevant_rules(ctx: Context, pattern: Term, target: Term) -> bool:
+    """``.relevant_rules(P, Rs)``: Rs is the list of the rules that can prove a literal, in the order of the belief base.
+
+    With *P* unbound, it is the list of all rules.
+    """
+    symbol, _, annotations = parts(pattern)
+    beliefs = ctx.agent.beliefs
+    if symbol is not None:
+        tables: Iterable[Table] = (beliefs[symbol],)
+    elif bare(pattern).__class__ is Var:
+        tables = beliefs.values()
+    elif is_list(pattern):
+        tables = ()  # a literal in Jason, but no rule has such a head
+    else:
+        raise WrongArguments(f"expected a literal, found {text(pattern)}")
+    found = []
+    for table in tables:
+        for entry, held in _rules(table):
+            rule = lower(nodes.RuleTerm(entry.node), fresh_names())
+            mark = len(ctx.trail)
+            fits = unify(bare(pattern), bare(rule[1]), ctx.trail) and unify_annotations(
+                annotations, None, held, None, ctx.trail
+            )
+            undo(ctx.trail, mark)
+            if fits:
+                head = rule[1] if isinstance(entry, Rule) else Annotated(rule[1], held)
+                found.append((rule[0], without_sources(head), rule[2]))
+    return ctx.unify(target, make_list(found))
+
+
+@internal_action(".eval", arity=2, pure=True)
+def evaluate(ctx: Context, target: Term, formula: Term) -> bool:
+    """``.eval(X, F)``: X is ``true`` if the formula F holds, otherwise ``false``."""
+    mark = len(ctx.trail)
+    holds = ctx.succeeds(formula)
+    undo(ctx.trail, mark)
+    return ctx.unify(target, TRUE if holds else FALSE)
+
+
+@internal_action(".findall", arity=3, condition=1, collects=True, pure=True)
+def findall(found: list[Term]) -> Term:
+    """``.findall(T, F, L)``: L is the list of T for all answers of F, in order, with duplicates."""
+    return make_list(found)
+
+
+@internal_action(".setof", arity=3, condition=1, collects=True, pure=True)
+def setof(found: list[Term]) -> Term:
+    """``.setof(T, F, L)``: like `.findall`, sorted and without duplicates."""
+    return make_list(annotation_set(tuple(found)))
+
+
+@internal_action(".count", arity=2, condition=0, collects=True, pure=True)
+def count(found: list[Term]) -> Term:
+    """``.count(F, N)``: N is the number of answers of F."""
+    return float(len(found))
+
+
+@internal_action(".max", arity=(2, 3), pure=True)
+def greatest(ctx: Context, *arguments: Term) -> bool:
+    """``.max(L, X)``: *X* is the greatest element of a list in the standard order. Fails for an empty list.
+
+    ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*. Fails without answers.
+    """
+    return _extreme(ctx, arguments, 1, ".max")
+
+
+@internal_action(".min", arity=(2, 3), pure=True)
+def least(ctx: Context, *arguments: Term) -> bool:
+    """``.min(L, X)``: *X* is the smallest element of a list in the standard order. Fails for an empty list.
+
+    ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*. Fails without answers.
+    """
+    return _extreme(ctx, arguments, -1, ".min")
+
+
+def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
+    """Find the greatest (*sign* 1) or smallest (*sign* -1) element; the first of equal ones counts."""
+    if len(arguments) == 3:
+        found = best(ctx, arguments[0], arguments[1], sign)
+        return found is not None and ctx.unify(arguments[2], found)
+    items = elements(arguments[0], f"the first argument of {name}")
+    if not items:
+        return False
+    if ordered_by_python(items):
+        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
+    extreme = items[0]
+    for item in items[1:]:
+        if sign * compare(item, extreme) > 0:
+            extreme = item
+    return ctx.unify(arguments[1], extreme)
+
+
+def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
+    """Return the greatest (sign 1) or smallest (sign -1) instance of a template; None without answers."""
+    found: Term | None = None
+    mark = len(ctx.trail)
+    for _ in ctx.answers(formula):
+        value = rename(resolve(template))
+        if found is None or sign * compare(value, found) > 0:
+            found = value
+    undo(ctx.trail, mark)
+    return found
+
+
+@internal_action(".perceive", arity=0)
+def perceive(ctx: Context) -> None:
+    """``.perceive`` perceives the environment; it has no effect here, as percepts are taken in before every cycle."""
+    del ctx
+
+
+@internal_action(".namespace", arity=1, backtracks=True, pure=True)
+def namespace(ctx: Context, target: Term) -> Iterator[None]:
+    """``.namespace(N)``: *N* is a namespace in use; one answer for each."""
+    names: dict[str, None] = {"default": None}
+    for symbol, table in ctx.agent.beliefs.items():
+        if symbol.namespace and len(table):
+            names[symbol.namespace] = None
+    for plan in ctx.agent.library.plans:
+        symbol = plan.trigger_functor()
+        if symbol is not None and symbol.namespace:
+            names[symbol.namespace] = None
+
+    for name in names:
+        if ctx.unify(target, atom(name)):
+            yield
+
+
+def _properties(ctx: Context, namespace: Term) -> dict[Term, Term]:
+    """Return the properties of a namespace by key; changes to the dictionary are kept."""
+    if not isinstance(namespace, Functor):
+        raise WrongArguments(f"the first argument must be the name of a namespace, not {text(namespace)}")
+    found: dict[Term, Term] = ctx.agent.beliefs.namespace_properties.setdefault(namespace.name, {})
+    return found
+
+
+@internal_action(".namespace_set_prop", arity=3)
+def set_property(ctx: Context, namespace: Term, key: Term, value: Term) -> None:
+    """``.namespace_set_prop(N, Key, Value)`` sets a property of a namespace."""
+    if not isinstance(key, Functor):
+        raise WrongArguments(f"the key of a property must be an atom, not {text(key)}")
+    _properties(ctx, namespace)[key] = value
+
+
+@internal_action(".namespace_get_prop", arity=(2, 4), backtracks=True)
+def get_property(ctx: Context, namespace: Term, key: Term, *rest: Term) -> Iterator[None]:
+    """``.namespace_get_prop(N, Key[, Value[, Default]])``: *Value* is a property of a namespace, or the default.
+
+    With *Key* unbound, there is an answer for each property.
+    """
+    held = _properties(ctx, namespace)
+    if key.__class__ is Var:
+        for each, value in list(held.items()):
+            if ctx.unify_all((key, each), *(((rest[0], value),) if rest else ())):
+                yield
+        return
+    value = held.get(key, rest[1] if len(rest) > 1 else None)
+    if value is not None and (not rest or ctx.unify(rest[0], value)):
+        yield

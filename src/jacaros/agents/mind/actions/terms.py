@@ -1,0 +1,200 @@
+"""Internal actions that test and create terms: types, copies and annotations."""
+
+from collections.abc import Callable, Iterator
+
+from jacaros.agents.mind.actions.internal_action import internal_action
+from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.state.belief_base import is_source, without_sources
+from jacaros.agents.mind.state.intention import STEP
+from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.plans import PLAN, RULE, body_steps, is_body, step_parts
+from jacaros.agents.terms.substitution import is_ground, rename
+from jacaros.agents.terms.values import (
+    ACTION,
+    ARITHMETIC,
+    FUNCTION,
+    NUMBERS,
+    PLAIN,
+    SOURCE,
+    Annotated,
+    Functor,
+    String,
+    Term,
+    Var,
+    annotations_of,
+    atom,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+    make_list,
+)
+from jacaros.agents.terms.values import NIL as EMPTY
+
+CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
+
+
+@internal_action(".copy_term", arity=2, pure=True)
+@internal_action(".rename_apart", arity=2, pure=True)
+def copy_term(ctx: Context, term: Term, copy: Term) -> bool:
+    """``.copy_term(T, C)``, ``.rename_apart(T, C)``: *C* is *T* with new variables in place of the unbound ones."""
+    return ctx.unify(copy, rename(term))
+
+
+@internal_action(".add_annot", arity=3, pure=True)
+def add_annot(ctx: Context, term: Term, annotation: Term, result: Term) -> bool:
+    """``.add_annot(L, A, R)``: *R* is the literal *L* with the annotation *A*.
+
+    In a list (and nested lists) it is added to each literal; other elements are unchanged.
+    """
+    return ctx.unify(_in_lists(term, lambda literal: annotated(literal, (annotation,))), result)
+
+
+@internal_action(".add_nested_source", arity=3, pure=True)
+def add_nested_source(ctx: Context, term: Term, source: Term, result: Term) -> bool:
+    """``.add_nested_source(L, Ag, R)``: *R* is the literal *L* with the source *Ag*, its previous sources nested inside.
+
+    ``p[source(bob)]`` from carl gives ``p[source(carl)[source(bob)]]``. Lists are handled as by ``.add_annot``.
+    """
+    return ctx.unify(_in_lists(term, lambda literal: told_by(literal, source)), result)
+
+
+@internal_action(".remove_source_annot", arity=2, pure=True)
+def remove_source_annot(ctx: Context, term: Term, result: Term) -> bool:
+    """``.remove_source_annot(L, R)``: *R* is *L* without its sources.
+
+    *L* is a literal, a plan (whose label loses the sources), or a list of such terms.
+    """
+    if is_list(term):
+        return ctx.unify(make_list([_without_source(item) for item in list_items(term)]), result)
+    return ctx.unify(_without_source(term), result)
+
+
+def _in_lists(term: Term, change: Callable[[Term], Term]) -> Term:
+    """Apply *change* to a literal, or to each literal in a list."""
+    if is_list(term):
+        return make_list([_in_lists(item, change) for item in list_items(term)])
+    return term if functor_of(term) is None else change(term)
+
+
+def annotated(term: Term, annotations: tuple[Term, ...]) -> Term:
+    """Return the literal with *annotations* in addition to its own."""
+    if isinstance(term, Annotated):
+        return Annotated(term.term, annotation_set((*term.annotations, *annotations)), term.tail)
+    return Annotated(term, annotation_set(annotations)) if annotations else term
+
+
+def told_by(term: Term, source: Term) -> Term:
+    """Return the literal as received from *source*: its own sources are nested in the new one."""
+    sources = tuple(a for a in annotations_of(term) if is_source(a))
+    return annotated(without_sources(term), (annotated((SOURCE, source), sources),))
+
+
+def _without_source(term: Term) -> Term:
+    if term.__class__ is tuple and term[0] is PLAN:
+        return (PLAN, without_sources(term[1]), *term[2:])
+    return without_sources(term)
+
+
+@internal_action(".get_src_info", arity=2)
+def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
+    """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: the place of the
+    step that asks. Fails if *L* is not a literal.
+    """
+    inner = _only_operand(term)
+    if functor_of(inner) is None:
+        return False
+    current = ctx.intention
+    place: tuple[Term, ...] = ()
+    if current is not None and current.frames:
+        info = getattr(current.frames[-1][STEP], "info", None)
+        if info is not None and info.node.span is not None:
+            line, file = info.node.span.line, info.node.span.file.name
+            place = ((CODE_LINE, float(line)), (CODE_SRC, String(f"file:{file}")))
+    return ctx.unify(annotated(inner, place), result)
+
+
+def _only_operand(term: Term) -> Term:
+    """Return the operand of a plan body with one step; any other term is returned unchanged."""
+    steps = list(body_steps(term)) if is_body(term) else []
+    return step_parts(steps[0])[1][0] if len(steps) == 1 else term
+
+
+@internal_action(".string", arity=1, pure=True)
+def is_string(_ctx: Context, term: Term) -> bool:
+    """``.string(X)``: *X* is a string."""
+    return term.__class__ is String
+
+
+@internal_action(".list", arity=1, pure=True)
+def is_a_list(_ctx: Context, term: Term) -> bool:
+    """``.list(X)``: *X* is a list, possibly empty."""
+    return is_list(term)
+
+
+@internal_action(".number", arity=1, pure=True)
+def is_number(_ctx: Context, term: Term) -> bool:
+    """``.number(X)``: *X* is a number, or an expression with unbound variables."""
+    return term.__class__ in NUMBERS or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
+
+
+@internal_action(".atom", arity=1, pure=True)
+def is_atom(_ctx: Context, term: Term) -> bool:
+    """``.atom(X)``: *X* is an atom, neither negated nor annotated."""
+    return isinstance(term, Functor) and term.kind == PLAIN and not term.negated and term is not EMPTY
+
+
+@internal_action(".literal", arity=1, pure=True)
+def is_literal(_ctx: Context, term: Term) -> bool:
+    """``.literal(X)``: *X* is an atom or structure, possibly negated or annotated, but not a list."""
+    symbol = functor_of(term)
+    return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
+
+
+@internal_action(".structure", arity=1, pure=True)
+def is_structure(ctx: Context, term: Term) -> bool:
+    """``.structure(X)``: *X* is a list, or a literal other than a plain atom (as Jason implements it)."""
+    return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
+
+
+@internal_action(".ground", arity=1, pure=True)
+def has_no_variables(_ctx: Context, term: Term) -> bool:
+    """``.ground(X)``: *X* has no unbound variables."""
+    return is_ground(term)
+
+
+@internal_action(".internal_action", arity=1, pure=True)
+def is_internal_action(_ctx: Context, term: Term) -> bool:
+    """``.internal_action(X)``: *X* is a call of an internal action, such as ``.print(a)``."""
+    symbol = functor_of(term)
+    return symbol is not None and symbol.kind == ACTION
+
+
+_TESTS: dict[str, Callable[[Context, Term], bool]] = {
+    "number": is_number,
+    "atom": is_atom,
+    "literal": is_literal,
+    "string": is_string,
+    "list": is_a_list,
+    "set": lambda _, term: isinstance(term, SetValue),
+    "map": lambda _, term: isinstance(term, MapValue),
+    "structure": is_structure,
+    "rule": lambda _, term: term.__class__ is tuple and term[0] is RULE,
+    "plan": lambda _, term: is_body(term),
+    "queue": lambda _, term: isinstance(term, QueueValue),
+    "ground": has_no_variables,
+    "free": lambda _, term: term.__class__ is Var,
+}
+
+
+@internal_action(".type", arity=2, backtracks=True, pure=True)
+def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
+    """``.type(X, T)``: *T* is a type of *X*; with *T* unbound, each of its types in turn.
+
+    Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order (``plan``
+    is a plan body; ``free`` an unbound variable).
+    """
+    for name, test in _TESTS.items():
+        if test(ctx, term) and ctx.unify(kind, atom(name)):
+            yield

@@ -1,0 +1,308 @@
+"""One generated Python function: its text and what is known about variables at the point being written."""
+
+import ast
+import re
+import sys
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from types import CodeType
+from typing import Protocol
+
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.mind.state.intention import FIRST_SLOT
+from jacaros.agents.mind.state.plan import Plan
+from jacaros.agents.terms.values import Term
+
+# Python source being written: indentation, fresh names, and the AgentSpeak line behind each line of the compiled code.
+
+
+_READ = re.compile(r" +(v\d+) = deref\(\w+\)")
+_SETTLED = re.compile(r"\bv\d+\b")
+
+
+class Writer:
+    """Collects the lines of one piece of generated code.
+
+    Attributes:
+        file, origin: file and line of the agent program that the next lines come from.
+        files, origins: the same of each line that is written.
+        loops: how many loops are open; Python allows 20 nested ones.
+    """
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.files: list[SourceFile | None] = []
+        self.origins: list[int] = []
+        self.file: SourceFile | None = None
+        self.origin = 1
+        self.depth = 0
+        self.loops = 0
+        self._count = 0
+
+    def line(self, text: str) -> None:
+        """Write one line."""
+        self.lines.append("    " * self.depth + text)
+        self.files.append(self.file)
+        self.origins.append(self.origin)
+
+    def fresh(self, prefix: str = "t") -> str:
+        """A local name that is used nowhere else."""
+        self._count += 1
+        return f"{prefix}{self._count}"
+
+    @contextmanager
+    def block(self, head: str) -> Iterator[None]:
+        """A compound statement; the lines written inside belong to it."""
+        self.line(head)
+        self.depth += 1
+        loop = head.startswith(("for ", "while "))
+        self.loops += loop
+        before = len(self.lines)
+        yield
+        if len(self.lines) == before:
+            self.line("pass")
+        self.loops -= loop
+        self.depth -= 1
+
+    def prune(self) -> None:
+        """Remove the values of variables that are read and never used."""
+        names = Counter(name for line in self.lines for name in _SETTLED.findall(line))
+        kept = [
+            index
+            for index, line in enumerate(self.lines)
+            if (read := _READ.fullmatch(line)) is None or names[read[1]] > 1
+        ]
+        self.lines = [self.lines[i] for i in kept]
+        self.files = [self.files[i] for i in kept]
+        self.origins = [self.origins[i] for i in kept]
+
+    def text(self) -> str:
+        """The source."""
+        return "\n".join(self.lines) + "\n"
+
+
+def compile_all(writers: Iterable[Writer], filename: str) -> CodeType:
+    """Python code of several pieces, whose line numbers are those of the agent program *filename*."""
+    lines: list[str] = []
+    origins = [0]
+    for writer in writers:
+        lines += writer.lines
+        origins += writer.origins
+    origins.append(origins[-1])
+    return compile_text("\n".join(lines) + "\n", origins, filename)
+
+
+_TABLES_ARE_KNOWN = sys.implementation.name == "cpython" and sys.version_info < (3, 15)
+"""Whether this Python's tables of line numbers have the form that `_moved` writes (Objects/locations.md of CPython)."""
+
+_NO_COLUMNS, _NO_LINE = 0x80 | 13 << 3, 0x80 | 15 << 3
+_MOST_UNITS = 8
+"""How many units of code one entry of such a table can stand for."""
+
+
+def compile_text(text: str, origins: Sequence[int], filename: str) -> CodeType:
+    """Compile *text*; its line n gets the number ``origins[n]`` of the file *filename*."""
+    if _TABLES_ARE_KNOWN:
+        return _moved(compile(text, filename, "exec"), origins)
+    tree = ast.parse(text)
+    _move(tree, origins)
+    return compile(tree, filename, "exec")
+
+
+def _moved(code: CodeType, origins: Sequence[int]) -> CodeType:
+    """The same code with other line numbers: half the work of `_move`."""
+    last = first = origins[code.co_firstlineno]
+    table = bytearray()
+    for start, end, line in code.co_lines():
+        units = (end - start) // 2
+        head, delta = _NO_LINE, 0
+        if line is not None:
+            head, delta = _NO_COLUMNS, origins[line] - last
+            last += delta
+        while units > 0:
+            table.append(head | min(units, _MOST_UNITS) - 1)
+            if head == _NO_COLUMNS:
+                _write(delta, table)
+            delta = 0
+            units -= _MOST_UNITS
+    inner = tuple(_moved(c, origins) if c.__class__ is CodeType else c for c in code.co_consts)
+    return code.replace(co_linetable=bytes(table), co_firstlineno=first, co_consts=inner)
+
+
+def _write(number: int, table: bytearray) -> None:
+    """A number with a sign: six bits a byte, the lowest first; the lowest of all is the sign."""
+    rest = -number << 1 | 1 if number < 0 else number << 1
+    while rest > 63:
+        table.append(64 | rest & 63)
+        rest >>= 6
+    table.append(rest)
+
+
+def _move(tree: ast.AST, origins: Sequence[int]) -> None:
+    """Give each node of a syntax tree the line that its own line comes from; for any Python.
+
+    Written without `ast.walk`, which takes longer than the compiler.
+    """
+    stack: list[ast.AST] = [tree]
+    while stack:
+        parts = stack.pop().__dict__
+        if "lineno" in parts:
+            parts["lineno"] = parts["end_lineno"] = origins[parts["lineno"]]
+            parts["col_offset"] = parts["end_col_offset"] = 0
+        for part in parts.values():
+            if part.__class__ is list:
+                stack += [item for item in part if isinstance(item, ast.AST)]
+            elif isinstance(part, ast.AST):
+                stack.append(part)
+
+
+TOP = "NESTED"
+"""The `FunctionBuilder.depth` of a function that no other search has called."""
+
+
+class Unit(Protocol):
+    """The unit that the function becomes part of: constants, and further functions."""
+
+    @property
+    def actions(self) -> Mapping[str, InternalAction]:
+        """The internal actions known at compile time."""
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+
+    def add(self, writer: Writer) -> None:
+        """Make the finished function part of the unit."""
+
+    def fresh_function(self, prefix: str) -> str:
+        """A name for another function."""
+
+
+class FrameLayout:
+    """The slots of a plan's variables, and what is known of them between two steps.
+
+    Attributes:
+        slots: index in the frame by variable name.
+        states: ``set`` (has a value, perhaps a `Var`) or ``maybe`` (None when it was bound on another branch);
+            names that are missing have no value yet.
+        asked: variables that went into a call without a value, to have one afterwards: their slots hold a `Var`.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.slots = plan.slots
+        self.extra = 0
+        self.states: dict[str, str] = {}
+        self.asked: set[str] = set()
+
+    def hidden_slot(self) -> int:
+        """A slot for the compiler's own use."""
+        self.extra += 1
+        return FIRST_SLOT + len(self.slots) + self.extra - 1
+
+    @property
+    def size(self) -> int:
+        """Number of slots behind the fixed ones."""
+        return len(self.slots) + self.extra
+
+
+class FunctionBuilder:
+    """A function being written.
+
+    Attributes:
+        values: Python expression (a local name) of each variable that has a value here.
+        asked: variables that were given a `Var` in this function.
+        fresh: variables that got their value in this function, in order.
+        trampoline: the function is a generator that yields generators to have them run (see `conditions`).
+        snapshot: answers are taken while beliefs may change in between, so tables are copied first.
+        depth: expression for how many generators may be nested in those that the function asks (see `predicates`).
+        quiet: an internal action that cannot be done does not hold; a step of its own fails with the reason.
+    """
+
+    def __init__(
+        self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False, depth: str = TOP
+    ) -> None:
+        self.unit = unit
+        self.writer = Writer()
+        self.values: dict[str, str] = {}
+        self.fresh: list[str] = []
+        self.asked: set[str] = set()
+        self.trampoline = trampoline
+        self.snapshot = snapshot
+        self.depth = "0" if trampoline else depth
+        self.quiet = True
+
+    def line(self, text: str) -> None:
+        """Write a line."""
+        self.writer.line(text)
+
+    def at(self, node: nodes.Node) -> None:
+        """The next lines stem from this node."""
+        if node.span is not None:
+            self.writer.file, self.writer.origin = node.span.file, node.span.line
+
+    def constant(self, value: Term) -> str:
+        """A global name for a value."""
+        return self.unit.constant(value)
+
+    def local(self, prefix: str = "t") -> str:
+        """A local name that is used nowhere else."""
+        return self.writer.fresh(prefix)
+
+    def bind(self, name: str, expression: str | None = None) -> str:
+        """Give a variable its value here; returns the local name."""
+        target = f"v_{name}"
+        if expression is not None and expression.startswith("Var("):
+            # What `Var.__init__` does, without the call.
+            self.line(f"{target} = new(Var); {target}.ref = None; {target}.name = {name!r}")
+        elif expression is not None and expression != target:
+            self.line(f"{target} = {expression}")
+        self.values[name] = target
+        if name not in self.fresh:
+            self.fresh.append(name)
+        if expression is not None and expression.startswith("Var("):
+            self.asked.add(name)
+        return target
+
+    def inner(self, *, depth: str = "d - 1", searching: bool = True) -> "FunctionBuilder":
+        """A builder for a function that this one calls; *searching* the way this one does, or plainly and at once."""
+        if not searching:
+            return type(self)(self.unit, depth=depth)
+        return type(self)(self.unit, trampoline=self.trampoline, snapshot=self.snapshot, depth=depth)
+
+    @contextmanager
+    def branch(self) -> Iterator[None]:
+        """What is learnt inside is forgotten outside."""
+        values, fresh = dict(self.values), list(self.fresh)
+        yield
+        self.values, self.fresh = values, fresh
+
+    def load(self, frame: FrameLayout, names: list[str]) -> None:
+        """Read the variables that have a value from the frame."""
+        for name in names:
+            state = frame.states.get(name)
+            if state is None:
+                continue
+            slot = frame.slots[name]
+            self.line(f"v_{name} = frame[{slot}]")
+            if state == "maybe":
+                self.line(f'if v_{name} is None: v_{name} = frame[{slot}] = Var("{name}")')
+                frame.states[name] = "set"
+            elif name in frame.asked:
+                value = f"v_{name}.ref if v_{name}.ref.__class__ is float else deref(v_{name})"
+                self.line(f"if v_{name}.__class__ is Var and v_{name}.ref is not None: v_{name} = {value}")
+            self.values[name] = f"v_{name}"
+
+    def store(self, frame: FrameLayout) -> None:
+        """Write the variables that got a value here to the frame."""
+        for name in self.fresh:
+            if name in frame.slots:
+                self.line(f"frame[{frame.slots[name]}] = {self.values[name]}")
+        frame.asked |= self.asked
+
+    def mark_stored(self, frame: FrameLayout) -> None:
+        """Take note that the fresh variables have a value from now on."""
+        for name in self.fresh:
+            if name in frame.slots:
+                frame.states[name] = "set"

@@ -1,0 +1,349 @@
+"""Changes of beliefs and the events they raise (Jason's brf and buf).
+
+The functions for body formulae return the event to be handled by the same intention, or None when it has no plan.
+"""
+
+from typing import Any
+
+from jacaros.agents.mind.rules.pending import note_change, note_rule
+from jacaros.agents.mind.rules.searching import unify_rows
+from jacaros.agents.mind.state.belief_base import Row, Table, literal, parts, take_away, with_source
+from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.intention import Posted, Raised
+from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.triggers import Goal, Trigger, resolve_all
+from jacaros.agents.mind.state.triggers import apart as with_own_variables
+from jacaros.agents.terms.order import merge_annotations
+from jacaros.agents.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
+from jacaros.agents.terms.unifier import undo, unify_annotations
+from jacaros.agents.terms.values import (
+    BY_SELF,
+    SOURCE_PERCEPT,
+    Functor,
+    Term,
+    Var,
+    arguments_of,
+    atom,
+    bare,
+    functor,
+)
+from jacaros.runtime.trace import Cause
+
+Annotations = tuple[Term, ...]
+
+_OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
+
+
+def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``+b``: the event belongs to the intention that made it."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations))
+
+
+def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``-+b``: the first belief with these annotations goes, whatever its arguments, and the new one comes.
+
+    The event of the first half is external.
+    """
+    table = agent.beliefs[symbol]
+    newest = next(reversed(table.rows)) if table.plain and table.rows else None
+    if newest is not None and annotations is BY_SELF is table.rows[newest]:
+        table.remove(newest)
+        external_change(agent, "-", symbol, newest, BY_SELF)
+    else:
+        delete_any(agent, symbol, annotations)
+    return add_belief(agent, symbol, row, annotations)
+
+
+def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``+>b``: the belief answers last."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
+
+
+def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
+    """``++b``: the event is an external one."""
+    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), apart=True)
+
+
+def _own_event(
+    agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool = False
+) -> Raised:
+    """Raise the event of a belief that a step has added; *new* are the annotations that it did not have before."""
+    if new is None:
+        return None
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
+    if agent.observers.hear_beliefs:
+        _tell_change(agent, "+", symbol, row, new, agent.cause_now())
+    return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
+
+
+def _tell_change(
+    agent: Circumstance,
+    operator: str,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations,
+    cause: Cause | None,
+    believed: bool = True,
+) -> None:
+    """Notify observers of a belief that changed, or (not *believed*) of a signal."""
+    observers, table = agent.observers, agent.beliefs[symbol]
+    if observers.derived is not None:
+        observers.derived.heard(operator, symbol, row, cause)
+    if believed and observers.mind is not None:
+        observers.mind.changed(operator, symbol, row, annotations, cause)
+    kind = table.added if operator == "+" else table.deleted
+    if observers.step is not None and not agent.may_handle(kind):
+        observers.step.notes_unhandled(agent, (kind, *row), annotations)
+
+
+def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
+    """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs it."""
+    kind, library = goal[0], agent.library
+    unplanned = (
+        library.selects[kind] is None
+        and not (library.reactions.of and library.reactions[kind])
+        and agent.options.events == "discard"
+    )
+    if apart or agent.options.new_focus:
+        if unplanned and not agent.waits.events:
+            return None
+        agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
+        return None
+    if unplanned and not (agent.events or agent.intentions or agent.waits.events):
+        # Nothing comes in between: the event would only be taken up and skipped.
+        return None
+    return goal if annotations is BY_SELF else Posted(goal, annotations)
+
+
+def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
+    """Return whether an external event would be handled rather than skipped."""
+    return agent.may_handle(kind) or agent.options.events != "discard"
+
+
+def is_quiet(agent: Circumstance) -> bool:
+    """Return whether nothing but plans for its event needs to know of a belief that changes."""
+    return not (
+        agent.waits.events
+        or agent.waits.conditions
+        or agent.observers.hear_beliefs
+        or agent.options.events != "discard"
+    )
+
+
+def insert(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
+) -> Annotations | None:
+    """Add a belief; return its new annotations, or None (then there is no event)."""
+    table = agent.beliefs[symbol]
+    for argument in row:  # most are numbers, strings and atoms
+        if argument.__class__ not in ATOMIC and not is_key(argument):
+            return _insert_aside(table, symbol, row, annotations, last)
+    held = table.get(row)
+    return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
+
+
+def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations) -> Annotations | None:
+    """Add what is new to the annotations of a belief."""
+    merged, new = merge_annotations(held, annotations)
+    if not new:
+        return None
+    table.set(entry, merged)
+    return new
+
+
+def _insert_aside(
+    table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
+) -> Annotations | None:
+    """Add a belief whose arguments are not keys (variables, annotations, very long lists): found by unification."""
+    known = table.aside(row)
+    if known is not None:
+        held = table.get(known)
+        return _merge(table, known, held or (), annotations)
+    return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
+
+
+def delete_belief(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, apart: bool
+) -> Raised:
+    """``-b`` and ``--b``: remove the given annotations (at least the agent's own source) of the first match."""
+    if _is_property(agent, symbol, arguments, annotations):
+        return None
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
+    if removed is None:
+        return None
+    if agent.waits.conditions:
+        note_change(agent, symbol, removed)
+    if agent.observers.hear_beliefs:
+        _tell_change(agent, "-", symbol, removed, annotations, agent.cause_now())
+    return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
+
+
+def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
+    """Return whether ``-b[source(percept)]`` names one observable property: only its artifact may change it.
+
+    As in CArtAgO, only ``-b(_)[source(percept)]`` removes one (and ``.abolish``).
+    """
+    if SOURCE_PERCEPT not in annotations:
+        return False
+    row = tuple(map(resolve, arguments))
+    if not all(map(is_key, row)):
+        return False
+    held = agent.beliefs.held_percepts.get((symbol, *row) if row else symbol)
+    if held is None:
+        return False
+    return _OBSERVABLE_PROPERTY in (held[0][0] if held.__class__ is list else held)
+
+
+def _remove_first(
+    agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations, bind: bool
+) -> Row | None:
+    """Remove the first match; return the row of the pattern with variables bound, or None if nothing matches."""
+    table, trail = agent.beliefs[symbol], agent.trail
+    for entry, held in table.candidates(arguments):
+        mark = len(trail)
+        row = _row_of(entry)
+        if (
+            row is not None
+            and unify_rows(arguments, row, trail)
+            and (held is annotations or unify_annotations(annotations, None, held, None, trail))
+        ):
+            found = resolve_all(arguments)
+            if held is annotations:
+                table.remove(entry)
+            else:
+                take_away(table, entry, held, resolve_all(annotations))
+            if not bind:
+                undo(trail, mark)
+            return found
+        undo(trail, mark)
+    return None
+
+
+def _row_of(entry: Any) -> Row | None:
+    """The arguments of an entry of a table; None for a rule."""
+    if isinstance(entry, OpenFact):
+        return arguments_of(entry.head())
+    return entry if entry.__class__ is tuple else None
+
+
+def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = BY_SELF) -> None:
+    """The first half of ``-+b``: the first belief with these annotations goes, whatever its arguments.
+
+    Its event is external.
+    """
+    arguments = tuple(Var() for _ in range(symbol.arity))
+    removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, resolve_all(annotations))
+
+
+def operand_error(term: Term) -> str:
+    """Return the error for a term that is added or deleted as a belief and is not a literal."""
+    return (
+        "body_var_without_value"
+        if free_variables(term) and bare(term) is not None
+        else "body_var_not_literal"
+    )
+
+
+# --- from outside ------------------------------------------------------------------------------------------
+
+
+def tell(agent: Circumstance, term: Term, cause: Cause | None = None) -> bool:
+    """Add a belief from outside (a message, the project file); the event is external. Return False if it is not a
+    literal.
+    """
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    believe(agent, symbol, row, with_source(annotations), cause)
+    return True
+
+
+def believe(
+    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Cause | None = None
+) -> None:
+    """The same for a literal in parts, with a source among its annotations."""
+    new = insert(agent, symbol, row, annotations)
+    if new is not None:
+        external_change(agent, "+", symbol, row, new, cause)
+
+
+def untell(agent: Circumstance, term: Term) -> bool:
+    """Remove a source of a belief; the event is external."""
+    symbol, row, annotations = parts(term)
+    if symbol is None:
+        return False
+    annotations = with_source(annotations)
+    removed = _remove_first(agent, symbol, row, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, annotations)
+    return removed is not None
+
+
+def disbelieve(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> None:
+    """Take these annotations off a belief in parts, if it is held; the event is external."""
+    removed = _remove_first(agent, symbol, row, annotations, bind=False)
+    if removed is not None:
+        external_change(agent, "-", symbol, removed, annotations)
+
+
+def external_change(
+    agent: Circumstance,
+    operator: str,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations,
+    cause: Cause | None = None,
+    believed: bool = True,
+) -> None:
+    """Raise the external event of a belief change, or (not *believed*) of a signal, if a plan or observer needs it."""
+    if agent.observers.hear_beliefs:
+        cause = cause or agent.cause_now()
+        _tell_change(agent, operator, symbol, row, annotations, cause, believed)
+    table = agent.beliefs[symbol]
+    kind = table.added if operator == "+" else table.deleted
+    if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
+        agent.post(((kind, *row), None, annotations, cause))
+    if agent.waits.conditions:
+        note_change(agent, symbol, row)
+
+
+def abolish(agent: Circumstance, pattern: Term) -> None:
+    """``.abolish``: delete all matches, with all their sources, whichever of them the pattern names."""
+    symbol, arguments, annotations = parts(pattern)
+    tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
+    for functor_, table in tables:
+        for entry, held in list(table.candidates(arguments) if symbol else table.entries()):
+            _abolish_entry(agent, functor_, table, entry, held, arguments if symbol else None, annotations)
+
+
+def _abolish_entry(
+    agent: Circumstance,
+    symbol: Functor,
+    table: Table,
+    entry: Any,
+    held: Annotations,
+    arguments: Row | None,
+    annotations: Annotations,
+) -> None:
+    row = _row_of(entry)
+    if row is None:
+        return
+    trail = agent.trail
+    mark = len(trail)
+    matches = (arguments is None or unify_rows(arguments, row, trail)) and (
+        not annotations or unify_annotations(annotations, None, held, None, trail)
+    )
+    undo(trail, mark)
+    if matches:
+        table.remove(entry)
+        external_change(agent, "-", symbol, row, held)
+
+
+def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
+    """Add a rule at run time; rules raise no events."""
+    if agent.waits.conditions:
+        note_rule(agent, head)
+    agent.beliefs[head].add(rule, rule.head_annotations(), last)

@@ -1,0 +1,329 @@
+"""Goals and plans that do not go on for ever: deadlines, attempts and periods of goals, deadlines and conditions of plans.
+
+Two things interrupt them: ``within(Ms)`` of a goal or plan passes, or ``while(Condition)`` of a plan no longer holds. A
+goal then fails. A plan stops in the middle of its step, pursues its clean-up goal, and fails.
+
+One deadline applies to all attempts of a goal together. With ``every``, the goal is posted again in each period, and
+deadline and attempts apply to each period.
+"""
+
+from math import ceil, floor
+
+from jacaros.agents.language.lowering import Names, lower
+from jacaros.agents.mind.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, nowhere
+from jacaros.agents.mind.rules import failure, goal_failure, meta_events
+from jacaros.agents.mind.rules.body_steps import interpreted
+from jacaros.agents.mind.rules.clr_int import cut_out
+from jacaros.agents.mind.rules.pending import is_true, now, set_alarm, watch
+from jacaros.agents.mind.rules.supervision import end, pause, post_again, supervising
+from jacaros.agents.mind.state.belief_base import parts
+from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.intention import (
+    ANNOTATIONS,
+    FIRST_SLOT,
+    GOAL,
+    PLAN,
+    SERIAL,
+    STEP,
+    Event,
+    Frame,
+    Intention,
+    Posted,
+)
+from jacaros.agents.mind.state.pending import SUPERVISION, Pending, Supervision, is_pause, is_supervision
+from jacaros.agents.mind.state.plan import SUSPENDED
+from jacaros.agents.mind.state.triggers import (
+    EventAnnotations,
+    Goal,
+    apart,
+    literal_of,
+    own_annotations,
+    trigger,
+)
+from jacaros.agents.terms.substitution import rename, resolve
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import (
+    BY_SELF,
+    LOGIC,
+    Functor,
+    String,
+    Term,
+    atom,
+    bare,
+    functor,
+    functor_of,
+    structure,
+)
+from jacaros.files.texts import is_worth_a_line
+
+WITHIN, HARD_DEADLINE, EVERY = functor("within", 1), functor("hard_deadline", 1), functor("every", 1)
+RETRY, RETRY_AFTER = functor("retry", 1), functor("retry", 2)
+ACTING: frozenset[Functor] = frozenset({WITHIN, HARD_DEADLINE, EVERY, RETRY, RETRY_AFTER})
+"""The annotations of goals that have an effect."""
+_NOT = functor("not", 1, kind=LOGIC)
+_EXACT = 1e-5
+"""Tolerance for inaccurate clocks, in seconds."""
+
+
+# --- goals -------------------------------------------------------------------------------------------------
+
+
+def supervision_of(goal: Goal, annotations: tuple[Term, ...]) -> Supervision | None:
+    """Return the supervision of a goal, or None if its annotations ask for none. Invalid annotations have no effect."""
+    found = Supervision(goal[0])
+    for inner in map(bare, annotations):
+        if inner.__class__ is tuple and inner[0] in ACTING:
+            numbers = inner[1:]
+            if all(number.__class__ is float for number in numbers):
+                _take(found, inner[0], numbers)
+    acts = found.within is not None or found.retries or found.period is not None
+    return found if acts and goal[0].kind == "!" else None
+
+
+def _take(supervision: Supervision, word: Functor, numbers: tuple[float, ...]) -> None:
+    seconds = numbers[-1] / 1000
+    if word is WITHIN or word is HARD_DEADLINE:
+        if supervision.within is None or seconds < supervision.within:
+            supervision.within, supervision.hard = seconds, word is HARD_DEADLINE
+    elif word is EVERY:
+        if seconds > 0:
+            supervision.period = seconds
+    elif numbers[0] >= 1 and numbers[0].is_integer():
+        supervision.retries = int(numbers[0])
+        supervision.back_off = max(0.0, seconds) if word is RETRY_AFTER else 0.0
+
+
+def supervised(
+    agent: Circumstance, intention: Intention | None, goal: Goal, annotations: tuple[Term, ...]
+) -> Goal:
+    """Return a goal to post, supervised on the stack of its intention as its annotations say."""
+    supervision = supervision_of(goal, annotations)
+    if supervision is None or intention is None:
+        return goal
+    supervision.began = now(agent)
+    intention.frames.append(supervising(agent, supervision, _ended, annotations, goal[1:]))
+    return _begin(agent, supervision, goal)
+
+
+def adopt(agent: Circumstance, event: Event) -> None:
+    """Post the event of a new goal, which has an intention of its own."""
+    goal, _, annotations, cause = event
+    if annotations is not BY_SELF and isinstance(annotations, tuple) and supervision_of(goal, annotations):
+        if len(agent.alive) >= agent.options.intention_limit:
+            agent.budgets["intention_limit"].refuse(len(agent.alive))
+            return
+        intention = agent.new_intention(cause)
+        event = (supervised(agent, intention, goal, annotations), intention, annotations, None)
+    meta_events.post_new_goal(agent, event)
+
+
+def _begin(agent: Circumstance, supervision: Supervision, goal: Goal) -> Goal:
+    """Begin the goal or one period; return the goal to post, with new variables in each period."""
+    supervision.failed = 0
+    if supervision.within is not None:
+        _set_deadline(agent, supervision, supervision.within)
+    return goal if supervision.period is None else apart(goal)
+
+
+def _ended(agent: Circumstance, frame: Frame) -> object:
+    """The step of a supervision's frame: the plan has ended, or the goal was achieved or a plan handled its failure."""
+    supervision: Supervision = frame[SUPERVISION]
+    end(agent, supervision)
+    if supervision.period is None or agent.current is None:
+        frame[STEP] = None
+        return None
+    time = now(agent)
+    _, goal, annotations = _goal_of(frame)
+    following = ceil((time - supervision.began - _EXACT) / supervision.period)
+    _skip_to(agent, supervision, following - 1, goal, annotations)
+    due = supervision.began + (supervision.number + 1) * supervision.period
+    reason = structure("every", supervision.period * 1000)
+    pause(agent, agent.current, (goal, annotations), max(0.0, due - time), _next_period, reason)
+    return SUSPENDED
+
+
+def _next_period(agent: Circumstance, frame: Frame) -> Posted:
+    """The step behind the pause between two periods."""
+    posted = post_again(agent, frame)
+    assert agent.current is not None
+    supervision: Supervision = agent.current.frames[-1][SUPERVISION]
+    assert supervision.period is not None
+    passed = floor((now(agent) - supervision.began + _EXACT) / supervision.period)
+    # The intention may have been suspended, or the mind stored, when the period began.
+    _skip_to(agent, supervision, passed - 1, posted.goal, posted.annotations)
+    supervision.number += 1
+    return Posted(_begin(agent, supervision, posted.goal), posted.annotations)
+
+
+def _skip_to(
+    agent: Circumstance, supervision: Supervision, number: int, goal: Goal, annotations: EventAnnotations
+) -> None:
+    """Report that the periods up to *number* have been missed: raise events for plans, and warn."""
+    missed = number - supervision.number
+    if missed <= 0 or supervision.period is None:
+        return
+    supervision.number = number
+    supervision.missed += missed
+    meta_events.goal_state(
+        agent, goal, annotations, "missed", atom("overrun"), structure("periods", float(missed))
+    )
+    if is_worth_a_line(supervision.missed, missed):
+        count = "a period" if supervision.missed == 1 else f"{supervision.missed} periods"
+        shown, period = text(literal_of(goal, ())), text(supervision.period * 1000)
+        told = f"goal !{shown} has missed {count} of {period} ms: it takes longer"
+        agent.architecture.log("warning", told)
+
+
+# --- plans -------------------------------------------------------------------------------------------------
+
+
+def begin_guarded(agent: Circumstance, frame: Frame) -> object:
+    """The step before the first one of a plan with guards: start its condition and its deadline."""
+    intention, plan = agent.current, frame[PLAN]
+    assert intention is not None
+    if plan.first is None:  # the mind was stored before the plan had begun
+        interpreted(plan)
+        frame.extend([None] * (FIRST_SLOT + plan.size - len(frame)))
+    frame[STEP] = plan.first
+    guards = _guards(frame)
+    supervision = Supervision()
+    supervision.cleanup = guards.get("cleanup")
+    intention.frames.insert(len(intention.frames) - 1, supervising(agent, supervision, _ended))
+    within, condition = guards.get("within"), guards.get("while")
+    if isinstance(within, float):
+        _set_deadline(agent, supervision, within / 1000)
+    if condition is None:
+        return None
+    lost, fault = is_true(agent, (_NOT, condition))
+    if lost:
+        _log_fault(agent, fault, condition)
+        return _clean_up(agent, intention, supervision, frame, nowhere(*_lost(condition))) or SUSPENDED
+    supervision.pending.append(
+        watch(agent, (_NOT, condition), _lose, supervision, supervision.pending, condition)
+    )
+    return None
+
+
+def _guards(frame: Frame) -> dict[str, Term]:
+    """Return the guards of a plan, with the values of its variables when it begins."""
+    slots = frame[PLAN].slots
+    names = Names((name, frame[slot]) for name, slot in slots.items() if frame[slot] is not None)
+    return {
+        node.functor: rename(resolve(lower(node.arguments[0], names.__getitem__)))
+        for node in frame[PLAN].guards
+    }
+
+
+def _lose(
+    agent: Circumstance,
+    fault: Exception | None,
+    supervision: Supervision,
+    pending: list[Pending],
+    condition: Term,
+) -> None:
+    """Interrupt a plan whose condition no longer holds. One that cannot be evaluated does not hold."""
+    _log_fault(agent, fault, condition)
+    _interrupt(agent, supervision, pending, _lost(condition))
+
+
+def _log_fault(agent: Circumstance, fault: Exception | None, condition: Term) -> None:
+    if fault is not None:
+        told = f"cannot evaluate the condition {text(condition)}: {failure.told(fault)}"
+        agent.architecture.log("error", told)
+
+
+def _lost(condition: Term) -> tuple[Term, ...]:
+    """Return the reason terms of a plan whose condition no longer holds."""
+    message = f"the condition {text(condition)} of the plan no longer holds"
+    lost = structure("condition_lost", condition)
+    return (ERROR, atom("condition_lost")), (ERROR_MSG, String(message)), lost
+
+
+def _clean_up(
+    agent: Circumstance, intention: Intention, supervision: Supervision, frame: Frame, reason: FailureReason
+) -> Posted | None:
+    """Post the clean-up goal of a plan, after which the plan fails; without one it fails immediately."""
+    end(agent, supervision)
+    symbol = functor_of(supervision.cleanup)
+    if symbol is None or symbol.kind:
+        return goal_failure.fail_intention(agent, intention, reason)
+    supervision.lost, frame[STEP] = reason, fail_lost
+    _, arguments, annotations = parts(supervision.cleanup)
+    return Posted((trigger("+", "!", symbol), *arguments), own_annotations(annotations))
+
+
+def fail_lost(agent: Circumstance, frame: Frame) -> object:
+    """The step after the clean-up goal of a plan: the plan fails."""
+    intention = agent.current
+    assert intention is not None
+    supervision: Supervision = intention.frames[-2][SUPERVISION]
+    reason, supervision.lost = supervision.lost, None
+    return goal_failure.fail_intention(agent, intention, reason) or SUSPENDED
+
+
+# --- interruptions -----------------------------------------------------------------------------------------
+
+
+def _set_deadline(agent: Circumstance, supervision: Supervision, seconds: float) -> None:
+    """Interrupt the goal or plan if it does not end in time."""
+    pending = supervision.pending
+    pending.append(
+        set_alarm(agent, max(0.0, seconds), _pass, supervision, pending, _late(supervision, seconds))
+    )
+
+
+def _late(supervision: Supervision, seconds: float) -> tuple[Term, ...]:
+    """Return the reason terms of a missed deadline."""
+    if supervision.hard:
+        return (ERROR, atom("deadline_reached")), (ERROR_MSG, String("the goal was not achieved in time"))
+    milliseconds = seconds * 1000
+    message = f"not achieved within {text(milliseconds)} ms"
+    return (ERROR, atom("deadline")), (ERROR_MSG, String(message)), structure("deadline", milliseconds)
+
+
+def _pass(
+    agent: Circumstance, supervision: Supervision, pending: list[Pending], reason: tuple[Term, ...]
+) -> None:
+    agent.do_soon(_interrupt, supervision, pending, reason)
+    agent.architecture.ready()
+
+
+def _interrupt(
+    agent: Circumstance, supervision: Supervision, pending: list[Pending], reason: tuple[Term, ...]
+) -> None:
+    """Interrupt the goal or plan in all its intentions, unless it has ended, or begun anew, since the call was made."""
+    if supervision.pending is not pending:
+        return
+    end(agent, supervision)
+    for intention in list(agent.alive.values()):
+        for index, frame in enumerate(intention.frames):
+            if is_supervision(frame) and frame[SUPERVISION] is supervision:
+                _stop(agent, intention, index, nowhere(*reason))
+                break
+
+
+def _stop(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> None:
+    """Stop the goal or plan above the frame at *index*, whatever it is doing; a goal is not tried again."""
+    frames, holder = intention.frames, intention.frames[index]
+    place = index + 1
+    while place < len(frames) and is_supervision(frames[place]):
+        place += 1
+    stopped = frames[place:]
+    if stopped:
+        reason = reason.interrupted(stopped)
+        goal_failure.observe_failed(agent, intention, place + 1, reason)
+    if holder[SUPERVISION].kind is not None:
+        number, goal, annotations = _goal_of(stopped[0] if stopped else holder)
+        failure.release_bindings(goal, holder[SERIAL])
+        cut_out(agent, intention, index + 1)
+        agent.post_for(intention, goal_failure.fail_goal(agent, intention, goal, annotations, reason, number))
+    elif stopped:
+        cut_out(agent, intention, place + 1)
+        agent.post_for(intention, _clean_up(agent, intention, holder[SUPERVISION], stopped[0], reason))
+
+
+def _goal_of(frame: Frame) -> tuple[int, Goal, tuple[Term, ...]]:
+    """Return the number by which observers know a supervised goal (-1 if it has no plan), and the goal, of a frame."""
+    if not is_supervision(frame):
+        return -1 if is_pause(frame) else frame[SERIAL], frame[GOAL], frame[ANNOTATIONS]
+    return -1, (frame[SUPERVISION].kind, *frame[SUPERVISION + 1 :]), frame[ANNOTATIONS]

@@ -1,0 +1,306 @@
+"""Failure of formulae, and of goals without a plan. Only here exceptions of internal actions become failures of goals.
+
+An exception that no rule of the language foresees, such as a lack of memory, costs an agent one message, event or
+intention; it is logged, and the agent continues.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+from jacaros.agents.language import nodes
+from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
+from jacaros.agents.mind.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, Place, goal_text
+from jacaros.agents.mind.rules import forks, supervision
+from jacaros.agents.mind.state.budget import SearchLimit
+from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.intention import (
+    ANNOTATIONS,
+    GOAL,
+    PLAN,
+    SERIAL,
+    STEP,
+    Frame,
+    Intention,
+    Posted,
+)
+from jacaros.agents.mind.state.pending import SUPERVISED
+from jacaros.agents.mind.state.plan import Fail, Failure, StepInfo
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
+from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.substitution import ATOMIC, resolve
+from jacaros.agents.terms.text import display, text
+from jacaros.agents.terms.unifier import undo
+from jacaros.agents.terms.values import List, String, Term, Var, atom, functor
+from jacaros.errors import InternalError
+
+_ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
+
+_IDS: dict[type, str] = {
+    nodes.Test: "test_goal_failed",
+    nodes.If: "constraint_failed",
+    nodes.While: "constraint_failed",
+    nodes.For: "constraint_failed",
+    nodes.ExternalAction: "action_failed",
+    nodes.BeliefChange: "belief_revision_failed",
+}
+
+
+def error_terms(error: str, message: str) -> tuple[Term, ...]:
+    """``error(Id)`` and ``error_msg("…")``."""
+    return ((ERROR, atom(error)), (ERROR_MSG, String(message)))
+
+
+def output_misfit(output: Term, value: Term) -> tuple[Term, ...]:
+    """Return the reason for an external action with an *output* that is already bound to another value.
+
+    This happens, for example, if the same variable is written for two outputs.
+    """
+    message = f"an output of the action would be {text(value)}, but is {text(output)} already"
+    reason = (_BIND_PARAM_ERROR, resolve(output), String(display(value)))
+    return (*error_terms("action_failed", message), (_ENV_FAILURE_REASON, reason))
+
+
+def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
+    """Return the reason of a step that failed, or that raised *fault*.
+
+    Raises:
+        InternalError: the fault is a defect of JaCaROS.
+    """
+    info: StepInfo | None = getattr(frame[STEP], "info", None)
+    if info is None:
+        raise InternalError(f"a step of plan {frame[PLAN]!r} is unknown") from fault
+    if fault is not None and fault.__class__ is not Fail:
+        return FailureReason(_terms_of(fault, info), frame)
+    terms = info.failure
+    if terms is None:
+        terms = info.failure = error_terms(*_plain_failure(info.node))
+    return FailureReason(terms, frame)
+
+
+_ERRORS = (
+    (WrongArguments, "wrong_arguments"),
+    (ArithmeticFault, "arithmetic_error"),
+    (SearchLimit, "search_limit"),
+    (RecursionError, "too_deep"),
+)
+"""Exceptions whose text is the message, and their error ids."""
+
+
+def _terms_of(fault: Exception, info: StepInfo) -> tuple[Term, ...]:
+    if isinstance(fault, Failure):
+        return (*fault.annotations, *_message_unless_given(fault.annotations, _default_message(fault)))
+    if isinstance(fault, Fail):
+        return error_terms(*_plain_failure(info.node))
+    for kind, error in _ERRORS:
+        if isinstance(fault, kind):
+            return error_terms(error, str(fault))
+    if isinstance(fault, ActionError):
+        given = fault.annotations
+        known = any(t.__class__ is tuple and t[0] is ERROR for t in given)
+        error_term = () if known else ((ERROR, atom("internal_action")),)
+        return (*error_term, *given, *_message_unless_given(given, str(fault)))
+    if isinstance(fault, MemoryError):
+        return error_terms("no_memory", "there is not enough memory")
+    if isinstance(fault, InternalError):
+        raise fault
+    error = "internal_action" if isinstance(info.node, nodes.Constraint) else "unknown"
+    return error_terms(error, f"{type(fault).__name__}: {fault}")
+
+
+_MESSAGES = {
+    "body_var_without_value": "a variable that stands for a step has no value",
+    "body_var_not_literal": "a variable that stands for a goal or a belief holds something else",
+    "body_var_with_op": "a variable behind an operator holds a plan body",
+}
+
+
+def _default_message(fault: Failure) -> str:
+    """Return the message of a failure without one."""
+    found = (text(term[1]) for term in fault.annotations if term.__class__ is tuple and term[0] is ERROR)
+    error = next(found, "unknown")
+    return _MESSAGES.get(error, error.replace("_", " "))
+
+
+def _message_unless_given(given: tuple[Term, ...], message: str) -> tuple[Term, ...]:
+    if any(t.__class__ is tuple and t[0] is ERROR_MSG for t in given):
+        return ()
+    return ((ERROR_MSG, String(message)),)
+
+
+def _plain_failure(node: nodes.Node) -> tuple[str, str]:
+    if isinstance(node, nodes.Constraint):
+        if isinstance(node.formula, nodes.InternalAction):
+            return "ia_failed", f"internal action {node.formula.name} failed"
+        return "constraint_failed", "a constraint does not hold"
+    error = _IDS.get(type(node), "unknown")
+    return error, {"test_goal_failed": "a test found no answer"}.get(error, error.replace("_", " "))
+
+
+def no_plan(
+    agent: Circumstance, goal: Goal, annotations: EventAnnotations, caller: Frame | None
+) -> FailureReason:
+    """Return the reason of a goal that has no relevant or no applicable plan."""
+    if agent.library.selects[goal[0]] is None:
+        error, told = "no_relevant", "no relevant plan"
+    elif agent.selections.refused:
+        agent.selections.refused = False
+        error, told = "no_option", "no option is selected"
+    else:
+        error, told = "no_applicable", "no applicable plan"
+
+    def terms() -> tuple[Term, ...]:
+        return error_terms(error, f"{told} for {goal[0].kind}{goal_text(goal)}")
+
+    # The values of variables are shown as they are now: they are released before a plan may ask.
+    at_once = not ATOMIC.issuperset(map(type, goal[1:]))
+    return FailureReason(terms() if at_once else terms, Place(caller, unplanned=(goal, annotations)))
+
+
+def too_deep(goal: Goal, annotations: EventAnnotations, caller: Frame, depth: int) -> FailureReason:
+    """Return the reason of a goal whose plan would exceed the maximum stack of its intention."""
+    message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
+    return FailureReason(error_terms("too_deep", message), Place(caller, unplanned=(goal, annotations)))
+
+
+_MAY_BE_BOUND = frozenset({Var, tuple, List})
+
+
+def release_bindings(goal: Goal, serial: int) -> None:
+    """Undo the bindings of the variables of a failed goal since it was posted."""
+    stack: list[Term] = []
+    for argument in goal:
+        if argument.__class__ in _MAY_BE_BOUND:
+            stack.append(argument)
+    while stack:
+        term = stack.pop()
+        if term.__class__ is Var:
+            if term.ref is None:
+                continue
+            if term.at >= serial:
+                term.ref = None
+            else:
+                stack.append(term.ref)
+        elif term.__class__ is tuple:
+            stack.extend(a for a in term[1:] if a.__class__ in _MAY_BE_BOUND)
+        elif isinstance(term, List) and term.settled != term.size:
+            stack.extend(a for a in term.stack[term.settled : term.size] if a.__class__ in _MAY_BE_BOUND)
+
+
+def handler_event(agent: Circumstance, intention: Intention, reason: FailureReason) -> Posted | int | None:
+    """Find the nearest goal down the stack that has a handler, or return None.
+
+    The failed frames stay on the stack under the handler until it ends. A failure inside a handler is passed to the
+    goals below the one it handles. A goal with attempts left comes before its handler: the index of its frame is
+    returned.
+    """
+    frames = intention.frames
+    found = _handler_index(agent, intention) if frames and frames[-1][PLAN].nested else None
+    selects = agent.library.selects
+    index, handlers = _goal_below(intention, len(frames), len(intention.handlers))
+    while index >= 0:
+        frame = frames[index]
+        kind = frame[GOAL][0].on_fail
+        if (
+            index
+            and frames[index - 1][GOAL][0] is SUPERVISED
+            and supervision.fails(agent, intention, index, reason)
+        ):
+            del intention.handlers[handlers:]
+            release_bindings(frame[GOAL], frame[SERIAL])
+            return index
+        if index == found or (found is None and kind is not None and selects[kind] is not None):
+            goal = frame[GOAL]
+            release_bindings(goal, frame[SERIAL])
+            # Handlers above it have failed with the goals that they handled.
+            intention.handlers[handlers:] = (index,)
+            return Posted((goal[0].on_fail, *goal[1:]), reason.for_goal(frame[ANNOTATIONS]))
+        index, handlers = _goal_below(intention, index, handlers)
+    return None
+
+
+def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
+    """Return whether a goal higher on the stack than the frame *above* has a handler that is not already running."""
+    found = _handler_index(agent, intention)
+    index, handlers = _goal_below(intention, len(intention.frames), len(intention.handlers))
+    while found <= above < index:
+        if supervision.has_attempt(intention, index):
+            return True
+        index, handlers = _goal_below(intention, index, handlers)
+    return found > above
+
+
+def handles_own(agent: Circumstance, intention: Intention, kind: Trigger) -> bool:
+    """Return whether a goal without a plan has a handler of its own; as in Jason, only the innermost scope counts."""
+    scope = next(iter(forks.scopes(intention)), None)
+    if scope is None:
+        return agent.library.selects[kind] is not None
+    return forks.has_inner(agent, scope, kind)
+
+
+def _goal_below(intention: Intention, index: int, handlers: int) -> tuple[int, int]:
+    """Return the index of the next goal down the stack that a running handler is not for, and the handlers below it."""
+    index -= 1
+    while index >= 0 and intention.frames[index][GOAL][0].failing:
+        handlers -= 1
+        index = intention.handlers[handlers] - 1
+    return index, handlers
+
+
+def _handler_index(agent: Circumstance, intention: Intention) -> int:
+    """Return the index of the frame whose goal has the handler, or -1.
+
+    As in Jason, each scope is searched for handlers of the whole stack before the scope around it is, and outside the
+    innermost scope the bottom goal comes first.
+    """
+    scoped = False
+    for scope in forks.scopes(intention):
+        index = _first_handled(intention, scoped, partial(forks.has_inner, agent, scope))
+        if index >= 0:
+            return index
+        scoped = True
+    selects = agent.library.selects
+    return _first_handled(intention, scoped, lambda kind: selects[kind] is not None)
+
+
+def _first_handled(intention: Intention, bottom_first: bool, has_plan: Callable[[Trigger], bool]) -> int:
+    frames = intention.frames
+    index, handlers = _goal_below(intention, len(frames), len(intention.handlers))
+    if bottom_first and 0 not in intention.handlers:
+        kind = frames[0][GOAL][0].on_fail
+        if kind is not None and has_plan(kind):
+            return 0
+    while index >= 0:
+        kind = frames[index][GOAL][0].on_fail
+        if kind is not None and has_plan(kind):
+            return index
+        index, handlers = _goal_below(intention, index, handlers)
+    return -1
+
+
+def told(fault: BaseException) -> str:
+    """Describe an exception."""
+    message = str(fault)
+    return f"{type(fault).__name__}: {message}" if message else type(fault).__name__
+
+
+def note_lack_of_memory(agent: Circumstance, fault: BaseException) -> None:
+    """Report a `MemoryError` to the host, before anything else that needs memory."""
+    if isinstance(fault, MemoryError):
+        agent.architecture.out_of_memory()
+
+
+def report_skipped(agent: Circumstance, what: str, fault: Exception) -> None:
+    """Report that something was skipped because of an exception."""
+    note_lack_of_memory(agent, fault)
+    undo(agent.trail, 0)
+    agent.architecture.log("error", f"{what} skipped: {told(fault)}")
+
+
+def drop_after_error(agent: Circumstance, intention: Intention, fault: Exception) -> None:
+    """End an intention that cannot continue, without failure events."""
+    note_lack_of_memory(agent, fault)
+    undo(agent.trail, 0)
+    agent.current = None
+    if not intention.dropped:
+        agent.architecture.log("error", f"intention {intention.id} dropped: {told(fault)}")
+        agent.finish(intention)

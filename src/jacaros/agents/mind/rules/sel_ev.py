@@ -1,0 +1,231 @@
+"""An event is handled: rule SelEv, and the intention that it begins or continues."""
+
+from collections.abc import Sequence
+
+from jacaros.agents.mind.rules import failure, forks
+from jacaros.agents.mind.rules.add_im import (
+    begin_plan,
+    log_inapplicable,
+    push,
+    select_for_reasons,
+    select_plan,
+)
+from jacaros.agents.mind.rules.clr_int import remove_event
+from jacaros.agents.mind.rules.goal_failure import unplanned
+from jacaros.agents.mind.rules.plan_changes import look_at_plans
+from jacaros.agents.mind.rules.proc_msg import RECEIVED, receive_event
+from jacaros.agents.mind.state.circumstance import Circumstance, HeldEvent, StepObserver
+from jacaros.agents.mind.state.intention import (
+    EVENT_ANNOTATIONS,
+    EVENT_CAUSE,
+    EVENT_GOAL,
+    EVENT_INTENTION,
+    PLAN,
+    Event,
+    Intention,
+)
+from jacaros.agents.mind.state.plan import Plan
+from jacaros.errors import InternalError
+
+# An observer holds an agent in the middle of a reasoning cycle: before an event is handled, or before a step is made.
+
+
+def observe_steps(agent: Circumstance, observer: StepObserver | None) -> None:
+    """Ask *observer* before each event and each step; None ends this, and lets a held agent continue."""
+    agent.observers.step = observer
+    agent.look_at_observers()
+    if observer is None:
+        agent.held = None
+    look_at_plans(agent)
+
+
+def is_held_before_event(agent: Circumstance, event: Event, ends_cycle: bool = False) -> bool:
+    """Return whether the observer holds the agent before an event, which is then put back first in the queue."""
+    observer = agent.observers.step
+    if observer is None or not observer.holds_event(agent, event):
+        return False
+    agent.held = HeldEvent(event, ends_cycle)
+    agent.events.appendleft(event)
+    return True
+
+
+def is_held_before_step(agent: Circumstance, intention: Intention) -> bool:
+    """Return whether the observer holds the agent before a step of an intention, which is then put back as the next one."""
+    observer = agent.observers.step
+    if observer is None or not observer.holds_step(agent, intention):
+        return False
+    agent.held = intention
+    agent.intentions.appendleft(intention)
+    return True
+
+
+def take_held_event(agent: Circumstance) -> Event | None:
+    """Take the event before which the agent was held out of its queue; return None if it was not held or the event is
+    gone.
+    """
+    held = agent.held
+    if not isinstance(held, HeldEvent):
+        return None
+    agent.held = None
+    place = next((place for place, queued in enumerate(agent.events) if queued is held.event), None)
+    if place is None:
+        return None
+    del agent.events[place]
+    return held.event
+
+
+def take_held_intention(agent: Circumstance) -> Intention | None:
+    """Take the intention before whose step the agent was held out of its queue; None if it was not held or cannot run
+    now.
+    """
+    intention = agent.held
+    if not isinstance(intention, Intention):
+        return None
+    agent.held = None
+    if intention.dropped or intention not in agent.intentions:
+        return None
+    agent.intentions.remove(intention)
+    return intention
+
+
+def handle_event(agent: Circumstance, event: Event | None = None) -> None:
+    """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
+
+    *event* is the one before which an observer held the agent, if it did.
+    """
+    selections, step = agent.selections, agent.observers.step
+    while event is not None or agent.events:
+        if event is None:
+            event = agent.events.popleft() if selections.plain else selections.select_event()
+            if event is None or (step is not None and is_held_before_event(agent, event)):
+                return
+        try:
+            intention = event[EVENT_INTENTION]
+            if intention is None:
+                if begin_intention(agent, event):
+                    return
+            elif _continue_intention(agent, intention, event):
+                return
+        except InternalError:
+            raise
+        except Exception as fault:
+            skip_event(agent, event, fault)
+        event = None
+
+
+def _continue_intention(agent: Circumstance, intention: Intention, event: Event) -> bool:
+    if intention.dropped:
+        return False
+    agent.current = intention  # contexts may ask for it
+    if push(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS]):
+        agent.make_ready(intention)
+    agent.current = None
+    return True
+
+
+def handle_held_event(agent: Circumstance, event: Event) -> None:
+    """Handle the event before which the agent was held."""
+    if agent.atomic is not None:
+        _push_atomic(agent, agent.atomic, event)
+    else:
+        handle_event(agent, event)
+
+
+def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
+    """An atomic intention's own event comes before all others, which wait."""
+    event = event_of(agent, intention)
+    if event is not None:
+        remove_event(agent, event)
+        if not is_held_before_event(agent, event):
+            _push_atomic(agent, intention, event)
+
+
+def _push_atomic(agent: Circumstance, intention: Intention, event: Event) -> None:
+    goal, _, annotations, _ = event
+    try:
+        if push(agent, intention, goal, annotations):
+            agent.make_ready(intention)
+    except InternalError:
+        raise
+    except Exception as fault:
+        skip_event(agent, event, fault)
+
+
+def is_ready(agent: Circumstance, intention: Intention) -> bool:
+    """Whether an intention is among those that can run; one that has just made a step is the last of them."""
+    intentions = agent.intentions
+    return bool(intentions) and (intentions[-1] is intention or intention in intentions)
+
+
+def event_of(agent: Circumstance, intention: Intention) -> Event | None:
+    """The event that an intention has in the queue, if it is that what it waits for."""
+    if intention.waiting is not None or is_ready(agent, intention):
+        return None
+    return next((event for event in agent.events if event[EVENT_INTENTION] is intention), None)
+
+
+def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
+    """Report an exception that escapes while an event is handled; the agent continues with the next event."""
+    agent.current = None
+    failure.report_skipped(agent, "event", fault)
+    intention = event[EVENT_INTENTION]
+    if intention is not None:
+        failure.drop_after_error(agent, intention, fault)
+
+
+def begin_intention(agent: Circumstance, event: Event) -> bool:
+    """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+    goal, _, annotations, cause = event
+    kind, observer, reactions, reacted = goal[0], agent.observers.mind, agent.library.reactions, False
+    if reactions.of and kind.kind == "" and reactions[kind]:
+        reacted = _react(agent, event, reactions[kind])
+    if observer is None:
+        frame = select_plan(agent, goal, annotations)
+    else:
+        frame, cause = select_for_reasons(agent, observer, goal, annotations, None, cause)
+    if frame is None:
+        return _begin_without_plan(agent, (goal, None, annotations, cause), reacted)
+    intention = agent.new_intention(cause)
+    intention.frames.append(frame)
+    if kind.failing:
+        intention.handlers.append(0)
+    # A goal that needs something has annotations beside its source.
+    plain = not kind.kind or (annotations.__class__ is tuple and len(annotations) == 1)
+    if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
+        if agent.selections.urgencies is None:
+            agent.intentions.append(intention)
+        else:
+            agent.make_ready(intention)
+    return True
+
+
+def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> bool:
+    """Drop an external event, let a goal fail, or handle a message by default."""
+    goal, _, annotations, cause = event
+    trigger = goal[0]
+    if trigger.kind == "" or trigger.operator == "^":
+        if agent.options.verbose > 1 and not reacted and agent.library.selects[trigger] is not None:
+            log_inapplicable(agent, goal, annotations)
+        if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
+            agent.waits.requeued.append(event)
+        return reacted
+    if trigger is RECEIVED:
+        receive_event(agent, goal)
+        return True
+    intention = agent.new_intention(cause)
+    agent.post_for(intention, unplanned(agent, intention, goal, annotations))
+    return True
+
+
+def _react(agent: Circumstance, event: Event, plans: Sequence[Plan]) -> bool:
+    """Every intention with one of *plans*, which have sub-plans for an external event, reacts to it."""
+    goal, _, annotations, cause = event
+    reactions = forks.react(agent, goal, annotations, plans)
+    for owner, outer, frame in reactions:
+        if agent.observers.mind is not None:
+            cause = agent.observers.mind.selected(goal, annotations, None, frame, event[EVENT_CAUSE])
+        intention = agent.new_intention(cause)
+        intention.frames.append(frame)
+        intention.outer = (owner, outer)
+        agent.make_ready(intention)
+    return bool(reactions)

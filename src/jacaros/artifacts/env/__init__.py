@@ -1,0 +1,1 @@
+"""The environment: workspaces, artifacts, and what they share."""

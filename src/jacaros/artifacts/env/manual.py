@@ -1,0 +1,403 @@
+"""Manuals: what an artifact type offers, for agents, users and the inspector."""
+
+import ast
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from jacaros.artifacts.env.artifact import Artifact
+from jacaros.artifacts.env.operation import INTERNAL, LINK, OPERATION
+from jacaros.artifacts.env.property import ObservableProperty
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, Signature
+
+# Properties and signals of an artifact type, read from its source and docstrings.
+
+
+_DEFINES = {"define_property": 0, "signal": 0, "signal_to": 1}
+"""The methods that make something observable, and the index of the argument that names it."""
+
+_WORDS: dict[type, str] = {
+    bool: "true or false",
+    int: "number",
+    float: "number",
+    str: "text",
+    list: "list",
+    dict: "map",
+}
+
+Usages = dict[str, str]
+"""From a name to its usage with values, such as ``count(start)``."""
+
+Entries = dict[str, tuple[str, str]]
+"""From a name to its usage and description."""
+
+
+def own_classes(artifact_type: type) -> list[type]:
+    """Return the class and its user-defined base classes, the most general last."""
+    return [each for each in artifact_type.__mro__ if issubclass(each, Artifact) and each is not Artifact]
+
+
+def written_properties(artifact_type: type) -> Usages:
+    """Return the properties that the code of the class defines by name, the most general class first."""
+    return _written(artifact_type, ("define_property",))
+
+
+def written_signals(artifact_type: type) -> Usages:
+    """Return the signals that the code of the class sends by name, the most general class first."""
+    return _written(artifact_type, ("signal", "signal_to"))
+
+
+def _written(artifact_type: type, methods: tuple[str, ...]) -> Usages:
+    found: Usages = {}
+    for each in reversed(own_classes(artifact_type)):
+        for name, usage in _calls(each, methods):
+            found.setdefault(name, usage)
+    return found
+
+
+def _calls(kind: type, methods: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(kind)))
+    except (OSError, TypeError, SyntaxError):  # created at run time: no source
+        return
+    for node in _in_order(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in methods:
+            place = _DEFINES[node.func.attr]
+            name = node.args[place] if len(node.args) > place else None
+            if isinstance(name, ast.Constant) and isinstance(name.value, str):
+                values = ", ".join(map(_value, node.args[place + 1 :]))
+                yield name.value, f"{name.value}({values})" if values else name.value
+
+
+def _in_order(node: ast.AST) -> Iterator[ast.AST]:
+    for child in ast.iter_child_nodes(node):
+        yield child
+        yield from _in_order(child)
+
+
+def _value(node: ast.expr) -> str:
+    """Return a word for a value, from the expression that computes it."""
+    if isinstance(node, ast.Starred):
+        return "..."
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        return node.attr.lstrip("_")
+    if isinstance(node, ast.Constant):
+        return _WORDS.get(type(node.value), "value")
+    if isinstance(node, ast.List | ast.ListComp | ast.Tuple):
+        return "list"
+    if isinstance(node, ast.JoinedStr):
+        return "text"
+    if isinstance(node, ast.Call):
+        return _property_read(node) or (
+            _value(node.args[0])
+            if node.args and not isinstance(node.args[0], ast.Starred)
+            else _called(node.func)
+        )
+    return "value"
+
+
+def _property_read(call: ast.Call) -> str | None:
+    """Return the property that ``self.value("count")`` reads."""
+    match call:
+        case ast.Call(func=ast.Attribute(attr="value"), args=[ast.Constant(value=str(name)), *_]):
+            return name
+    return None
+
+
+def _called(function: ast.expr) -> str:
+    if isinstance(function, ast.Name):
+        return function.id.lower()
+    return function.attr.lstrip("_") if isinstance(function, ast.Attribute) else "value"
+
+
+def described(artifact_type: type, section: str) -> Entries:
+    """Return the entries of a section such as ``Properties:`` in the docstrings of the class and its bases."""
+    found: Entries = {}
+    for each in reversed(own_classes(artifact_type)):
+        for usages, text in _entries(_section(inspect.cleandoc(each.__doc__ or ""), section)):
+            for usage in usages:
+                found[usage.partition("(")[0]] = (usage, text)
+    return found
+
+
+def _section(doc: str, wanted: str) -> str:
+    for part in re.split(r"\n\s*\n", doc):
+        head, _, rest = part.partition("\n")
+        if head == f"{wanted}:":
+            return textwrap.dedent(rest).strip()
+    return ""
+
+
+def _entries(section: str) -> Iterator[tuple[list[str], str]]:
+    """Return usages with their text. Lines with deeper indentation belong to the entry above."""
+    entries: list[str] = []
+    for line in section.splitlines():
+        if line.startswith(" ") and entries:
+            entries[-1] += f" {line.strip()}"
+        else:
+            entries.append(line.strip())
+    for entry in entries:
+        usage, _, text = entry.partition(": ")
+        yield _usages(usage.rstrip(":")), text
+
+
+def _usages(written: str) -> list[str]:
+    """Split usages at commas outside of brackets."""
+    return [each.strip() for each in re.split(r",\s*(?![^()]*\))", written)]
+
+
+def without_sections(doc: str, sections: Iterable[str]) -> str:
+    """Return a docstring without these sections."""
+    heads = {f"{section}:" for section in sections}
+    return "\n\n".join(part for part in doc.split("\n\n") if part.partition("\n")[0] not in heads)
+
+
+NOT_FOR_USERS = ("Properties", "Signals", "Attributes")
+"""Sections of a docstring that are shown elsewhere, or are for authors of artifacts."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterManual:
+    """One parameter.
+
+    Attributes:
+        name: its name.
+        expected: the kind of value it accepts, as text.
+        output: whether it is an output.
+        optional: whether it has a default value.
+    """
+
+    name: str
+    expected: str
+    output: bool
+    optional: bool
+
+
+@dataclass(frozen=True, slots=True)
+class OperationManual:
+    """One operation.
+
+    Attributes:
+        name: its name for callers.
+        kind: ``operation``, ``linked operation``, ``internal operation``, or ``init`` for the initialisation.
+        usage: name and parameters in one line, outputs with a minus sign.
+        parameters: the positional parameters.
+        more: whether any number of further arguments may follow.
+        text: its description.
+        guarded: whether it may have to wait before it begins.
+        pausable: whether it pauses while the intention that called it is suspended.
+    """
+
+    name: str
+    kind: str
+    usage: str
+    parameters: tuple[ParameterManual, ...]
+    more: bool
+    text: str
+    guarded: bool
+    pausable: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ObservableManual:
+    """A property or a signal.
+
+    Attributes:
+        name: functor of the belief or event.
+        usage: the name with words for its values.
+        text: its description. Empty if it is only known from the code.
+    """
+
+    name: str
+    usage: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Manual:
+    """An artifact type.
+
+    Attributes:
+        type_name: name of the class.
+        text: its description.
+        inits: how to create it: each ``init`` with its parameters.
+        operations: its operations: for agents, for other artifacts, and internal ones.
+        properties: its observable properties.
+        signals: its signals.
+        ports: its out ports.
+    """
+
+    type_name: str
+    text: str
+    inits: tuple[OperationManual, ...]
+    operations: tuple[OperationManual, ...]
+    properties: tuple[ObservableManual, ...]
+    signals: tuple[ObservableManual, ...]
+    ports: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    def lines(self) -> Iterator[str]:
+        """Return the manual as text, without internal operations."""
+        yield self.type_name
+        yield from _indented(self.text, 2)
+        yield from _titled("made with", map(_operation_lines, self.inits))
+        yield from _titled("properties", map(_observable_lines, self.properties))
+        yield from _titled("signals", map(_observable_lines, self.signals))
+        for title, kind in (("operations", OPERATION), ("linked operations", LINK)):
+            yield from _titled(
+                title, [_operation_lines(each) for each in self.operations if each.kind == kind]
+            )
+        if self.ports:
+            yield f"out ports: {', '.join(self.ports)}"
+
+
+def _titled(title: str, parts: Iterable[Iterator[str]]) -> Iterator[str]:
+    began = False
+    for part in parts:
+        if not began:
+            yield f"{title}:"
+        began = True
+        yield from part
+
+
+def _operation_lines(operation: OperationManual) -> Iterator[str]:
+    traits = [
+        word for word, has in (("may wait", operation.guarded), ("pausable", operation.pausable)) if has
+    ]
+    yield f"  {operation.usage}" + (f"  [{', '.join(traits)}]" if traits else "")
+    yield from _indented(operation.text, 6)
+
+
+def _observable_lines(observable: ObservableManual) -> Iterator[str]:
+    yield f"  {observable.usage}"
+    yield from _indented(observable.text, 6)
+
+
+def _indented(text: str, width: int) -> Iterator[str]:
+    for line in text.splitlines():
+        yield f"{' ' * width}{line}".rstrip()
+
+
+def describe(
+    artifact_type: type[Artifact],
+    interface: Interface | None = None,
+    properties: Iterable[ObservableProperty] = (),
+) -> Manual:
+    """Return the manual of *artifact_type*.
+
+    Properties and signals come from the sections ``Properties:`` and ``Signals:`` of its docstring, and from the names that
+    its code defines and sends.
+
+    Args:
+        artifact_type: the class.
+        interface: the operations of an artifact that defines more of its own (`Workspace.interface`).
+        properties: the properties of an artifact.
+    """
+    # Imported on demand: only manuals read sources.
+
+    offered = interface if interface is not None else artifact_type.interface
+    tables = (offered.operations, offered.links, offered.internals)
+    has = {each.name: _usage(each) for each in properties}
+    written = {**has, **written_properties(artifact_type)}
+    return Manual(
+        artifact_type.__name__,
+        without_sections(inspect.cleandoc(artifact_type.__doc__ or ""), NOT_FOR_USERS),
+        tuple(map(_describe, offered.inits)) or (_NO_INIT,),
+        tuple(_describe(declared) for table in tables for declared in table),
+        _observables(described(artifact_type, "Properties"), written),
+        _observables(described(artifact_type, "Signals"), written_signals(artifact_type)),
+        tuple(artifact_type.ports),
+    )
+
+
+_NO_INIT = OperationManual("init", "init", "init()", (), False, "", False, False)
+
+
+def _usage(observed: ObservableProperty) -> str:
+    return f"{observed.name}({', '.join('_' for _ in observed.values)})" if observed.values else observed.name
+
+
+def _observables(told: dict[str, tuple[str, str]], written: dict[str, str]) -> tuple[ObservableManual, ...]:
+    rest = {name: (usage, "") for name, usage in written.items() if name not in told}
+    return tuple(ObservableManual(name, *each) for name, each in {**told, **rest}.items())
+
+
+def _describe(declared: DeclaredOperation) -> OperationManual:
+    signature = _worded(declared)
+    return OperationManual(
+        declared.name,
+        declared.kind,
+        f"{declared.name}({signature})",
+        _parameters(signature),
+        signature.rest is not None,
+        _text(declared.source),
+        declared.guard is not None,
+        declared.pausable,
+    )
+
+
+def _worded(declared: DeclaredOperation) -> Signature:
+    """Return the signature, with descriptions of parameters from mapping files, which have no annotations."""
+    signature = declared.signature
+    words: dict[str, str] = getattr(declared.source, "parameter_words", dict)()
+    parameters = [
+        each._replace(expected=words.get(each.name, each.expected)) for each in signature.parameters
+    ]
+    return Signature(tuple(parameters), signature.rest)
+
+
+def _parameters(signature: Signature) -> tuple[ParameterManual, ...]:
+    return tuple(ParameterManual(p.name, p.expected, p.output, p.optional) for p in signature.parameters)
+
+
+def _text(source: Callable[..., object]) -> str:
+
+    return without_sections(inspect.cleandoc(source.__doc__ or ""), ("Raises", "Returns"))
+
+
+def manual_term(manual: Manual) -> Structure:
+    """Return a manual as a term for agents.
+
+    ``manual(Type,Text,Inits,Operations,Properties,Signals,Ports)``: Type and all texts are strings, names are atoms.
+    An init is ``init(Parameters,Text)``; an operation for agents ``operation(Name,Parameters,Text)``, one for other
+    artifacts ``linked(Name,Parameters,Text)``. A parameter is ``input(Name,Expected)``, ``optional(Name,Expected)``,
+    ``output(Name)`` or, for any number of further ones, the atom ``more``. A property is
+    ``property(Name,Usage,Text)``, a signal ``signal(Name,Usage,Text)``, and a port its name.
+    """
+    operations = [each for each in manual.operations if each.kind != INTERNAL]
+    return Structure(
+        "manual",
+        (
+            manual.type_name,
+            manual.text,
+            [Structure("init", (_parameter_terms(each), each.text)) for each in manual.inits],
+            [_operation_term(each) for each in operations],
+            [Structure("property", (Atom(each.name), each.usage, each.text)) for each in manual.properties],
+            [Structure("signal", (Atom(each.name), each.usage, each.text)) for each in manual.signals],
+            [Atom(port) for port in manual.ports],
+        ),
+    )
+
+
+def _operation_term(operation: OperationManual) -> Structure:
+    functor = "linked" if operation.kind == LINK else "operation"
+    return Structure(functor, (Atom(operation.name), _parameter_terms(operation), operation.text))
+
+
+def _parameter_terms(operation: OperationManual) -> list[object]:
+    terms: list[object] = [_parameter_term(parameter) for parameter in operation.parameters]
+    return [*terms, Atom("more")] if operation.more else terms
+
+
+def _parameter_term(parameter: ParameterManual) -> Structure:
+    if parameter.output:
+        return Structure("output", (Atom(parameter.name),))
+    functor = "optional" if parameter.optional else "input"
+    return Structure(functor, (Atom(parameter.name), parameter.expected))

@@ -1,0 +1,1 @@
+"""What makes artifacts run; authors and hosts need none of it, only what `jacaros.artifacts` exports."""

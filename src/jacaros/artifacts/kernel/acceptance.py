@@ -1,0 +1,426 @@
+"""From a parameter's Python annotation to a check that converts plain values and describes what it expects."""
+
+import collections.abc
+import dataclasses
+import enum
+import inspect
+import sys
+import types
+import typing
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from jacaros.artifacts.env.values import Atom, Out, Structure, equal, functor_of, text
+
+# Kinds of values that parameters accept.
+#
+# For a parameter that is a dataclass or a named tuple, agents pass a structure, such as ``pose(1,2)``.
+
+
+Accept = Callable[[Any], object]
+"""Converts an argument for the operation. Raises `Unsuitable`."""
+
+LONGEST = 120
+"""Maximum number of characters of an argument in a message."""
+
+
+class Unsuitable(Exception):
+    """An argument is not of the kind that a parameter accepts. The text, if any, says which part of it is not."""
+
+
+class Kind(NamedTuple):
+    """A kind of values.
+
+    Attributes:
+        expected: its description, for messages.
+        accept: checks and converts an argument.
+    """
+
+    expected: str
+    accept: Accept
+
+
+def _input(argument: object) -> object:
+    if isinstance(argument, Out):
+        raise Unsuitable
+    return argument
+
+
+ANYTHING = Kind("any value", _input)
+
+
+def instance_of(kind: type, expected: str) -> Kind:
+    """Accept instances of a class, unconverted."""
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, kind):
+            return argument
+        raise Unsuitable
+
+    return Kind(expected, accept)
+
+
+def alternatives(kinds: Sequence[Kind]) -> Kind:
+    """Accept any of several kinds. One that needs no conversion has precedence."""
+
+    def accept(argument: object) -> object:
+        converted: list[object] = []
+        reasons = []
+        for each in kinds:
+            try:
+                result = each.accept(argument)
+            except Unsuitable as unsuitable:
+                reasons.append(str(unsuitable))
+                continue
+            if result is argument:
+                return argument
+            converted.append(result)
+        if not converted:
+            raise Unsuitable(next(filter(None, reasons), ""))
+        return converted[0]
+
+    return Kind(" or ".join(kind.expected for kind in kinds), accept)
+
+
+def shown(argument: object) -> str:
+    """Return an argument as agents write it, shortened."""
+    written = "an unbound variable" if isinstance(argument, Out) else text(argument, quoted=True)
+    return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
+
+
+def accept_part(kind: Kind, item: object, part: str, which: object = None) -> Any:
+    """Accept a part of an argument, such as its ``element`` 3.
+
+    Raises:
+        Unsuitable: it is not of its kind; the text says which part it is, and which part of it is wrong.
+    """
+    try:
+        return kind.accept(item)
+    except Unsuitable as unsuitable:
+        where = part if which is None else f"{part} {text(which, quoted=True)}"
+        deeper = f": {unsuitable}" if str(unsuitable) else ""
+        raise Unsuitable(f"{where} is {shown(item)}{deeper}") from None
+
+
+class Field(NamedTuple):
+    """A field of a record.
+
+    Attributes:
+        name: its Python name.
+        annotation: its annotation.
+        optional: whether it has a default value.
+    """
+
+    name: str
+    annotation: Any
+    optional: bool
+
+
+def fields_of(kind: type) -> list[Field] | None:
+    """Return the fields that the constructor of a dataclass or named tuple takes; None for other classes.
+
+    A class with ``__record__ = False`` has more state than its fields, so no structure can represent it.
+    """
+    is_named_tuple = issubclass(kind, tuple) and hasattr(kind, "_fields")
+    if getattr(kind, "__record__", True) is False or not (dataclasses.is_dataclass(kind) or is_named_tuple):
+        return None
+    hints = _hints(kind)
+    parameters = inspect.signature(kind).parameters.values()
+    return [
+        Field(each.name, hints.get(each.name, object), each.default is not each.empty) for each in parameters
+    ]
+
+
+def _hints(kind: type) -> dict[str, Any]:
+    try:
+        return typing.get_type_hints(kind)
+    except Exception:  # an annotation that cannot be resolved accepts any value
+        return {}
+
+
+def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> Kind:
+    """Accept structures that become a *kind*."""
+    functor = functor_of(kind)
+    kinds = [(field, kind_of(field.annotation)) for field in fields]
+    fewest = sum(not field.optional for field in fields)
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, kind):
+            return argument
+        given = _arguments(argument, functor)
+        if not fewest <= len(given) <= len(kinds):
+            raise Unsuitable(f"it has {len(given)} arguments")
+        values = {
+            field.name: accept_part(wanted, item, field.name)
+            for (field, wanted), item in zip(kinds, given, strict=False)
+        }
+        try:
+            return kind(**values)
+        except (ValueError, TypeError) as error:
+            raise Unsuitable(str(error)) from None
+
+    written = ", ".join(f"{f.name}: {k.expected}" + (" (optional)" if f.optional else "") for f, k in kinds)
+    return Kind(f"{functor}({written})" if written else functor, accept)
+
+
+def _arguments(argument: object, functor: str) -> tuple[object, ...]:
+    if isinstance(argument, Structure) and argument.functor == functor:
+        return argument.arguments
+    if isinstance(argument, Atom) and argument == functor:
+        return ()
+    raise Unsuitable
+
+
+def kind_of(annotation: Any) -> Kind:
+    """Return the kind of values that a parameter with *annotation* accepts. An unknown annotation accepts any input."""
+    annotation = _unwrapped(annotation)
+    if _hashable(annotation) and annotation in _SIMPLE:
+        return _SIMPLE[annotation]
+    origin, members = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin in (typing.Union, types.UnionType):
+        return alternatives([kind_of(member) for member in members])
+    if origin is typing.Literal:
+        return _choice(members)
+    if origin is Out:
+        return _SIMPLE[Out]
+    container = origin if origin is not None else annotation
+    made = _CONTAINERS.get(container) if _hashable(container) else None
+    if made is not None:
+        return made(members)
+    if _of_numpy(container, "ndarray"):
+        return _array(container, members)
+    if isinstance(container, type):
+        return _kind_of_class(container)
+    return ANYTHING
+
+
+def _hashable(annotation: Any) -> bool:
+    return isinstance(annotation, collections.abc.Hashable)
+
+
+def _unwrapped(annotation: Any) -> Any:
+    """Resolve new types, annotated types and aliases."""
+    while True:
+        if isinstance(annotation, typing.NewType):
+            annotation = annotation.__supertype__
+        elif typing.get_origin(annotation) is typing.Annotated:
+            annotation = typing.get_args(annotation)[0]
+        elif _is_alias(annotation):
+            annotation = annotation.__value__
+        elif _is_alias(typing.get_origin(annotation)):
+            annotation = _alias_of(annotation)
+        else:
+            return annotation
+
+
+def _is_alias(annotation: Any) -> bool:
+    # By name: Python 3.11 has only the aliases of typing_extensions.
+    return type(annotation).__name__ == "TypeAliasType"
+
+
+def _alias_of(annotation: Any) -> Any:
+    """Resolve an alias with parameters, such as numpy's ``NDArray[float64]``."""
+    alias = typing.get_origin(annotation)
+    given = dict(zip(alias.__type_params__, typing.get_args(annotation), strict=False))
+    value = alias.__value__
+    parameters = getattr(value, "__parameters__", ())
+    return value[tuple(given.get(each, Any) for each in parameters)] if parameters else value
+
+
+def _kind_of_class(kind: type) -> Kind:
+    if issubclass(kind, enum.Enum):
+        return _member(kind)
+    fields = fields_of(kind)
+    if fields is not None:
+        return record(kind, fields, kind_of)
+    if getattr(kind, "_is_protocol", False) and not getattr(kind, "_is_runtime_protocol", False):
+        return ANYTHING
+    return instance_of(kind, kind.__name__)
+
+
+def _integer(argument: object) -> object:
+    if type(argument) is int:
+        return argument
+    if isinstance(argument, float) and argument.is_integer():
+        return int(argument)
+    raise Unsuitable
+
+
+def _real(argument: object) -> object:
+    if type(argument) is float:
+        return argument
+    if type(argument) is int:
+        try:
+            return float(argument)
+        except OverflowError:
+            raise Unsuitable from None
+    raise Unsuitable
+
+
+def _text(argument: object) -> object:
+    """Accept a string. An atom becomes one, so that output does not depend on how the caller wrote it."""
+    if not isinstance(argument, str):
+        raise Unsuitable
+    return str(argument) if type(argument) is not str else argument
+
+
+def _choice(choices: tuple[object, ...]) -> Kind:
+    def accept(argument: object) -> object:
+        for choice in choices:
+            if argument is choice or equal(argument, choice):
+                return argument
+        raise Unsuitable
+
+    return Kind(" or ".join(text(choice, quoted=True) for choice in choices), accept)
+
+
+def _member(kind: type[enum.Enum]) -> Kind:
+    """Accept a member of an enumeration, by its name in any case, or by its value."""
+    members = list(kind)
+    by_name = {member.name.lower(): member for member in members}
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, kind):
+            return argument
+        found = by_name.get(argument.lower()) if isinstance(argument, str) else None
+        if found is None:
+            found = next((member for member in members if equal(argument, member.value)), None)
+        if found is None:
+            raise Unsuitable
+        return found
+
+    return Kind(f"one of {', '.join(by_name)}", accept)
+
+
+def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]], Kind]:
+    def kind(members: tuple[Any, ...]) -> Kind:
+        each = kind_of(members[0]) if members else None
+
+        def accept(argument: object) -> object:
+            if not isinstance(argument, list):
+                raise Unsuitable
+            return make(
+                argument
+                if each is None
+                else [accept_part(each, item, "element", n) for n, item in enumerate(argument, 1)]
+            )
+
+        return Kind("a list" if each is None or each is ANYTHING else f"a list, each {each.expected}", accept)
+
+    return kind
+
+
+def _tuple(members: tuple[Any, ...]) -> Kind:
+    """Accept a list of this length as a tuple of these members; ``tuple[T, ...]`` accepts any length."""
+    if not members or members[-1] is Ellipsis:
+        return _list_like(tuple)(members[:1])
+    kinds = [kind_of(member) for member in members]
+
+    def accept(argument: object) -> object:
+        if not isinstance(argument, list):
+            raise Unsuitable
+        if len(argument) != len(kinds):
+            raise Unsuitable(f"it has {len(argument)} elements")
+        pairs = zip(kinds, argument, strict=True)
+        return tuple(accept_part(kind, item, "element", n) for n, (kind, item) in enumerate(pairs, 1))
+
+    return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
+
+
+def _set_of(make: Callable[[list[Any]], object]) -> Callable[[list[Any]], object]:
+    def accept(items: list[Any]) -> object:
+        try:
+            return make(items)
+        except TypeError:
+            raise Unsuitable("lists and maps cannot be members of a set") from None
+
+    return accept
+
+
+def _mapping(members: tuple[Any, ...]) -> Kind:
+    keys, values = (kind_of(member) for member in members) if members else (None, None)
+
+    def accept(argument: object) -> object:
+        if not isinstance(argument, dict):
+            raise Unsuitable
+        if keys is None or values is None:
+            return argument
+        return {
+            accept_part(keys, key, "key"): accept_part(values, item, "the value of", key)
+            for key, item in argument.items()
+        }
+
+    if keys is None or values is None:
+        return Kind("a map", accept)
+    return Kind(f"a map from {keys.expected} to {values.expected}", accept)
+
+
+def _of_numpy(kind: Any, name: str) -> bool:
+    """Return whether it is a class of numpy, which the author of the annotation has imported."""
+    numpy = sys.modules.get("numpy")
+    wanted = getattr(numpy, name, None)
+    return isinstance(wanted, type) and isinstance(kind, type) and issubclass(kind, wanted)
+
+
+def _array(container: Any, members: tuple[Any, ...]) -> Kind:
+    numpy = sys.modules["numpy"]
+    kinds = (kind for member in members for kind in typing.get_args(member))
+    wanted = next((kind for kind in kinds if _of_numpy(kind, "generic")), None)
+
+    def accept(argument: object) -> object:
+        if isinstance(argument, container):
+            return argument
+        if not isinstance(argument, list):
+            raise Unsuitable
+        try:
+            made = numpy.array(argument)
+        except (ValueError, TypeError):
+            raise Unsuitable from None
+        if made.dtype.kind not in "biuf":
+            raise Unsuitable
+        if wanted is None:
+            return made
+        converted = made.astype(wanted)
+        if not _of_numpy(wanted, "floating") and not numpy.array_equal(made, converted):
+            raise Unsuitable
+        return converted
+
+    whole = wanted is not None and _of_numpy(wanted, "integer")
+    return Kind(f"a list of {'integers' if whole else 'numbers'} (or of such lists of equal length)", accept)
+
+
+def _takes_none(argument: object) -> object:
+    if argument is None:
+        return argument
+    raise Unsuitable
+
+
+_SIMPLE: dict[Any, Kind] = {
+    object: ANYTHING,
+    Any: ANYTHING,
+    int: Kind("an integer", _integer),
+    float: Kind("a number", _real),
+    str: Kind("a text", _text),
+    type(None): Kind("nothing", _takes_none),
+    None: Kind("nothing", _takes_none),
+    bool: instance_of(bool, "true or false"),
+    Atom: instance_of(Atom, "an atom"),
+    Structure: instance_of(Structure, "a structure"),
+    Out: instance_of(Out, "an unbound variable (it is an output)"),
+}
+
+_LIST = _list_like(lambda items: items)
+_CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
+    list: _LIST,
+    tuple: _tuple,
+    set: _list_like(_set_of(set)),
+    frozenset: _list_like(_set_of(frozenset)),
+    dict: _mapping,
+    collections.abc.Mapping: _mapping,
+    collections.abc.MutableMapping: _mapping,
+    collections.abc.Sequence: _LIST,
+    collections.abc.MutableSequence: _LIST,
+    collections.abc.Collection: _LIST,
+    collections.abc.Iterable: _LIST,
+    collections.abc.Set: _list_like(_set_of(set)),
+}

@@ -1,0 +1,401 @@
+"""Assigns resources to claims: the most urgent claim first, among equals the earliest.
+
+A claim is granted everything it asks for, or nothing. The rules:
+
+* A claim waits behind earlier claims in the queue that want one of its resources, and while others hold too much.
+* A more urgent claim preempts: less urgent holders are asked to yield, the least urgent and newest first, and only if that
+  is sufficient. A holder keeps its resources until it has yielded (a robot brakes). Then it waits again.
+* A nested claim (an operation of a plan that holds the resource) is granted only while the outer claims are, and what they
+  hold does not block it. It waits behind earlier claims only while holders yield to them.
+* A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends, and wait
+  again until then.
+* A holder that cannot yield inherits the urgency of the claims it blocks.
+* The urgency of a waiting claim rises by 1 for each `PATIENCE`. That moves it forward in the queue and protects what it
+gets,
+  but takes nothing away from a holder.
+"""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.resources.claim import Claim, State, Use, local_name
+from jacaros.runtime.clock import Clock, Timer
+
+# Deadlocks: claims that wait for each other in a cycle.
+
+
+WaitsFor = Callable[[Claim], Iterable[tuple[Claim, str]]]
+"""The holders that a waiting claim waits for, each with the resource."""
+
+
+def victim_of(
+    waiting: Sequence[Claim], waits_for: WaitsFor, rank: Callable[[Claim], int]
+) -> tuple[Claim, str] | None:
+    """Return the claim that should fail to break a deadlock, and the resource it waits for; None without a deadlock.
+
+    It is the least urgent one, among equals the newest. The outermost claim counts: a plan that holds one resource and
+    waits for another one is one party.
+    """
+    edges: dict[Claim, list[tuple[Claim, Claim, str]]] = {}
+    for claim in waiting:
+        if claim.within:
+            found = [
+                (holder.root, claim, name)
+                for holder, name in waits_for(claim)
+                if holder.root is not claim.root
+            ]
+            edges.setdefault(claim.root, []).extend(found)
+    in_circle = [
+        (claim, name)
+        for party, found in edges.items()
+        for other, claim, name in found
+        if _reaches(edges, other, party)
+    ]
+    return min(in_circle, key=lambda each: (rank(each[0]), -each[0].order), default=None)
+
+
+def _reaches(edges: dict[Claim, list[tuple[Claim, Claim, str]]], start: Claim, goal: Claim) -> bool:
+    """Return whether one party waits for another, directly or indirectly."""
+    seen: set[Claim] = set()
+    left = [start]
+    while left:
+        party = left.pop()
+        if party is goal:
+            return True
+        if party not in seen:
+            seen.add(party)
+            left.extend(other for other, _, _ in edges.get(party, ()))
+    return False
+
+
+PATIENCE = 30.0
+"""Seconds of waiting after each of which the urgency of a claim rises."""
+REPORTED = 300.0
+"""Seconds of waiting that cause a warning. Charging for a minute is not starvation."""
+
+
+class Arbiter:
+    """The resources of one environment.
+
+    Args:
+        clock: measures how long claims wait.
+        warn: takes a warning.
+    """
+
+    def __init__(self, clock: Clock, warn: Callable[[str], None] = lambda text: None) -> None:
+        self._clock, self._warn = clock, warn
+        self._capacities: dict[str, int] = {}
+        self._waiting: list[Claim] = []
+        self._holders: dict[str, list[Claim]] = {}
+        self._arrivals = 0
+        self._settling = self._again = False
+        self._timer: Timer | None = None
+
+    # ---- state
+
+    def declare(self, uses: Iterable[Use]) -> None:
+        """Register capacities. For several of one resource, the least one counts."""
+        for each in uses:
+            if each.capacity is not None:
+                self._capacities[each.name] = min(
+                    each.capacity, self._capacities.get(each.name, each.capacity)
+                )
+
+    def capacity(self, name: str) -> int:
+        """Return the number of units of a resource: 1 unless declared."""
+        return self._capacities.get(name, 1)
+
+    def holders(self, name: str) -> tuple[Claim, ...]:
+        """Return the claims that hold a resource."""
+        return tuple(self._holders.get(name, ()))
+
+    def waiting(self) -> tuple[Claim, ...]:
+        """Return the waiting claims, in the order of the queue."""
+        return tuple(self._in_order())
+
+    # ---- claims
+
+    def enter(self, claim: Claim) -> bool:
+        """Make a claim. Return False if it is not granted immediately; its claimant is notified later."""
+        if claim.state is State.OUT:
+            self.declare(claim.uses)
+            self._arrivals += 1
+            claim.order = self._arrivals
+            self._wait(claim)
+            self._settle()
+        return claim.state is State.HELD
+
+    def gave_way(self, claim: Claim) -> None:
+        """Report that a claim has yielded. It waits to be granted again."""
+        if claim.state is State.YIELDING:
+            self._let_go(claim)
+            self._wait(claim)
+            self._settle()
+
+    def leave(self, claim: Claim) -> None:
+        """Release a claim, or its place in the queue. Releasing it again has no effect."""
+        if claim.state is State.OUT:
+            return
+        if claim.state is State.WAITING:
+            self._waiting.remove(claim)
+        else:
+            self._let_go(claim)
+        claim.state = State.OUT
+        claim.inherited = 0
+        claim.waited = 0.0
+        self._settle()
+
+    def _wait(self, claim: Claim) -> None:
+        claim.state, claim.since = State.WAITING, self._clock.elapsed
+        self._waiting.append(claim)
+
+    def _let_go(self, claim: Claim) -> None:
+        for use in claim.uses:
+            held = self._holders[use.name]
+            held.remove(claim)
+            if not held:
+                del self._holders[use.name]
+
+    # ---- the next claim
+
+    def _settle(self) -> None:
+        """Grant, preempt and refuse until nothing changes. Claimants may call the arbiter meanwhile."""
+        self._again = True
+        if self._settling:
+            return
+        self._settling = True
+        try:
+            while self._again:
+                self._again = False
+                if self._change_one():
+                    self._again = True
+        finally:
+            self._settling = False
+        self._set_timer()
+
+    def _change_one(self) -> bool:
+        """Change the state of one claim. Return False if no claim needs a change."""
+        self._inherit()
+        reserved: set[str] = set()
+        coming: set[str] = set()
+        blocked = {claim.blocks for claim in self._all() if claim.blocks}
+        for claim in self._in_order():
+            if claim.plan_of in blocked and not claim.blocks:
+                continue
+            if any(outer.state is not State.HELD for outer in claim.within):
+                continue
+            blockers = self._blockers(claim)
+            wanted = {use.name for use in claim.uses}
+            ahead = bool(wanted & (coming if claim.within else reserved))
+            exceeded = self._exceeded(claim)
+            if exceeded is not None:
+                self._fail(claim, Structure("resource_exceeded", (Atom(local_name(exceeded)),)))
+                return True
+            if not blockers and not ahead:
+                self._grant(claim)
+                return True
+            # What others release goes to earlier claims first.
+            if (not ahead and self._preempt(claim, blockers)) or self._refuse(claim, blockers, ahead):
+                return True
+            reserved |= wanted
+            going = self._chosen(claim, blockers)
+            if going and not ahead and _all_go(going):
+                coming |= wanted
+        return self._break_deadlock()
+
+    def _in_order(self) -> list[Claim]:
+        return sorted(self._waiting, key=lambda each: (-self._rank(each), not _takes(each), each.order))
+
+    def _grant(self, claim: Claim) -> None:
+        self._waiting.remove(claim)
+        claim.waited += self._clock.elapsed - claim.since
+        claim.state, claim.fresh = State.HELD, False
+        for use in claim.uses:
+            self._holders.setdefault(use.name, []).append(claim)
+        claim.claimant.granted(claim)
+
+    def _preempt(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> bool:
+        """Ask one holder to yield. Return False if no holder can be asked."""
+        chosen = self._chosen(claim, blockers)
+        stays = not _all_go(chosen)
+        for holder, resource in chosen:
+            # A nested claim would be granted again immediately, and asked again, as long as an outer one holds.
+            if holder.state is State.HELD and holder.claimant.can_yield and not (stays and holder.within):
+                holder.state = State.YIELDING
+                holder.claimant.preempted(holder, resource)
+                return True
+        return False
+
+    def _chosen(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> list[tuple[Claim, str]]:
+        """Return the holders that must yield to a claim. Empty if those that may be asked are not sufficient."""
+        chosen: list[tuple[Claim, str]] = []
+        going: set[Claim] = set()
+        for use in claim.uses:
+            mine = [each for each in blockers if each[1] == use.name]
+            # A holder that is yielding has been asked already.
+            mine.sort(key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order))
+            for holder, name in mine:
+                if self._lack(claim, use, going) <= 0:
+                    break
+                if holder.state is State.HELD and not self._outranks(claim, holder):
+                    return []
+                chosen.append((holder, name))
+                going.add(holder)
+            if self._lack(claim, use, going) > 0:
+                return []
+        return chosen
+
+    def _outranks(self, claim: Claim, holder: Claim) -> bool:
+        if claim.blocks and claim.blocks == holder.plan_of:
+            return True
+        rank = self._rank(holder)
+        return claim.base > rank or (_takes(claim) and claim.base == rank)
+
+    def _refuse(self, claim: Claim, blockers: list[tuple[Claim, str]], ahead: bool) -> bool:
+        """Refuse a claim that must not wait, unless holders are yielding to it."""
+        if claim.policy != "refuse" or not claim.fresh:
+            return False
+        if not ahead and self._chosen(claim, blockers):
+            return False
+        name = blockers[0][1] if blockers else claim.uses[0].name
+        self._fail(claim, Structure("resource_busy", (Atom(local_name(name)),)))
+        return True
+
+    def _break_deadlock(self) -> bool:
+        """Fail one claim of a deadlock. Return False without a deadlock."""
+        found = victim_of(self._waiting, self._waits_for, self._rank)
+        if found is None:
+            return False
+        claim, resource = found
+        self._warn(f"deadlock: {claim.who} waits for {resource}; its claim fails")
+        self._fail(claim, Structure("deadlock", (Atom(local_name(resource)),)))
+        return True
+
+    def _fail(self, claim: Claim, reason: Structure) -> None:
+        self._waiting.remove(claim)
+        claim.state = State.OUT
+        claim.claimant.refused(claim, reason)
+
+    # ---- blocking claims
+
+    def _blockers(self, claim: Claim) -> list[tuple[Claim, str]]:
+        """Return the holders, some of which must yield before a claim can be granted, each with the resource."""
+        return [
+            (holder, use.name)
+            for use in claim.uses
+            if self._lack(claim, use) > 0
+            for holder in self._others(claim, use)
+        ]
+
+    def _waits_for(self, claim: Claim) -> Iterator[tuple[Claim, str]]:
+        return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
+
+    def _others(self, claim: Claim, use: Use) -> list[Claim]:
+        """Return the holders that are not compatible with a use."""
+        return [
+            each
+            for each in self._holders.get(use.name, ())
+            if each not in claim.within
+            and claim not in each.within
+            and not (use.shared and _use_of(each, use.name).shared)
+        ]
+
+    def _lack(self, claim: Claim, use: Use, without: Collection[Claim] = ()) -> int:
+        """Return the units that others must release before a claim can have its use."""
+        others = [each for each in self._others(claim, use) if each not in without]
+        taken = _taken(use.name, others)
+        if use.shared or any(_use_of(holder, use.name).shared for holder in others):
+            return taken
+        return taken + use.units - self.capacity(use.name)
+
+    def _exceeded(self, claim: Claim) -> str | None:
+        """Return the resource of which a claim wants more than the capacity, or None."""
+        names = (u.name for u in claim.uses if not u.shared and u.units > self.capacity(u.name))
+        return next(names, None)
+
+    # ---- urgency
+
+    def _rank(self, claim: Claim) -> int:
+        """Return the urgency that decides the place of a claim in the queue and its protection."""
+        return max(claim.base, claim.urgency + int(self._has_waited(claim) / PATIENCE))
+
+    def _has_waited(self, claim: Claim) -> float:
+        if claim.state is State.WAITING:
+            return claim.waited + self._clock.elapsed - claim.since
+        return claim.waited
+
+    def _inherit(self) -> None:
+        """Lend the urgency of waiting claims to holders that cannot yield to them."""
+        claims = self._all()
+        for each in claims:
+            each.inherited = 0
+        changed = True
+        while changed:
+            changed = False
+            for claim in self._waiting:
+                for holder, _ in self._blockers(claim):
+                    if holder.base >= claim.base or (
+                        holder.state is State.YIELDING or holder.claimant.can_yield
+                    ):
+                        continue
+                    for each in claims:
+                        if each.root is holder.root and each.inherited < claim.base:
+                            each.inherited = claim.base
+                            changed = True
+
+    def _all(self) -> list[Claim]:
+        held = (each for holders in self._holders.values() for each in holders)
+        return list(dict.fromkeys((*held, *self._waiting)))
+
+    # ---- ageing
+
+    def _set_timer(self) -> None:
+        """Schedule a call when the next claim has waited too long, if that changes anything."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if not self._waiting:
+            return
+        highest = max(map(self._rank, self._all()))
+        due = [
+            PATIENCE - self._has_waited(each) % PATIENCE
+            for each in self._waiting
+            if not each.warned or self._rank(each) < highest
+        ]
+        if due:
+            self._timer = self._clock.call_later(max(min(due), 1e-3), self._grow_old)
+
+    def _grow_old(self) -> None:
+        self._timer = None
+        for claim in self._in_order():
+            if not claim.warned and self._has_waited(claim) >= REPORTED - 1e-6:
+                claim.warned = True
+                holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
+                names = ", ".join(local_name(use.name) for use in claim.uses)
+                held = f", held by {', '.join(holders)}" if holders else ""
+                self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
+        self._settle()
+
+
+def _takes(claim: Claim) -> bool:
+    """Return whether a claim takes from an equal: only until its first grant, or two claims would take forever."""
+    return claim.policy == "take" and claim.fresh
+
+
+def _all_go(chosen: list[tuple[Claim, str]]) -> bool:
+    """Return whether all are yielding, or will when asked."""
+    return all(each.state is State.YIELDING or each.claimant.can_yield for each, _ in chosen)
+
+
+def _use_of(claim: Claim, name: str) -> Use:
+    return next(use for use in claim.uses if use.name == name)
+
+
+def _taken(name: str, holders: Sequence[Claim]) -> int:
+    """Return the units that holders have in total. Nested claims use the units of the outer claim first."""
+    total = 0
+    for holder in holders:
+        if not any(outer in holders for outer in holder.within):
+            within = _taken(name, [each for each in holders if holder in each.within])
+            total += max(_use_of(holder, name).units, within)
+    return total

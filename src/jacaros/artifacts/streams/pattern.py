@@ -1,0 +1,372 @@
+"""One derived event: takes events of its streams, sorts late ones, and drives its operator."""
+
+import heapq
+import itertools
+import math
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final, NamedTuple
+
+from jacaros.artifacts.streams.operators import (
+    ANYTHING,
+    Absent,
+    Chain,
+    Condition,
+    Count,
+    Emit,
+    Held,
+    Hysteresis,
+    Operator,
+    Together,
+    Values,
+)
+from jacaros.files.texts import suggestion
+
+# The operators by name: their options, the checks of declarations, and the creation of operators.
+#
+# Mapping files and programs declare the same operators with the same options, and both are checked here.
+
+
+LONGEST: Final = 86_400.0
+"""Maximum duration in seconds of a window, or of waiting for late events: the window bounds memory."""
+
+STATE, VALUE, OCCURRENCE = "state", "value", "occurrence"
+"""Kinds of output: a state without values, a state with values, or an occurrence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """A declaration.
+
+    Attributes:
+        operator: name in `OPERATORS`.
+        sources: streams by name, in the order of the declaration; a sequence may repeat a stream.
+        options: times in seconds.
+        place: index of the value of an event to use, from 0.
+        lateness: seconds for which the evaluation waits for late events.
+    """
+
+    operator: str
+    sources: tuple[str, ...]
+    options: Mapping[str, Any] = field(default_factory=dict)
+    place: int = 0
+    lateness: float = 0.0
+
+    @property
+    def streams(self) -> tuple[str, ...]:
+        """The streams without repetition; events carry the index of their stream."""
+        return tuple(dict.fromkeys(self.sources))
+
+    def seconds(self, option: str) -> float:
+        """The value of an option that is a time."""
+        return float(self.options[option])
+
+    @property
+    def gives(self) -> str:
+        """Kind of output: `STATE`, `VALUE` or `OCCURRENCE`."""
+        return STATE if "at_least" in self.options else OPERATORS[self.operator].gives
+
+
+class Fault(NamedTuple):
+    """An error in a declaration.
+
+    Attributes:
+        option: the invalid option; empty for the whole declaration.
+        message: the error.
+        help: the suggested fix.
+    """
+
+    option: str
+    message: str
+    help: str
+
+
+def _make_count(spec: Spec, emit: Emit) -> Operator:
+    wanted = spec.options.get("at_least")
+    return Count(emit, spec.seconds("within"), int(wanted) if wanted is not None else None)
+
+
+def _make_hysteresis(spec: Spec, emit: Emit) -> Operator:
+    options = spec.options
+    if "on_above" in options:
+        return Hysteresis(emit, spec.place, options["on_above"], options["off_below"], True)
+    return Hysteresis(emit, spec.place, options["on_below"], options["off_above"], False)
+
+
+def _make_held(spec: Spec, emit: Emit) -> Operator:
+    options = spec.options
+    condition = Condition(options.get("above"), options.get("below"), options.get("equals", ANYTHING))
+    return Held(emit, spec.seconds("for"), spec.place, condition)
+
+
+def _make_absent(spec: Spec, emit: Emit) -> Operator:
+    return Absent(emit, spec.seconds("for"))
+
+
+def _make_chain(spec: Spec, emit: Emit) -> Operator:
+    return Chain(emit, [spec.streams.index(each) for each in spec.sources], spec.seconds("within"))
+
+
+def _make_together(spec: Spec, emit: Emit) -> Operator:
+    return Together(emit, len(spec.sources), spec.seconds("within"), spec.lateness)
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """An operator and its requirements.
+
+    Attributes:
+        meaning: short description.
+        gives: `STATE`, `VALUE` or `OCCURRENCE`.
+        make: creates it from a valid declaration.
+        required, optional: names of options.
+        several: whether it takes a list of two or more streams.
+        valued: whether it uses one value of an event.
+    """
+
+    meaning: str
+    gives: str
+    make: Callable[[Spec, Emit], Operator]
+    required: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+    several: bool = False
+    valued: bool = False
+
+
+_ON_AND_OFF = ("on_above", "off_below", "on_below", "off_above")
+_CONDITION = ("above", "below", "equals")
+
+OPERATORS: Final[dict[str, Shape]] = {
+    "count": Shape("events in a window", VALUE, _make_count, ("within",), ("at_least",)),
+    "hysteresis": Shape(
+        "on beyond one limit, off beyond another", STATE, _make_hysteresis, (), _ON_AND_OFF, valued=True
+    ),
+    "held": Shape("a condition has held for a while", STATE, _make_held, ("for",), _CONDITION, valued=True),
+    "absent": Shape("no event for a while", STATE, _make_absent, ("for",)),
+    "sequence": Shape("events in this order", OCCURRENCE, _make_chain, ("within",), several=True),
+    "together": Shape(
+        "samples with stamps near each other", VALUE, _make_together, ("within",), several=True
+    ),
+}
+"""All operators by name: to add one, add a line here and its options to `_OPTIONS`."""
+
+PARTNERS_WAIT: Final = 0.5
+"""Default lateness in seconds where samples of several topics are joined, because the delays of topics differ."""
+
+
+def unknown(operator: str) -> Fault:
+    """Return the error for an unknown operator."""
+    help = suggestion(operator, OPERATORS, f"operators: {', '.join(OPERATORS)}")
+    return Fault("", f"unknown operator `{operator}`", help)
+
+
+def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield all errors of a declaration.
+
+    Args:
+        operator: a name of `OPERATORS`.
+        sources: as in `Spec`.
+        options: options as written, times in seconds.
+    """
+    shape = OPERATORS[operator]
+    if shape.several and len(sources) < 2:
+        help = "write them as a list, such as [press, release]"
+        yield Fault("", f"`{operator}` needs two streams or more", help)
+    if operator == "together" and len(set(sources)) < len(sources):
+        yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
+    known = (*shape.required, *shape.optional)
+    for name in shape.required:
+        if name not in options:
+            yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
+    for name, value in options.items():
+        if name not in known:
+            help = suggestion(name, known, f"options: {', '.join(known)}")
+            yield Fault(name, f"`{operator}` has no option `{name}`", help)
+        elif wrong := _OPTIONS.get(name, _number)(value):
+            yield Fault(name, f"`{name}` {wrong[0]}", wrong[1])
+    if operator == "hysteresis":
+        yield from _wrong_limits(options)
+
+
+_NEEDED: Final = {
+    "within": "give the length of the window, so that its memory is bounded",
+    "for": "give the time that must pass",
+}
+
+_Wrong = tuple[str, str] | None
+"""What is wrong with the value of an option, and the help."""
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _number(value: Any) -> _Wrong:
+    return None if _is_number(value) else ("must be a number", "write a number such as 0.5")
+
+
+def _seconds(value: Any) -> _Wrong:
+    if value == math.inf:
+        return "is unbounded", "give a finite time: memory is bounded by the window"
+    if not _is_number(value):
+        return "must be a duration", "write a number above zero"
+    if value <= 0.0:
+        return "must be above zero", "write a positive time"
+    if value > LONGEST:
+        return "is longer than a day", "give a shorter time: memory is bounded by the window"
+    return None
+
+
+def _whole(value: Any) -> _Wrong:
+    if not _is_number(value) or value <= 0:
+        return "must be above zero", "write a positive number"
+    return None if value == int(value) else ("must be a whole number", "write a number such as 3")
+
+
+_OPTIONS: Final[dict[str, Callable[[Any], _Wrong]]] = {
+    "within": _seconds,
+    "for": _seconds,
+    "at_least": _whole,
+    "equals": lambda value: None,
+}
+"""The checks of options; all others are numbers."""
+
+
+def _wrong_limits(options: Mapping[str, Any]) -> Iterator[Fault]:
+    used = [name for name in _ON_AND_OFF if name in options]
+    if used not in (["on_above", "off_below"], ["on_below", "off_above"]):
+        help = "give `on_above` and `off_below`, or `on_below` and `off_above`"
+        yield Fault("", "`hysteresis` needs two limits", help)
+        return
+    on, off = options[used[0]], options[used[1]]
+    if _is_number(on) and _is_number(off) and (on < off if used[0] == "on_above" else on > off):
+        side = "at most" if used[0] == "on_above" else "at least"
+        yield Fault(used[1], f"`{used[1]}` must be {side} `{used[0]}`", "swap the two limits")
+
+
+_DATA = (bool, int, float, str, tuple, list, deque, type(None))
+
+
+class Pattern:
+    """The incremental evaluation of one declaration.
+
+    Event times are seconds of any clock. The *watermark* is the event time up to which all events are known: the time
+    of the newest event or of the last `advance`, whichever is later, minus the lateness. Events are evaluated in time
+    order when the watermark reaches them; events older than the watermark are dropped.
+
+    Args:
+        spec: a valid declaration.
+        start: start time of the pattern.
+        emit: takes the outputs, in order.
+
+    Attributes:
+        dropped: number of events that arrived too late.
+    """
+
+    __slots__ = ("_dropped", "_early", "_lateness", "_mark", "_numbers", "_operator", "_start", "spec")
+
+    def __init__(self, spec: Spec, start: float, emit: Emit) -> None:
+        self.spec = spec
+        self._operator = OPERATORS[spec.operator].make(spec, emit)
+        self._start, self._lateness = start, spec.lateness if self._operator.ordered else 0.0
+        self._mark = 0.0
+        self._early: list[tuple[float, int, int, Values | None]] = []
+        self._numbers = itertools.count()
+        self._dropped = 0
+
+    @property
+    def shown(self) -> Values | None:
+        """Values of the derived state, None while it does not hold."""
+        return self._operator.shown
+
+    @property
+    def dropped(self) -> int:
+        """Number of events that arrived too late."""
+        return self._dropped + int(getattr(self._operator, "dropped", 0))
+
+    @property
+    def deadline(self) -> float:
+        """Time of the next call of `advance`, unless an event arrives before; infinite for never."""
+        if not self._early:
+            return self._start + self._operator.deadline + self._lateness
+        return self._start + self._due() + self._lateness
+
+    def _due(self) -> float:
+        """Return the event time of the next change without an event."""
+        due = self._operator.deadline
+        return self._early[0][0] if self._early and self._early[0][0] < due else due
+
+    def take(self, source: int, time: float, values: Values | None) -> None:
+        """Process an event.
+
+        Args:
+            source: number of its stream in `Spec.streams`.
+            time: time of the event, in seconds.
+            values: values of the event; None if the state shown by the stream ended.
+        """
+        time -= self._start
+        operator = self._operator
+        if not operator.ordered:
+            operator.take(source, time, values)
+        elif time < self._mark:
+            self._dropped += 1
+        elif self._lateness:
+            heapq.heappush(self._early, (time, next(self._numbers), source, values))
+            self._release(time - self._lateness)
+        else:
+            if operator.deadline <= time:
+                self._pass(time)
+            self._mark = time
+            operator.take(source, time, values)
+
+    def state(self) -> dict[str, Any]:
+        """Return the state of the evaluation, as numbers, tuples, lists and dictionaries."""
+        early = [tuple(each) for each in self._early]
+        own = {"start": self._start, "mark": self._mark, "early": early, "dropped": self._dropped}
+        return {**own, "operator": {name: _plain(value) for name, value in _kept(self._operator)}}
+
+    def resume(self, state: dict[str, Any]) -> None:
+        """Continue from the `state` of a pattern with the same declaration."""
+        self._start, self._mark, self._dropped = state["start"], state["mark"], state["dropped"]
+        self._early = [tuple(each) for each in state["early"]]
+        self._numbers = itertools.count(1 + max((each[1] for each in self._early), default=-1))
+        for name, value in state["operator"].items():
+            before = getattr(self._operator, name)
+            setattr(self._operator, name, deque(value) if isinstance(before, deque) else value)
+
+    def advance(self, now: float) -> None:
+        """Advance to *now* on the clock of the event times."""
+        mark = now - self._start - self._lateness
+        # Deadlines at *now* are due, despite rounding in the conversion of times.
+        self._release(max(mark, self._due()) if self.deadline <= now else mark)
+
+    def _release(self, mark: float) -> None:
+        """Move the watermark, and evaluate the events up to it."""
+        self._mark = mark = max(self._mark, mark)
+        early = self._early
+        while early and early[0][0] <= mark:
+            time, _, source, values = heapq.heappop(early)
+            self._pass(time)
+            self._operator.take(source, time, values)
+        self._pass(mark)
+
+    def _pass(self, time: float) -> None:
+        """Advance the operator through its deadlines up to *time*."""
+        operator = self._operator
+        while (due := operator.deadline) <= time:
+            operator.advance(due)
+            if operator.deadline <= due:  # an operator that makes no progress would block all others
+                operator.deadline = math.nextafter(due, math.inf)
+
+
+def _kept(operator: Operator) -> list[tuple[str, Any]]:
+    """Return the attributes of an operator that are data."""
+    names = [name for kind in type(operator).__mro__ for name in getattr(kind, "__slots__", ())]
+    found = [(name, getattr(operator, name)) for name in names]
+    return [(name, value) for name, value in found if isinstance(value, _DATA)]
+
+
+def _plain(value: Any) -> Any:
+    """Return data with lists instead of deques."""
+    return list(value) if isinstance(value, deque) else value

@@ -1,1 +1,0 @@
-"""Programs in the standard layout: tokens and comments to documents, documents to lines."""

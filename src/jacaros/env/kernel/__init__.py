@@ -1,1 +1,0 @@
-"""What makes artifacts run; authors and hosts need none of it, only what `jacaros.env` exports."""

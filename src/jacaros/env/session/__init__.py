@@ -1,1 +1,0 @@
-"""Working sessions: how scripts, behaviour trees and Python agents use the environment."""

@@ -1,0 +1,1 @@
+"""Files of users: texts with places, YAML, Python modules, maps."""

@@ -1,0 +1,718 @@
+"""Time as a port: the wall clock, and a virtual clock that jumps when all agents wait.
+
+Agents, artifacts and the embedded world take time only from a `Clock`. The virtual clock belongs to an event loop made
+by `new_event_loop`. When no callback is ready and no other thread works for the loop, it moves to the next timer instead
+of sleeping, so a run is reproducible and as fast as the machine.
+
+A clock can be paused: it stands still and no timer rings. On a virtual clock, pending callbacks of the run are then
+held, too, so pausing does not change a run. `of_run` marks them; the loop continues to serve everything else, such as a
+page that shows the run.
+"""
+
+import _thread
+import asyncio
+import contextvars
+import heapq
+import itertools
+import selectors
+import signal
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
+from types import FrameType
+from typing import Any, Protocol, TypeVar
+
+# An alarm that interrupts the main thread in the middle of whatever Python code it executes.
+#
+# POSIX has SIGALRM and a timer of the system.  On Windows a thread pretends that SIGILL has arrived, which nothing else
+# sends there: what waits in the system, or computes in C, is interrupted when it returns.
+
+
+if sys.platform == "win32":
+    SIGNAL = signal.SIGILL
+else:
+    SIGNAL = signal.SIGALRM
+
+
+class Alarm:
+    """One alarm, for the main thread only.
+
+    Args:
+        ring: called as a signal handler; what it raises is raised in the middle of the main thread's code.
+    """
+
+    def __init__(self, ring: Callable[[int, FrameType | None], object]) -> None:
+        self._ring = ring
+        self._armed = False
+        self._before: Any = None
+        self._rest = 0.0
+        """Seconds that were left of another timer."""
+        self._turn = 0
+
+    def set(self, seconds: float, again: float = 0.0) -> None:
+        """Ring in *seconds*, and then every *again* seconds unless that is 0; what was set before is replaced.
+
+        It may be called in a signal handler.
+        """
+        if not self._armed:
+            self._armed = True
+            before = signal.signal(SIGNAL, self._ring)
+            self._before = signal.SIG_DFL if before is None else before
+            if sys.platform != "win32":
+                self._rest = signal.getitimer(signal.ITIMER_REAL)[0]
+        self._turn += 1
+        if sys.platform == "win32":
+            # Without the locks of `threading`: the handler may have interrupted code that holds them.
+            _thread.start_new_thread(self._wait, (self._turn, seconds, again))
+        else:
+            signal.setitimer(signal.ITIMER_REAL, seconds, again)
+
+    def cancel(self) -> None:
+        """Stop ringing, and restore the handler of the signal."""
+        if not self._armed:
+            return
+        self._turn += 1
+        if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, self._rest)
+        signal.signal(SIGNAL, self._before)
+        self._armed = False
+
+    def _wait(self, turn: int, seconds: float, again: float) -> None:
+        time.sleep(seconds)
+        while self._turn == turn:
+            _thread.interrupt_main(SIGNAL)
+            if not again:
+                return
+            time.sleep(again)
+
+
+# A queue of timers ordered by time, used by every clock of a run.
+
+
+COMPACT_ABOVE = 100
+"""Cancelled timers that a queue may hold before it looks whether they are more than half of all."""
+
+
+class QueuedTimer:
+    """A call at a moment.
+
+    Attributes:
+        when: the moment, in seconds of the clock.
+    """
+
+    __slots__ = ("_queue", "callback", "number", "when")
+
+    def __init__(self, when: float, number: int, callback: Callable[[], None], queue: "TimerQueue") -> None:
+        self.when, self.number = when, number
+        self.callback: Callable[[], None] | None = callback
+        self._queue = queue
+
+    def cancel(self) -> None:
+        """Cancel the call; no effect once it has been made."""
+        if self.callback is not None:
+            self.callback = None  # what it holds may be large, and the moment far
+            self._queue.note_cancelled()
+
+    def ring(self) -> None:
+        """Make the call, unless it was cancelled or made."""
+        callback, self.callback = self.callback, None
+        if callback is not None:
+            callback()
+
+
+_Entry = tuple[float, int, QueuedTimer]
+"""A moment, a number that no other timer has, and the timer: tuples compare without calling Python functions."""
+
+
+class TimerQueue:
+    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set."""
+
+    __slots__ = ("_cancelled", "_heap", "_numbers")
+
+    def __init__(self) -> None:
+        self._heap: list[_Entry] = []
+        self._numbers = itertools.count()
+        self._cancelled = 0
+
+    def __len__(self) -> int:
+        return len(self._heap)
+
+    def add(self, when: float, callback: Callable[[], None]) -> QueuedTimer:
+        """Set a timer."""
+        timer = QueuedTimer(when, next(self._numbers), callback, self)
+        heapq.heappush(self._heap, (when, timer.number, timer))
+        return timer
+
+    def put_back(self, timer: QueuedTimer) -> None:
+        """Put back a timer that `next_due` returned and that has not rung."""
+        heapq.heappush(self._heap, (timer.when, timer.number, timer))
+
+    def first_moment(self) -> float | None:
+        """The moment of the earliest timer; None without one."""
+        heap = self._heap
+        while heap and heap[0][2].callback is None:
+            heapq.heappop(heap)
+        return heap[0][0] if heap else None
+
+    def next_due(self, moment: float) -> QueuedTimer | None:
+        """Remove and return the earliest timer that is due at *moment*; None if none is."""
+        heap = self._heap
+        while heap and heap[0][0] <= moment:
+            timer = heapq.heappop(heap)[2]
+            if timer.callback is not None:
+                return timer
+        return None
+
+    def pending(self) -> Sequence[QueuedTimer]:
+        """The pending timers, in no order."""
+        return [timer for _, _, timer in self._heap if timer.callback is not None]
+
+    def note_cancelled(self) -> None:
+        """Count a timer that was cancelled; drop cancelled ones when they are many."""
+        self._cancelled += 1
+        if self._cancelled > COMPACT_ABOVE and 2 * self._cancelled > len(self._heap):
+            self._heap = [entry for entry in self._heap if entry[2].callback is not None]
+            heapq.heapify(self._heap)
+            self._cancelled = 0
+
+
+VIRTUAL_EPOCH = 1_577_836_800.0
+"""2020-01-01 00:00:00 UTC, in seconds since the Unix epoch: the start of every virtual run."""
+
+real_time = time.monotonic
+"""Seconds of a monotonic clock, independent of the run's clock: to bound how long something keeps the machine busy."""
+
+T = TypeVar("T")
+
+
+class Timer(Protocol):
+    """A pending call, which can be cancelled."""
+
+    def cancel(self) -> None:
+        """Cancel the call; no effect once it has been made."""
+
+
+class Clock(Protocol):
+    """The one source of time for agents, artifacts and the world."""
+
+    @property
+    def virtual(self) -> bool:
+        """True if time moves in jumps."""
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since some moment, as `call_later` counts them; never decreases, whatever `now` does."""
+
+    def now(self) -> float:
+        """Return seconds since the Unix epoch."""
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* on the loop after *delay* seconds; calls for the same moment keep their order."""
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds."""
+
+    def busy(self, cycles: int) -> None:
+        """Report that agents made *cycles* reasoning cycles without becoming idle."""
+
+    @property
+    def paused(self) -> bool:
+        """Whether the clock is paused."""
+
+    def pause(self) -> None:
+        """Stop time and timers until `resume`; no effect on a paused clock."""
+
+    def resume(self) -> None:
+        """Let time continue: pending timers ring after the rest of their delays."""
+
+
+_OF_RUN: contextvars.ContextVar[bool] = contextvars.ContextVar("jacaros_of_run", default=False)
+"""Whether the running code belongs to a run, and is therefore held while a virtual clock is paused."""
+
+
+@contextmanager
+def of_run() -> Iterator[None]:
+    """Mark callbacks and tasks started inside, and those that they start, as parts of a run."""
+    token = _OF_RUN.set(True)
+    try:
+        yield
+    finally:
+        _OF_RUN.reset(token)
+
+
+@contextmanager
+def outside_run() -> Iterator[None]:
+    """Mark code started inside as independent of a run: a paused virtual clock does not hold it."""
+    token = _OF_RUN.set(False)
+    try:
+        yield
+    finally:
+        _OF_RUN.reset(token)
+
+
+def run_context() -> contextvars.Context:
+    """Return a context in which started code is part of a run."""
+    context = contextvars.copy_context()
+    context.run(_OF_RUN.set, True)
+    return context
+
+
+class WallClock:
+    """The time of day; delays are measured on the monotonic clock.
+
+    Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it continues from
+    its last value.
+
+    Args:
+        speed: seconds of this clock per second of real time, greater than 0.
+    """
+
+    virtual = False
+
+    def __init__(self, speed: float = 1.0) -> None:
+        self._speed = 1.0
+        self._paused = False
+        self._reached = self._began = 0.0
+        """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of speed."""
+        self._ahead: float | None = None
+        """`now` minus `elapsed`; None while `now` is the time of day."""
+        self._timers = TimerQueue()
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._alarm: asyncio.TimerHandle | None = None
+        self._alarm_at = 0.0
+        self._ringing = False
+        if speed != 1.0:
+            self.speed = speed
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds of the monotonic clock, as far as this clock followed it; it cannot be set."""
+        if self._paused:
+            return self._reached
+        return self._reached + (time.monotonic() - self._began) * self._speed
+
+    @property
+    def speed(self) -> float:
+        """Seconds of this clock per second of real time."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, speed: float) -> None:
+        if not 0.0 < speed < float("inf"):
+            raise ValueError(f"expected a speed greater than 0, found {speed}")
+        self._note_day()
+        self._note_moment()
+        self._speed = speed
+        self._set_alarm()
+
+    @property
+    def paused(self) -> bool:
+        """Whether the clock is paused."""
+        return self._paused
+
+    def pause(self) -> None:
+        """Stop time and timers until `resume`; no effect on a paused clock."""
+        if not self._paused:
+            self._note_day()
+            self.pause_timers()
+
+    def pause_timers(self) -> None:
+        """Stop timers until `resume`; `now` continues, as messages of real robots carry the time of day."""
+        if not self._paused:
+            self._note_moment()
+            self._paused = True
+            self._set_alarm()
+
+    def resume(self) -> None:
+        """Let time continue: pending timers ring after the rest of their delays."""
+        if self._paused:
+            self._began = time.monotonic()
+            self._paused = False
+            self._set_alarm()
+
+    def now(self) -> float:
+        """Return seconds since the Unix epoch."""
+        return time.time() if self._ahead is None else self._ahead + self.elapsed
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* on the running loop after *delay* seconds."""
+        loop = asyncio.get_running_loop()
+        if loop is not self._loop:
+            self._move_to_loop(loop)
+        when = self.elapsed + max(0.0, delay)
+        timer = self._timers.add(when, callback)
+        if (self._alarm is None or when < self._alarm_at) and not self._ringing:
+            self._set_alarm()
+        return timer
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds."""
+        await _sleep(self, delay)
+
+    def busy(self, cycles: int) -> None:
+        """Do nothing: the wall clock moves anyway."""
+
+    def _note_day(self) -> None:
+        """From now on, `now` follows this clock instead of the time of day."""
+        if self._ahead is None:
+            self._ahead = time.time() - self.elapsed
+
+    def _note_moment(self) -> None:
+        self._reached, self._began = self.elapsed, time.monotonic()
+
+    def _move_to_loop(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Serve another loop; timers of a closed one are dropped."""
+        if self._loop is not None and self._loop.is_closed():
+            self._timers, self._alarm = TimerQueue(), None
+        self._loop = loop
+
+    def _set_alarm(self) -> None:
+        """Schedule a call of the loop for the earliest timer."""
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+        moment = self._timers.first_moment()
+        if moment is None or self._paused or self._loop is None or self._loop.is_closed():
+            return
+        self._alarm_at = moment
+        self._alarm = self._loop.call_later(max(0.0, moment - self.elapsed) / self._speed, self._ring)
+
+    def _ring(self) -> None:
+        """Ring the timers that are due; those that they set ring in a later pass of the loop."""
+        self._alarm = None
+        moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
+        due = deque(iter(lambda: self._timers.next_due(moment), None))
+        self._ringing = True
+        try:
+            while due and not self._paused:
+                due.popleft().ring()
+        finally:
+            self._ringing = False
+            for timer in due:
+                self._timers.put_back(timer)
+            self._set_alarm()
+
+
+async def _sleep(clock: Clock, delay: float) -> None:
+    done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+    timer = clock.call_later(delay, partial(_wake, done))
+    try:
+        await done
+    finally:
+        timer.cancel()
+
+
+class VirtualClock:
+    """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all agents wait.
+
+    Attributes:
+        paused: whether it is paused: it does not jump, and its loop holds the callbacks of the run.
+        when_paused: called with True after a pause begins, and with False after it ends.
+    """
+
+    virtual = True
+    CYCLES_PER_MILLISECOND = 10_000
+    """Time moves 1 ms per this number of busy cycles, so a plan that never ends cannot freeze the world."""
+
+    def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
+        self.start = start
+        self.elapsed = 0.0
+        self.paused = False
+        self._timers = TimerQueue()
+        self._cycles = 0
+        self._context = run_context()
+        self.when_paused: list[Callable[[bool], None]] = []
+
+    def now(self) -> float:
+        """Return seconds since the Unix epoch."""
+        return self.start + self.elapsed
+
+    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* after *delay* seconds of virtual time."""
+        return self._timers.add(self.elapsed + max(0.0, delay), callback)
+
+    async def sleep(self, delay: float) -> None:
+        """Wait for *delay* seconds of virtual time."""
+        await _sleep(self, delay)
+
+    def pause(self) -> None:
+        """Stop jumping, and hold the callbacks of the run, until `resume`; no effect on a paused clock."""
+        if not self.paused:
+            self.paused = True
+            for watcher in tuple(self.when_paused):
+                watcher(True)
+
+    def resume(self) -> None:
+        """Continue exactly where the clock was paused."""
+        if self.paused:
+            self.paused = False
+            for watcher in tuple(self.when_paused):
+                watcher(False)
+
+    def busy(self, cycles: int) -> None:
+        """Move 1 ms for every 10,000 cycles that agents made without becoming idle.
+
+        The loop calls timers that are due later, never in the middle of the caller's work.
+        """
+        self._cycles += cycles
+        while self._cycles >= self.CYCLES_PER_MILLISECOND:
+            self._cycles -= self.CYCLES_PER_MILLISECOND
+            self._move_to(self.elapsed + 0.001)
+
+    def advance(self, at_most: float | None = None) -> bool:
+        """Jump to the next timer, and ring all timers of that moment; return False without a timer.
+
+        Args:
+            at_most: seconds to move if the next timer is further away or does not exist.
+        """
+        moment = self._timers.first_moment()
+        if at_most is not None and (moment is None or moment > self.elapsed + at_most):
+            moment = self.elapsed + at_most
+        if moment is None:
+            return False
+        self._cycles = 0
+        self._move_to(moment)
+        return True
+
+    def pending(self) -> Sequence[Timer]:
+        """The pending timers, in no order."""
+        return self._timers.pending()
+
+    def _move_to(self, moment: float) -> None:
+        while (timer := self._timers.next_due(moment)) is not None:
+            self.elapsed = max(self.elapsed, timer.when)
+            self._call_soon(timer)
+        if moment > self.elapsed:
+            self.elapsed = moment
+
+    def _call_soon(self, timer: QueuedTimer) -> None:
+        """Let the running loop ring a timer, so that its handler gets errors; without a loop, ring it now."""
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:
+            timer.ring()
+        else:
+            loop.call_soon(timer.ring, context=self._context)
+
+
+def _wake(sleeper: asyncio.Future[None]) -> None:
+    if not sleeper.done():
+        sleeper.set_result(None)
+
+
+class _VirtualSelector(selectors.DefaultSelector):
+    """Turns the loop's "sleep until something happens" into a jump of the virtual clock."""
+
+    PATIENCE = 8
+    """While the loop is busy, it checks for external events only once per this number of passes."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        super().__init__()
+        self.clock = clock
+        self.foreign_work = 0
+        self.when_stuck: list[Callable[[], bool]] = []
+        self._passed = 0
+        self.ready: deque[asyncio.Handle] = deque()
+        self.held: deque[asyncio.Handle] = deque()
+        clock.when_paused.append(self._hold)
+
+    def _hold(self, paused: bool) -> None:
+        """Hold the callbacks of the run, or release them."""
+        if not paused:
+            self.ready.extend(self.held)
+            self.held.clear()
+            return
+        for place in range(len(self.ready)):  # other threads may append meanwhile
+            handle = self.ready[place]
+            if _is_of_run(handle):
+                self.held.append(handle)
+                # The loop has counted the callbacks of this pass: put something in its place.
+                self.ready[place] = asyncio.Handle(_nothing, (), asyncio.get_running_loop())
+
+    def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
+        """Serve sockets, and callbacks that do not belong to the run."""
+        for _ in range(len(self.ready)):
+            handle = self.ready.popleft()
+            (self.held if _is_of_run(handle) else self.ready).append(handle)
+        return super().select(0 if timeout is not None and timeout <= 0 else None)
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if self.clock.paused:
+            return self._select_paused(timeout)
+        if timeout is not None and timeout <= 0:
+            self._passed += 1
+            if self._passed < self.PATIENCE:
+                return []
+            self._passed = 0
+            return super().select(0)
+        events = super().select(0)
+        if events:
+            return events
+        if not self.foreign_work:
+            if self.clock.advance(timeout):
+                return []
+            if timeout is None and [watcher for watcher in self.when_stuck if watcher()]:
+                return []
+        return super().select(timeout)
+
+
+def _nothing() -> None:
+    """Take the place of a callback that is held."""
+
+
+def _is_of_run(handle: asyncio.Handle) -> bool:
+    context: contextvars.Context = handle._context  # type: ignore[attr-defined]
+    return context.get(_OF_RUN, False)
+
+
+def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
+    """Run *work* in a daemon thread; return a future with its result or exception.
+
+    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
+    """
+    loop = asyncio.get_running_loop()
+    future: asyncio.Future[T] = loop.create_future()
+
+    def bring(deliver: Callable[[], None]) -> None:
+        if not future.done():
+            deliver()
+
+    def run_work() -> None:
+        deliver: Callable[[], None]
+        try:
+            deliver = partial(future.set_result, work())
+        except StopIteration as error:  # which a future does not accept
+            deliver = partial(future.set_exception, RuntimeError(f"the thread raised {error!r}"))
+        except BaseException as error:
+            deliver = partial(future.set_exception, error)
+        with suppress(RuntimeError):  # the loop has been closed
+            loop.call_soon_threadsafe(bring, deliver)
+
+    threading.Thread(target=run_work, name="jacaros work", daemon=True).start()
+    return future
+
+
+class _DaemonThreads(asyncio.BaseEventLoop):
+    """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
+
+    THREADS = 32
+    """Maximum number of concurrent threads, as in asyncio."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._threads = 0
+        self._queued: deque[tuple[asyncio.Future[Any], Callable[[], Any]]] = deque()
+
+    def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
+        self, executor: Any, func: Any, *args: Any
+    ) -> Any:
+        """Run *func* in a thread of *executor*, or in a daemon thread if that is None."""
+        if executor is not None:
+            return super().run_in_executor(executor, func, *args)
+        future = self.create_future()
+        self._queued.append((future, partial(func, *args)))
+        self._start_threads()
+        return future
+
+    def _start_threads(self) -> None:
+        while self._queued and self._threads < self.THREADS:
+            future, work = self._queued.popleft()
+            if not future.done():
+                self._threads += 1
+                start_thread(work).add_done_callback(partial(self._thread_done, future))
+
+    def _thread_done(self, future: asyncio.Future[Any], done: asyncio.Future[Any]) -> None:
+        self._threads -= 1
+        error = done.exception()
+        if not future.done():
+            if error is not None:
+                future.set_exception(error)
+            else:
+                future.set_result(done.result())
+        self._start_threads()
+
+
+class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
+    """An asyncio loop that waits on a virtual clock: ``asyncio.sleep`` and timeouts take no real time."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._virtual_clock = clock
+        self.virtual_selector = _VirtualSelector(clock)
+        super().__init__(self.virtual_selector)
+        self.virtual_selector.ready = self._ready  # type: ignore[attr-defined]
+        self._wakes = sys.platform == "win32" and threading.current_thread() is threading.main_thread()
+        if self._wakes:
+            # There a signal does not interrupt `select`, and asyncio wakes its Proactor loop only.
+            signal.set_wakeup_fd(self._csock.fileno())  # type: ignore[attr-defined]
+
+    def close(self) -> None:
+        """Close the loop."""
+        if self._wakes:
+            self._wakes = False
+            signal.set_wakeup_fd(-1)
+        super().close()
+
+    def when_stuck(self, watcher: Callable[[], bool]) -> Callable[[], None]:
+        """Call *watcher* when everything waits and no timer is left: only an external event could continue the run.
+
+        *watcher* returns True if it has given something work to do. Return a function that ends this.
+        """
+        watchers = self.virtual_selector.when_stuck
+        watchers.append(watcher)
+        return lambda: watchers.remove(watcher) if watcher in watchers else None
+
+    def time(self) -> float:
+        """Return seconds of virtual time since the beginning."""
+        return self._virtual_clock.elapsed
+
+    def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
+        self, executor: Any, func: Any, *args: Any
+    ) -> Any:
+        """Run *func* in a thread; virtual time stands still until it is done."""
+        self.virtual_selector.foreign_work += 1
+        future = super().run_in_executor(executor, func, *args)
+        future.add_done_callback(lambda _: self._foreign_work_done())
+        return future
+
+    def _foreign_work_done(self) -> None:
+        self.virtual_selector.foreign_work -= 1
+
+
+_Loop: Any = getattr(asyncio, "ProactorEventLoop", asyncio.SelectorEventLoop)  # the former on Windows
+
+
+class _RealEventLoop(_DaemonThreads, _Loop):  # type: ignore[misc]
+    """The loop of asyncio, with daemon threads."""
+
+
+@contextmanager
+def standing_still(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
+    """Stop virtual time while another thread works for *loop*; the wall clock continues."""
+    selector = loop.virtual_selector if isinstance(loop, VirtualEventLoop) else None
+    if selector is not None:
+        selector.foreign_work += 1
+    try:
+        yield
+    finally:
+        if selector is not None:
+            selector.foreign_work -= 1
+
+
+def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
+    """Make the event loop that goes with *clock*."""
+    return VirtualEventLoop(clock) if isinstance(clock, VirtualClock) else _RealEventLoop()
+
+
+def clock_of(loop: asyncio.AbstractEventLoop) -> Clock:
+    """Return the clock of an event loop: the virtual one that `new_event_loop` made it for, or the wall clock."""
+    return loop.virtual_selector.clock if isinstance(loop, VirtualEventLoop) else WallClock()
+
+
+def run(main: Callable[[], Coroutine[Any, Any, T]], clock: Clock) -> T:
+    """Run the coroutine function *main* to its end on a new loop of *clock*."""
+    with asyncio.Runner(loop_factory=lambda: new_event_loop(clock)) as runner:
+        return runner.run(main())

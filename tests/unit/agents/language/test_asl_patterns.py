@@ -1,0 +1,126 @@
+"""Goal patterns: the plans that stand in place of those of the block."""
+
+from asl_lab import belief_texts, places, plan_texts, program
+
+from jacaros.agents.language import nodes
+
+
+def expanded(pattern: str, clauses: str = "+!at(X) : a(X) <- go(X).") -> list[str]:
+    return plan_texts(f"{{ begin {pattern} }} {clauses} {{ end }}")
+
+
+BELIEVED = "+!at(_1) : at(_1)."
+TESTED = "+!at(X) : a(X) <- go(X); ?at(X)."
+SUCCEEDS = "+at(_1) <- .succeed_goal(at(_1))."
+RETRY = "-!at(_1) <- !at(_1)."
+LAST = "+!at(_1) <- !at(_1)."
+
+
+def test_a_declarative_goal():
+    assert expanded("dg(at(_))") == [BELIEVED, TESTED, SUCCEEDS]
+
+
+def test_only_plans_for_the_goal_are_changed():
+    assert expanded("dg(at(_))", "+!at(X,Y) <- b. +!other <- b. -!at(X) <- b.")[1:-1] == [
+        "+!at(X,Y) <- b.",
+        "+!other <- b.",
+        "-!at(X) <- b; ?at(X).",
+    ]
+    assert expanded("dg(at(home))", "+!at(work) <- b. +!at(Y) <- b. -!P <- b.")[1:-1] == [
+        "+!at(work) <- b.",
+        "+!at(Y) <- b; ?at(Y).",
+        "-!P <- b.",
+    ]
+
+
+def test_the_argument_is_one_variable_in_all_places():
+    plan = program("{ begin dg(at(_)) } { end }").plans[0]
+    assert isinstance(plan.trigger.literal, nodes.Literal)
+    assert plan.trigger.literal == plan.context
+    assert all(isinstance(a, nodes.Variable) and not a.unnamed for a in plan.trigger.literal.arguments)
+
+
+def test_a_backtracking_goal_is_tried_again():
+    assert expanded("bdg(at(_))") == [BELIEVED, TESTED, SUCCEEDS, RETRY]
+
+
+def test_an_exclusive_goal_tries_each_plan_once():
+    plans = expanded("ebdg(at(_))", "+!at(X) : a(X) <- go(X). +!at(X) <- fly(X).")
+    assert plans[1].startswith(
+        "+!at(X) : not (p__tried(0,at(X))) & a(X) <- +p__tried(0,at(X)); go(X); ?at(X)"
+    )
+    assert plans[2].startswith("+!at(X) : not (p__tried(1,at(X))) <- +p__tried(1,at(X)); fly(X); ?at(X)")
+    assert plans[-2].startswith("-!at(_1)[error(no_applicable)] <- .abolish(p__tried(")
+    assert plans[-1] == RETRY
+
+
+def test_blind_commitment():
+    assert expanded("bc(at(_))") == [BELIEVED, TESTED, SUCCEEDS, RETRY, LAST]
+    assert expanded("bc(at(_),dg)") == [BELIEVED, TESTED, SUCCEEDS, LAST]
+
+
+def test_single_minded_commitment_passes_the_failure_on_to_the_caller():
+    assert expanded("smc(at(_), broken)") == [
+        BELIEVED,
+        TESTED,
+        SUCCEEDS,
+        "-!at(_1) : not (broken) <- !at(_1).",
+        "+!at(_1) : not (broken) <- !at(_1).",
+        '-!at(_1) <- .fail(error(impossible),error_msg("the goal is believed to be impossible")).',
+        "+broken <- .fail_goal(at(_1)).",
+    ]
+
+
+def test_relativised_and_open_minded_commitment_end_with_the_motivation():
+    ended = "-wanted <- .succeed_goal(at(_1))."
+    assert expanded("rc(at(_), wanted)") == [BELIEVED, TESTED, SUCCEEDS, RETRY, LAST, ended]
+    plans = expanded("omc(at(_), broken, wanted)")
+    assert plans[-2:] == ["+broken <- .fail_goal(at(_1)).", ended]
+
+
+def test_a_maintenance_goal_is_believed_at_first_and_pursued_when_lost():
+    text = "{ begin mg(charged) } +!charged <- charge. { end }"
+    assert belief_texts(text) == ["charged"]
+    committed = plan_texts("{ begin bc(charged) } +!charged <- charge. { end }")
+    assert plan_texts(text) == [*committed, "-charged <- !charged."]
+    single_minded = plan_texts("{ begin smc(charged, broken) } +!charged <- charge. { end }")
+    text = "{ begin mg(charged, smc(charged, broken)) } +!charged <- charge. { end }"
+    assert plan_texts(text) == [*single_minded, "-charged <- !charged."]
+    assert belief_texts("{ begin mg(level(X)) } { end }") == []
+    assert "?charged" in plan_texts("{ begin mg(charged, bdg) } +!charged <- charge. { end }")[1]
+
+
+def test_sequenced_goals_take_text_and_terms():
+    text = expanded('sga("+order(X)", "open & ok(X)", serve(X))', "")
+    assert text[0] == (
+        "@p__sga1_begin[atomic] +order(X) : not (p__busy(1)) & (open & ok(X)) <- +p__busy(1); "
+        "!!p__serve(1,serve(X))."
+    )
+    assert text == expanded("sga({+order(X)}, open & ok(X), serve(X))", "")
+    assert expanded('sga("+!order(X)", "true", serve(X))', "")[1] == (
+        "@p__sga1_wait[atomic] +!order(X) <- +>p__queue(1,serve(X))."
+    )
+
+
+def test_patterns_respect_the_namespace_of_their_block():
+    text = "{ begin namespace(m) } { begin dg(g) } +!g <- a. { end } { end }"
+    assert plan_texts(text) == ["+!m::g : m::g.", "+!m::g <- a; ?m::g.", "+m::g <- .succeed_goal(m::g)."]
+
+
+def test_patterns_can_be_nested():
+    plans = expanded('sga("+order", "true", home)', "{ begin bdg(home) } +!home <- go. { end }")
+    assert plans[:4] == expanded("bdg(home)", "+!home <- go.")
+
+
+def test_wrong_patterns_are_refused_at_their_line():
+    def messages(pattern: str) -> list[tuple[int, str]]:
+        return places(f"a.\n{{ begin {pattern} }}\n+!g <- a.\n{{ end }}")
+
+    assert messages("dg(X)") == [(2, "argument 1 of `dg` (the goal) is not a literal")]
+    assert messages("dg") == [(2, "`dg` expects the goal as argument 1")]
+    assert messages("dg(a,b)") == [(2, "`dg` expects at most 1 argument, found 2")]
+    assert messages("bc(g,foo)") == [(2, "unknown pattern `foo`")]
+    assert messages("smc(g)") == [(2, "`smc` expects the belief that the goal is impossible as argument 2")]
+    assert messages('sga("order", "true", g)')[0][1].startswith("`order` is not a trigger: ")
+    assert messages('sga("+order", "a &", g)')[0][1].startswith("`a &` is not a condition: ")
+    assert messages("foo(g)") == [(2, "unknown directive `foo` with a block")]

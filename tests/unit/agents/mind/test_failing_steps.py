@@ -1,0 +1,237 @@
+"""Steps and goals that fail: logs, handlers, and what continues."""
+
+import sys
+from types import FrameType
+from typing import Any
+
+import pytest
+from recording_host import mind, printed
+
+from jacaros.agents.mind.explaining.failure_reason import goal_text
+from jacaros.agents.mind.rules import failure
+from jacaros.agents.mind.rules.meta_events import observe_goals
+
+
+def test_an_exception_in_an_internal_action_fails_that_step_only() -> None:
+    host = mind(
+        """
+        !other. !g.
+        +!other <- .wait(10); .print(other_lives).
+        +!g <- .nth(9, [a], _); .print(bad).
+        -!g[error(E)] <- .print(E).
+        """
+    )
+    host.run()
+    assert host.printed == ["internal_action", "other_lives"]
+
+
+def test_a_lost_intention_is_reported_with_its_place() -> None:
+    host = mind("!g.\n+!g <-\n  ?nothing(1).", name="lost")
+    host.run()
+    assert host.logged == [
+        (
+            "warning",
+            (
+                "the goal !g failed and has no plan for its failure: "
+                "test_goal_failed, a test found no answer (lost.asl:3)\n"
+                "  step: ?nothing(1)"
+            ),
+        )
+    ]
+
+
+def test_a_handler_that_posts_its_goal_again_retries() -> None:
+    assert printed(
+        """
+        n(3). !g.
+        +!g : n(0) <- .print(done).
+        +!g : n(N) <- -+n(N-1); .print(try(N)); .fail.
+        -!g <- !g.
+        """
+    ) == ["try(3)", "try(2)", "try(1)", "done"]
+
+
+def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tried() -> None:
+    host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
+    host.run()
+    assert host.printed == ["second"]
+    assert "cannot evaluate" in host.logged[0][1]
+
+
+def test_an_observer_gets_the_reason_of_a_failure() -> None:
+    host = mind('!a. +!a <- !b. +!b <- .fail(error_msg("no way")). -!b.')
+    heard: list[tuple[str, str, str]] = []
+    observe_goals(
+        host.agent,
+        lambda state, goal, number, intention, why: heard.append((state, f"!{goal_text(goal)}", why)),
+    )
+    host.run()
+    assert [(goal, why) for state, goal, why in heard if state == "failed"] == [
+        ("!b", "internal_action, no way (tester.asl:1)\nstep: .fail(...)")
+    ]
+    assert [state for state, goal, _ in heard if goal == "!b"][-2:] == ["recovered", "finished"]
+    assert not [state for state, _, why in heard if why and state != "failed"]
+
+
+def test_a_wait_sees_a_failure_event_although_nothing_else_runs() -> None:
+    assert printed("!g. !k. +!g <- .wait({-!n}); .print(seen). +!k <- .wait(10); !n. -!n <- .print(h).") == [
+        "h",
+        "seen",
+    ]
+
+
+def test_a_failing_internal_action_does_not_hold_as_a_condition() -> None:
+    assert printed(
+        """
+        !g. !h. r(X) :- .nth(5,[1],X). r(7).
+        +!g : .nth(5,[1],X) <- .print(bad).
+        +!g <- if (.nth(5,[1],X)) { .print(bad) } else { .print(no) };
+          ?r(Y); .print(Y); .findall(Z, .nth(5,[1],Z), L); .print(L).
+        +!h <- .nth(5,[1],_).
+        -!h[error(E)] <- .print(E).
+        """
+    ) == ["no", "internal_action", "7", "[]"]
+
+
+def test_a_goal_can_be_failed_before_it_is_handled() -> None:
+    assert printed(
+        """
+        !g. !k. !x. !x. !x.
+        +!g <- !h(1); .print(after).
+        +!k <- .fail_goal(h(_)); .print(k).
+        +!h(_) <- .print(no).
+        -!h(X) <- .print(failh(X)).
+        +!x.
+        """
+    ) == ["k", "failh(1)", "after"]
+
+
+def test_terms_that_are_not_goals_or_bodies_fail_with_the_reason() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- !t({ +!a }); !t(7); !t("a"); !u({ .print(a) }); !u(3); Y = h(3)[q]; !Y[k].
+        +!t(X) <- X.
+        +!u(X) <- !X.
+        -!t(_)[error(E)] <- .print(t, " ", E).
+        -!u(_)[error(E)] <- .print(u, " ", E).
+        +!h(N)[|R] <- .print(N, R).
+        """
+    ) == [
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "t body_var_not_literal",
+        "u body_var_with_op",
+        "u body_var_not_literal",
+        "3[k,q,source(self)]",
+    ]
+
+
+def test_a_goal_that_is_not_achieved_by_its_deadline_fails() -> None:
+    assert printed(
+        """
+        !g.
+        +!g <- !h[hard_deadline(50)]; .print(after); !!k[hard_deadline(50)]; !quick[hard_deadline(50)]; .wait(200);
+          .print(end).
+        +!h <- .wait(200); .print(no).
+        -!h[error(E)] <- .print(E).
+        +!k <- !h2.
+        +!h2 <- .wait(200); .print(no).
+        -!k[error(E)] <- .print(k, " ", E).
+        +!quick <- .print(quick).
+        """
+    ) == ["deadline_reached", "after", "quick", "k deadline_reached", "end"]
+
+
+def test_a_formula_without_value_fails_with_its_reason() -> None:
+    assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
+        "arithmetic_error (X = (1 div 0))"
+    ]
+
+
+def test_every_failure_of_a_step_has_a_message() -> None:
+    lines = printed(
+        """
+        !s.
+        +!s <- for (.member(G, [unknown, empty, number, body])) { !!try(G) }.
+        +!try(G) <- !G.
+        -!try(G)[error(E), error_msg(M)] <- .length(M, N); .print(G, " ", E, " ", N > 5).
+        +!unknown <- .send(ghost, tell, p).
+        +!empty <- !X.
+        +!number <- X = 5; +X.
+        +!body <- X = { a; b }; +X.
+        """
+    )
+    assert [line.split()[:2] for line in lines] == [
+        ["unknown", "receiver_not_found"],
+        ["empty", "body_var_without_value"],
+        ["number", "body_var_not_literal"],
+        ["body", "body_var_with_op"],
+    ]
+
+
+def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
+    assert printed(
+        """
+        !a. !b.
+        +!a <- G = slow; !G[hard_deadline(100)].
+        -!a[error(E)] <- .print(a, E).
+        +!b <- G = late[hard_deadline(50)]; !!G.
+        +!slow <- .wait(10000).
+        +!late <- .wait(10000).
+        -!late[error(E)] <- .print(late, E).
+        """
+    ) == ["latedeadline_reached", "adeadline_reached"]
+
+
+def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    worded = []
+    monkeypatch.setattr(failure, "goal_text", lambda goal: worded.append(goal) or goal_text(goal))
+    program = """
+        !try(1). !ask(2).
+        +!try(I) <- !sub(I).
+        -!try(I).
+        +!ask(I) <- !sub(I).
+        -!ask(I)[error_msg(M)] <- .print(M).
+        """
+    assert printed(program) == ["no relevant plan for !sub(2)"]
+    assert [arguments for _, *arguments in worded] == [[2.0]]
+
+
+def test_the_message_of_a_goal_without_plan_has_the_values_of_its_failure() -> None:
+    assert printed(
+        """
+        b(1). !try(_).
+        +!try(X) <- ?b(X); !sub(X).
+        -!try(X)[error_msg(M)] <- .print(M).
+        """
+    ) == ["no relevant plan for !sub(1)"]
+
+
+def test_a_step_that_fails_raises_no_exception() -> None:
+    host = mind(
+        "!g. +!g <- !a; !b; !c. +!a <- 1 > 2. +!b <- .fail. +!c <- ?d(_); .print(done). -!a. -!b. -!c <- .print(c)."
+    )
+    raised = []
+
+    def note(frame: FrameType, event: str, argument: Any) -> Any:
+        if event == "exception" and argument[0] is not StopIteration:
+            raised.append(argument)
+        return note
+
+    before = sys.gettrace()
+    sys.settrace(note)
+    try:
+        host.run()
+    finally:
+        sys.settrace(before)
+    assert host.printed == ["c"]
+    assert raised == []
+
+
+def test_a_handler_runs_once_although_the_handler_of_an_inner_goal_failed() -> None:
+    goals = "!a. +!a <- !x. +!x <- .fail. -!x <- !b; {}. +!b <- !f. +!f <- .fail. -!f <- .fail."
+    outer = "-!a <- .print(a)."
+    assert printed(f"{goals.format('.print(x)')} -!b <- .print(b); .fail. {outer}") == ["b", "a"]
+    assert printed(f"{goals.format('.print(x)')} -!b <- .print(b). {outer}") == ["b", "x"]
+    assert printed(f"{goals.format('.fail')} -!b <- .print(b). {outer}") == ["b", "a"]

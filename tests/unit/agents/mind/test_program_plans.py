@@ -1,0 +1,131 @@
+"""Plans made once for all agents of a program: shared while untouched, each agent's own when it changes them."""
+
+import pytest
+from recording_host import RecordingHost, mind, printed
+
+from jacaros.agents.language.loader import load_program, parse_literals
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.mind.mind import Mind, new_engine
+from jacaros.agents.mind.state.plan_library import ProgramPlans
+
+PROGRAM = """
++!greet(X) <- .print("hello ", X).
++!learn <- .add_plan({ +!greet(X) : X == bob <- .print("hi ", X) }, self, begin).
++!forget <- .remove_plan(p__1).
+@told +!tell(X) <- .print(told).
++!slow <- .wait(10); .add_plan({ +!slow : other }); .wait(10); ?missing; .print(never).
+-!slow[code_line(L), error(E)] <- .print(E, " in line ", L).
++!both <- !greet(bob); !learn; !greet(bob).
+"""
+
+
+def agents(*names: str) -> list[RecordingHost]:
+    """Agents that share the plans of one program."""
+    program, _ = load_program("shared.asl", PROGRAM, lambda wanted, including: (wanted, ""))
+    plans = ProgramPlans(program.plans, new_engine(STANDARD))
+    hosts = []
+    for name in names:
+        host = RecordingHost(None)
+        host.agent = Mind(name, program, host, plans=plans)
+        host.agent.start()
+        hosts.append(host)
+    return hosts
+
+
+def adopt(host: RecordingHost, goal: str) -> None:
+    """Let an agent adopt a goal, and run."""
+    host.agent.post_goal(lower_value(parse_literals(goal, "test")[0]))
+    host.run()
+
+
+def test_the_select_function_is_made_once() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(ann)")
+    assert (first.printed, second.printed) == (["hello bob"], ["hello ann"])
+    kinds = [
+        kind for kind in first.agent.library.selects if kind.functor.name == "greet" and kind.operator == "+"
+    ]
+    assert first.agent.library.selects[kinds[0]] is second.agent.library.selects[kinds[0]]
+
+
+def test_select_functions_are_shared_until_plans_change() -> None:
+    first, second = agents("a", "b")
+    assert first.agent.library.selects is second.agent.library.selects
+    assert first.agent.library.plans is second.agent.library.plans
+    adopt(first, "learn")
+    assert first.agent.library.selects is not second.agent.library.selects
+    assert second.agent.library.selects is second.agent.library.program.selects
+    adopt(second, "forget")
+    assert second.agent.library.selects is second.agent.library.selects
+    assert second.agent.library.selects is not second.agent.library.program.selects
+    assert len(second.agent.library.program.plans) == len(second.agent.library.plans) + 1
+
+
+def test_a_plan_that_is_added_within_an_intention_counts_for_its_next_goal() -> None:
+    (only,) = agents("a")
+    adopt(only, "both")
+    assert only.printed == ["hello bob", "hi bob"]
+
+
+def test_an_added_plan_is_the_agents_own() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "greet(bob)")
+    adopt(first, "learn")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(bob)")
+    assert first.printed == ["hello bob", "hi bob"]
+    assert second.printed == ["hello bob"]
+
+
+def test_a_removed_plan_is_missing_for_that_agent_only() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "forget")
+    adopt(first, "greet(bob)")
+    adopt(second, "greet(bob)")
+    assert first.printed == []
+    assert second.printed == ["hello bob"]
+
+
+def test_a_running_plan_keeps_its_place_when_its_kind_is_compiled_again() -> None:
+    first, second = agents("a", "b")
+    adopt(first, "slow")
+    adopt(second, "slow")
+    assert first.printed == second.printed == ["test_goal_failed in line 6"]
+
+
+@pytest.mark.parametrize("size", [30, 125, 1500])
+def test_a_context_may_be_a_chain_of_any_length(size: int) -> None:
+    beliefs = " ".join(f"ok({i})." for i in range(size - 1))
+    conjunction = " & ".join(f"ok(X{i}) & X{i} == {i}" for i in range(size))
+    disjunction = " | ".join(f"no({i})" for i in range(size))
+    program = f"""
+{beliefs}
+!go.
++!go <- !both; +ok({size - 1}); !both; !either; +no({size - 1}); !either.
++!both : {conjunction} <- .print("all, ", X0, " to ", X{size - 1}).
++!both <- .print("not all").
++!either : {disjunction} <- .print("one").
++!either <- .print("none").
+"""
+    assert printed(program) == ["not all", f"all, 0 to {size - 1}", "none", "one"]
+
+
+def test_a_context_that_is_nested_deeply_is_searched() -> None:
+    context = "".join("(ok & (no(X) | " for _ in range(70)) + "ok & Y = 3" + "))" * 70
+    assert printed(f"!go. ok. +!go : {context} <- .print(Y). +!go <- .print(none).") == ["3"]
+
+
+def test_a_plan_that_cannot_be_compiled_runs_anyway() -> None:
+    deep = "[" * 140 + "X" + "]" * 140
+    host = mind(f"""
+        !go.
+        +!go <- +bumper(left); +bumper({deep.replace("X", "5")}).
+        +bumper({deep}) <- .print(X).
+        +bumper(X) <- .print(stop).
+    """)
+    host.run()
+    assert host.printed == ["stop", "5"]
+    levels = {level for level, told in host.logged if "is too large to compile" in told}
+    assert levels == {"warning"}

@@ -1,0 +1,143 @@
+"""A mind is a value: stored as JSON and restored at any cycle, it continues as if nothing had happened."""
+
+import json
+import sys
+from pathlib import Path
+from random import Random
+
+import pytest
+from recording_host import RecordingHost, mind, plans_of
+
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.act import Completion
+from jacaros.agents.mind.storage import NotStorable, restore, stored
+from jacaros.agents.terms.values import Reference, atom, structure
+from jacaros.mas.agent_host import AgentHost
+from jacaros.testing import run_project
+
+sys.path.insert(0, str(Path(__file__).parents[4] / "tools"))
+
+import run_restored
+
+CASES = Path(__file__).parents[3] / "conformance"
+PROGRAMS = Random(7).sample(
+    sorted(
+        path
+        for pattern in ("*/*.asl", "*/*/*.mas2j")
+        for path in CASES.glob(pattern)
+        if path.parent.name != "syntax_errors"
+    ),
+    20,
+)
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_program_prints_the_same_when_its_minds_are_restored(program, monkeypatch):
+    """A sample; `tools/check_conformance.py restored` runs all programs."""
+    expected = run_project(program, seconds=120)
+    monkeypatch.setattr(AgentHost, "mind", run_restored.RESTORING)
+    monkeypatch.setattr(run_restored, "CHANCE", 0.3)
+    found = run_project(program, seconds=120)
+    assert found.lines == expected.lines
+    assert found.exit_code == expected.exit_code
+
+
+def restored(host: RecordingHost) -> Mind:
+    """A new mind in the place of that of the host."""
+    old = host.agent
+    text = json.dumps(stored(old))
+    for alarm in old.waits.alarms.values():
+        alarm.timer.cancel()
+    host.agent = Mind(
+        old.name, old.program, host, old.options, plans=plans_of(old.program, old.engine.actions)
+    )
+    restore(host.agent, json.loads(text), same_host=True)
+    return host.agent
+
+
+def printed(program: str, *, exchanged: bool) -> list[str]:
+    """What a program prints; if *exchanged*, its mind is restored after each cycle."""
+    host = mind(program)
+    more = True
+    while more:
+        more = host.agent.run(1)
+        if exchanged:
+            restored(host)
+        more = more or host.ring_next(host.time + 10)
+    return host.printed
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "!s. +!s <- .wait(1000); .wait({+e(X)}, 2000, T); .print(X, T). !t. +!t <- .wait(1500); +e(1).",
+        "!s. +!s <- .wait(q(X) & X > 1); .print(X). !t. +!t <- +q(1); .wait(500); +q(2).",
+        "!s. +!s <- !a[hard_deadline(300)]; .print(never). +!a <- .wait(900). -!a <- .print(failed).",
+        '!s. +!s <- .at("now +1 s", {+!later(4)}). +!later(X) <- .print(X).',
+        "!s. +!s <- .suspend; .print(resumed). !t. +!t <- .wait(600); .resume(s).",
+        "p(1). p(2). !s. +!s <- for (p(X)) { .wait(200); .print(X) }; .print(done).",
+        "!s. +!s <- { .wait(300); .print(a) |&| .wait(100); .print(b) }; .print(joined).",
+        "!s. +!s <- !a(X, Y); .print(X, Y). +!a(X, Y) <- X = Y; .wait(100); Y = 3.",
+        "!s. +!s <- .add_plan({+!n(X) : X > 0 <- .wait(100); .print(X)}); !n(2); .print(end).",
+        "!s. +!s <- +r(1); .wait(100); -+r(2)[x]; ?r(X)[x]; .print(X); .random(R); .print(R).",
+    ],
+)
+def test_a_mind_that_is_restored_after_each_cycle_prints_the_same(program):
+    expected = printed(program, exchanged=False)
+    assert expected
+    assert printed(program, exchanged=True) == expected
+
+
+def test_a_restored_mind_is_stored_as_the_same_data():
+    host = mind("b(1)[x]. b(X) :- c(X). !s. +!s <- .wait(1000).")
+    host.agent.run(10)
+    before = stored(host.agent)
+    assert stored(restored(host)) == before
+
+
+def test_a_restored_mind_keeps_what_its_plans_need_on_the_same_host():
+    host = mind("!g. @[needs(base)] +!g <- .wait(1000).", complete=lambda act: Completion(True))
+    host.agent.run(10)
+    restored(host)
+    host.agent.run(10)
+    assert host.cancelled == []
+    host.run()
+    assert host.cancelled == [1]
+
+
+def test_an_intention_that_has_lost_a_resource_goes_on_at_another_host():
+    host = mind("!g. @[needs(base)] +!g <- .wait(100); .print(done).", complete=lambda act: Completion(True))
+    host.agent.run(10)
+    host.agent.preempted(1, "base")
+    host.agent.run(10)
+    other = mind("!g. @[needs(base)] +!g <- .wait(100); .print(done).")
+    data = json.loads(json.dumps(stored(host.agent)))
+    other.agent = Mind("tester", host.agent.program, other, plans=plans_of(host.agent.program))
+    restore(other.agent, data)
+    other.run()
+    assert other.printed == ["done"]
+
+
+def test_the_time_of_an_agent_goes_on_when_the_clock_is_set_back():
+    host = mind("!g. +!g <- .wait({+never}, 1000, T); .print(T).")
+    host.agent.run(10)
+    host.time += 0.6
+    data = json.loads(json.dumps(stored(host.agent)))
+    other = mind("")
+    other.agent = Mind("tester", host.agent.program, other, plans=plans_of(host.agent.program))
+    other.time -= 3600
+    restore(other.agent, data)
+    other.run()
+    assert (other.printed, round(other.time - 1_577_836_800.0 + 3600, 3)) == (["1000"], 0.4)
+
+
+def test_a_mind_that_holds_an_object_of_python_cannot_be_stored():
+    host = mind("!s. +!s.")
+    host.agent.add_belief(structure("b", atom("x"))[0], (Reference(object()),), ())
+    with pytest.raises(NotStorable, match="a term holds a Python object"):
+        stored(host.agent)
+
+
+def test_a_stored_mind_of_another_format_is_refused():
+    with pytest.raises(ValueError, match="format 0"):
+        restore(mind("!s. +!s.").agent, {"format": 0})

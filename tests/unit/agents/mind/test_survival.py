@@ -1,0 +1,236 @@
+"""Whatever a program does, its agent lives on: what cannot be done fails, with a reason, and only that."""
+
+import gc
+
+import pytest
+from recording_host import believed, mind, printed
+
+from jacaros.agents.mind.actions import internal_action
+from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.terms.values import String, Term, Var, atom, structure
+
+
+@pytest.fixture(autouse=True)
+def without_garbage() -> None:
+    """What earlier tests left behind is not cleared away in the depths of a recursion, where there is no room for it."""
+    gc.collect()
+
+
+def test_a_context_may_end_with_a_difference() -> None:
+    assert printed("!g(5,2). +!g(X,Y) : 2 < X-Y <- .print(yes). +!g(_,_) <- .print(no).") == ["yes"]
+
+
+def test_a_plan_for_any_goal_fails_in_place_after_many_kinds_of_goals() -> None:
+    program = """
+    !a.
+    +!X : not b = X <- !b; ?missing.
+    +!b <- .print(b).
+    -!a[error(E), code(C)] <- .print(E, " ", C).
+    """
+    assert printed(program) == ["b", "test_goal_failed missing"]
+
+
+def test_running_plans_for_every_goal_show_what_is_left_of_each() -> None:
+    program = """
+    !a(1).
+    +!X : not show = X & not c = X <- !c; !show; .print(rest).
+    +!c.
+    +!show <- .intention(_, _, S, current); .reverse(S, [im(_, _, B, _)|_]); .print(B).
+    """
+    assert printed(program) == ["{ !show; .print(rest) }", "rest"]
+
+
+def test_an_initial_belief_or_goal_without_value_is_skipped_and_reported() -> None:
+    host = mind("p(1). p(1 div 0). !g(1 div 0). !h. +!h <- .print(ready). +!g(_) <- .print(never).")
+    host.run()
+    assert host.printed == ["ready"]
+    assert believed(host, "p") == ["p(1)[source(self)]"]
+    assert [text for level, text in host.logged if level == "error"] == [
+        "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
+        "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
+    ]
+
+
+def test_an_infinite_number_may_be_in_a_head() -> None:
+    assert printed("!g(1/0). +!g(1e400) <- .print(infinite). +!g(_) <- .print(other).") == ["infinite"]
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        KeyError("k"),
+        RecursionError(),
+        MemoryError(),
+        ZeroDivisionError(),
+        StopIteration(),
+        OSError(),
+        SystemError(),
+    ],
+)
+def test_an_exception_of_an_internal_action_fails_its_step_only(
+    fault: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def explode(ctx: object) -> None:
+        raise fault
+
+    monkeypatch.setitem(internal_action._declared, ".explode", InternalAction(".explode", explode))
+    program = """
+    !a. !b.
+    +!a <- .explode; .print(never).
+    -!a[error(E)] <- .print(E).
+    +!b <- .wait(1); .print(alive); if (.explode) { .print(never) } else { .print(no) }.
+    """
+    host = mind(program)
+    host.run()
+    assert host.printed[1:] == ["alive", "no"]
+    assert host.printed[0] in ("unknown", "internal_action", "too_deep", "no_memory")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        1.0,
+        String("p("),
+        String("\ud800"),
+        Var("X"),
+        structure("p", Var("X")),
+        structure("f", structure("g")),
+        atom("[]"),
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize(
+    "performative",
+    [
+        *("tell", "untell", "achieve", "unachieve", "signal", "askOne", "askAll", "askHow", "tellHow"),
+        *("untellHow", "unheard_of", "ask-one"),
+    ],
+)
+def test_no_message_content_does_any_harm(performative: str, content: Term) -> None:
+    host = mind("q(1). +!g <- .print(here).")
+    host.agent.receive(SpeechAct(performative, "friend", "tester", content, "m1"))
+    host.run()
+    host.agent.post_goal(atom("g"))
+    host.run()
+    assert host.printed == ["here"]
+    if performative in ("askOne", "askAll", "askHow", "ask-one"):
+        assert [message.in_reply_to for message in host.sent] == ["m1"]
+
+
+def test_the_reasons_of_a_retried_goal_do_not_pile_up() -> None:
+    program = """
+    n(0). !unknown.
+    -!X : n(N) & N < 60 <- -+n(N+1); !X.
+    -!X[code(C)] <- .print(C).
+    """
+    assert printed(program) == ["unknown[source(self)]"]
+
+
+def ended(program: str, **options: int) -> list[str]:
+    """What a program prints with small limits."""
+    host = mind(program, options=Options(**options))
+    host.run()
+    return host.printed
+
+
+def test_endless_rules_fail_with_the_reason() -> None:
+    program = """
+    !s. !other.
+    endless(N) :- endless(N+1).
+    +!s <- ?endless(0); .print(never).
+    -!s[error(E), error_msg(M)] <- .print(E); .print(M).
+    +!other <- .print(alive).
+    """
+    assert ended(program, rule_depth=2000) == [
+        "alive",
+        "too_deep",
+        "more than 2000 rules and conditions are open at once (option rule_depth)",
+    ]
+
+
+def test_an_endless_condition_does_not_hold() -> None:
+    program = "!s. e :- e. +!s : e <- .print(never). +!s <- .print(next); if (e) { .print(never) }. -!s <- .print(failed)."
+    assert ended(program, rule_depth=2000) == ["next", "failed"]
+
+
+def test_endless_goals_fail_with_the_reason() -> None:
+    program = """
+    !s.
+    +!s <- !g(0).
+    +!g(N) <- !g(N+1); .print(never).
+    -!s[error(E), error_msg(M), code(C)] <- .print(E); .print(M); .print(C).
+    """
+    assert ended(program, goal_depth=500) == [
+        "too_deep",
+        "more than 500 plans are on the stack of the intention (option goal_depth)",
+        "g(499)[source(self)]",
+    ]
+
+
+def test_a_goal_beyond_the_depth_limit_can_be_handled_in_place() -> None:
+    program = """
+    !s.
+    +!s <- !g(1); .print(done).
+    +!g(N) <- !g(N+1); -+depth(N).
+    -!g(N)[error(too_deep)] <- .print(N).
+    """
+    assert ended(program, goal_depth=500) == ["500", "done"]
+
+
+def test_endless_handlers_end_their_intention() -> None:
+    program = """
+    !s. !other.
+    +!s <- !g(0); .print(never).
+    +!g(N) <- ?missing.
+    -!g(N) <- !g(N+1).
+    -!s[error(E)] <- .print(E).
+    +!other <- .print(alive).
+    """
+    assert ended(program, goal_depth=500) == ["alive", "too_deep"]
+
+
+def test_endless_mutual_belief_changes_fail() -> None:
+    program = "!s. +!s <- +b(1); .print(never). +b(N) <- +b(N+1); .print(never). -!s[error(E)] <- .print(E)."
+    assert ended(program, goal_depth=500) == ["too_deep"]
+
+
+def test_a_rule_whose_head_has_no_value_is_skipped_and_reported() -> None:
+    host = mind("r(1)[1 div 0] :- p. p. !g. +!g <- .print(alive).")
+    host.run()
+    assert host.printed == ["alive"]
+    assert any("cannot evaluate" in text for level, text in host.logged if level == "error")
+
+
+def test_a_goal_without_plan_whose_argument_has_no_value_fails_with_a_reason() -> None:
+    program = """
+    !g. !h.
+    +!g <- Y = 1 div X; X = 0; !unknown(Y); .print(never).
+    -!g[error(E)] <- .print(E).
+    +!h <- .print(alive).
+    """
+    assert sorted(printed(program)) in (["alive", "arithmetic_error"], ["alive", "no_relevant"])
+
+
+@pytest.mark.whole_stack
+def test_an_element_that_python_could_not_hash_is_refused() -> None:
+    program = """
+    !g.
+    +!g <- !deep(20000, a, T); .set.create(S); .set.add(S, [1, 2]); .print(S); .set.add(S, T); .print(never).
+    +!deep(0, T, T).
+    +!deep(N, T, R) <- !deep(N-1, f(T), R).
+    -!g[error(E)] <- .print(E).
+    """
+    assert printed(program) == ["{[1,2]}", "too_deep"]
+
+
+@pytest.mark.whole_stack
+def test_a_sum_that_waits_for_its_operand_may_be_hundreds_of_operations_deep() -> None:
+    program = """
+    !s.
+    +!s <- !sum(300, 0, Open, S); Open = 1; .print(S).
+    +!sum(0, A, _, A).
+    +!sum(N, A, Open, S) <- !sum(N-1, A+Open, Open, S).
+    """
+    assert printed(program) == ["300"]

@@ -1,0 +1,109 @@
+"""Arithmetic functions that a project writes in Python."""
+
+from pathlib import Path
+
+from extension_lab import run, said
+
+from jacaros.agents.terms import arithmetic
+from jacaros.testing import AgentHarness
+
+SQ = """
+from jacaros import arithmetic_function
+
+@arithmetic_function("my.sq", arity=1)
+def sq(x):
+    return x * x
+
+@arithmetic_function
+def largest(*numbers: float) -> float:
+    return max(numbers)
+
+@arithmetic_function
+def area(shape) -> float:
+    return shape.arguments[0] * shape.arguments[1]
+
+@arithmetic_function
+def broken(x):
+    raise ValueError("not today")
+
+@arithmetic_function
+def word(x):
+    return "four"
+"""
+
+
+def test_a_function_stands_in_expressions_and_conditions(tmp_path: Path) -> None:
+    program = """
+    large(X) :- my.sq(X) > 10.
+    side(4).
+    !go.
+    +!go : side(S) & large(S)
+      <- X = my.sq(3) + 1; .print(X); .print(my.sq(my.sq(2)) / 4); .print(my.largest(1, 7, 3));
+         if (my.sq(S) == 16) { .print(yes) }; .print(my.area(box(2, S))); +side(my.sq(S)); ?side(16); .print(ok).
+    """
+    assert said(tmp_path, program, SQ) == ["10", "4", "7", "yes", "8", "ok"]
+
+
+def test_a_function_waits_for_its_arguments(tmp_path: Path) -> None:
+    program = "!go. +!go <- Y = my.sq(X) + 1; X = 3; .print(Y)."
+    assert said(tmp_path, program, SQ) == ["10"]
+
+
+def test_jasons_directive_is_accepted(tmp_path: Path) -> None:
+    program = '{ register_function("my.sq") } !go. +!go <- .print(my.sq(3)).'
+    assert said(tmp_path, program, SQ) == ["9"]
+
+
+def test_a_java_function_is_reported(tmp_path: Path) -> None:
+    result = run(tmp_path, '{ register_function("your.sq") } !go. +!go <- .print(hello).', SQ)
+    assert result.of("t") == ["hello"]
+    assert "a function sq with @arithmetic_function in your.py" in result.errors[0]
+
+
+def test_an_exception_fails_the_step(tmp_path: Path) -> None:
+    program = (
+        "!go. +!go <- X = my.broken(1); .print(X). -!go[error(E), error_msg(M)] <- .print(E); .print(M)."
+    )
+    result = run(tmp_path, program, SQ)
+    assert result.of("t")[0] == "arithmetic_error"
+    assert result.of("t")[1] == f"my.broken: ValueError: not today ({tmp_path}/my.py:18)"
+    assert result.errors == [f"[t] error: {result.of('t')[1]}"]
+
+
+def test_a_result_that_is_not_a_number_fails_the_step(tmp_path: Path) -> None:
+    result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
+    assert result.of("t") == ["arithmetic_error"]
+    assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
+
+
+def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path: Path) -> None:
+    result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
+    assert result.exit_code in (0, 1)
+    assert "my.sq" in result.errors[0]
+
+
+def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path: Path) -> None:
+    said(tmp_path, "!go. +!go <- .print(my.sq(3)).", SQ)
+    assert "my.sq" not in arithmetic.function_table
+
+
+def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path: Path) -> None:
+    module = (
+        "from jacaros import arithmetic_function\n@arithmetic_function\ndef size(x):\n    return {result}\n"
+    )
+    agents = []
+    for name, result in (("one", 1), ("two", 2)):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "my.py").write_text(module.format(result=result), encoding="utf-8")
+        file = folder / "agent.asl"
+        file.write_text(
+            'first(my.size(0)). +!g <- ?first(F); .term2string(T, "my.size(0) + 10"); .print(F, my.size(0), T + 0).',
+            encoding="utf-8",
+        )
+        agents.append(AgentHarness(file))
+    for agent in agents:
+        agent.achieve("g")
+        agent.run()
+    assert [agent.prints for agent in agents] == [["1111"], ["2212"]]
+    assert "my.size" not in arithmetic.function_table

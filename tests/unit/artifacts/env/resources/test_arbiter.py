@@ -1,0 +1,353 @@
+"""The arbiter of resources: who holds them, who waits, and what a more urgent claim does."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from jacaros.artifacts.env.values import Atom, Structure, text
+from jacaros.artifacts.resources.arbiter import PATIENCE, REPORTED, Arbiter
+from jacaros.artifacts.resources.claim import Claim, Policy, State, Use, read_use, read_uses, scoped
+from jacaros.runtime.clock import VirtualClock, run
+
+
+@dataclass
+class Party:
+    """A claimant that records its events, and yields immediately by default."""
+
+    arbiter: Arbiter
+    can_yield: bool = True
+    brakes: bool = False
+    told: list[str] = field(default_factory=list)
+
+    def granted(self, claim: Claim) -> None:
+        self.told.append("granted")
+
+    def preempted(self, claim: Claim, resource: str) -> None:
+        self.told.append(f"preempted({resource})")
+        if not self.brakes:
+            self.arbiter.gave_way(claim)
+
+    def refused(self, claim: Claim, reason: Structure | Atom) -> None:
+        self.told.append(text(reason, True))
+
+
+class Table:
+    """An arbiter, with short methods for claims."""
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.warnings: list[str] = []
+        self.arbiter = Arbiter(self.clock, self.warnings.append)
+
+    def claim(
+        self,
+        *uses: str,
+        urgency: int = 0,
+        policy: Policy = "wait",
+        within: tuple[Claim, ...] = (),
+        can_yield: bool = True,
+        brakes: bool = False,
+        enter: bool = True,
+        who: str = "another",
+        plan_of: str = "",
+        blocks: str = "",
+    ) -> Claim:
+        party = Party(self.arbiter, can_yield, brakes)
+        made = Claim(read_uses(uses), who, party, urgency, policy, within, plan_of, blocks)
+        if enter:
+            self.arbiter.enter(made)
+        return made
+
+
+def told(claim: Claim) -> list[str]:
+    party = claim.claimant
+    assert isinstance(party, Party)
+    return party.told
+
+
+@pytest.fixture
+def table() -> Table:
+    return Table()
+
+
+def test_equal_claims_are_granted_in_order(table: Table) -> None:
+    a, b, c = (table.claim("wheels") for _ in range(3))
+    assert [each.state for each in (a, b, c)] == [State.HELD, State.WAITING, State.WAITING]
+    table.arbiter.leave(b)
+    table.arbiter.leave(a)
+    assert c.state is State.HELD
+    table.arbiter.leave(a)
+    assert table.arbiter.holders("wheels") == (c,)
+    table.arbiter.enter(b)
+    table.arbiter.leave(c)
+    assert b.state is State.HELD
+
+
+def test_several_resources_are_granted_together_or_not_at_all(table: Table) -> None:
+    arm = table.claim("arm")
+    both = table.claim("base", "arm")
+    assert not table.arbiter.holders("base")
+    later = table.claim("base")
+    assert later.state is State.WAITING, "or the claim to both would starve"
+    table.arbiter.leave(arm)
+    assert both.holds
+    table.arbiter.leave(both)
+    assert later.holds
+
+
+def test_a_more_urgent_claim_preempts_and_the_preempted_one_is_granted_again(table: Table) -> None:
+    patrol, other = table.claim("wheels"), table.claim("wheels")
+    flee = table.claim("wheels", urgency=10)
+    assert flee.holds
+    assert told(patrol) == ["granted", "preempted(wheels)"]
+    table.arbiter.leave(flee)
+    assert patrol.holds
+    assert other.state is State.WAITING
+
+
+def test_a_holder_keeps_the_resource_until_it_has_yielded(table: Table) -> None:
+    patrol = table.claim("wheels", brakes=True)
+    flee = table.claim("wheels", urgency=10)
+    assert (patrol.state, flee.state) == (State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(patrol)
+    assert flee.holds
+
+
+def test_a_withdrawn_preempting_claim_leaves_the_resource_to_the_holder(table: Table) -> None:
+    patrol = table.claim("wheels", brakes=True)
+    flee = table.claim("wheels", urgency=10)
+    table.arbiter.leave(flee)
+    table.arbiter.gave_way(patrol)
+    assert told(patrol) == ["granted", "preempted(wheels)", "granted"]
+
+
+def test_the_more_urgent_of_the_preempted_goes_first(table: Table) -> None:
+    low = table.claim("wheels")
+    middle = table.claim("wheels", urgency=5)
+    high = table.claim("wheels", urgency=9)
+    table.arbiter.leave(high)
+    assert middle.holds
+    table.arbiter.leave(middle)
+    assert low.holds
+
+
+def test_a_claim_within_another_does_not_wait_for_it(table: Table) -> None:
+    plan = table.claim("base", "arm")
+    drive = table.claim("base", within=(plan,))
+    assert drive.holds
+    turn = table.claim("base", within=(plan,))
+    assert turn.state is State.WAITING, "two motions of one plan exclude each other"
+    table.arbiter.leave(drive)
+    assert turn.holds
+
+
+def test_preempting_a_plan_preempts_its_operation_and_both_are_granted_again(table: Table) -> None:
+    plan = table.claim("base", "arm")
+    drive = table.claim("base", within=(plan,), brakes=True)
+    flee = table.claim("base", urgency=1)
+    assert (plan.state, drive.state, flee.state) == (State.WAITING, State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(drive)
+    assert flee.holds
+    table.arbiter.leave(flee)
+    assert plan.holds
+    assert drive.holds
+
+
+def test_refuse_fails_immediately_but_waits_for_a_yielding_holder(table: Table) -> None:
+    holder = table.claim("wheels", urgency=5, brakes=True)
+    assert told(table.claim("wheels", policy="refuse")) == ["resource_busy(wheels)"]
+    urgent = table.claim("wheels", urgency=6, policy="refuse")
+    assert told(urgent) == []
+    table.arbiter.gave_way(holder)
+    assert urgent.holds
+
+
+def test_take_takes_from_an_equal_once(table: Table) -> None:
+    a, b = table.claim("wheels"), table.claim("wheels")
+    c = table.claim("wheels", policy="take")
+    assert c.holds
+    d = table.claim("wheels", policy="take")
+    assert d.holds
+    table.arbiter.leave(d)
+    assert a.holds
+    table.arbiter.leave(a)
+    assert b.holds
+    assert told(table.claim("wheels", policy="take", urgency=0)) == ["granted"]
+
+
+def test_a_counted_resource_has_several_holders(table: Table) -> None:
+    first, second = table.claim("lift(2)"), table.claim("lift")
+    third = table.claim("lift")
+    assert first.holds
+    assert second.holds
+    assert not third.holds
+    urgent = table.claim("lift", urgency=1)
+    assert urgent.holds
+    assert first.holds
+    assert told(second) == ["granted", "preempted(lift)"], "the newest gives way"
+    assert told(table.claim("lift", "lift", "lift")) == ["resource_exceeded(lift)"]
+
+
+def test_readers_share_and_a_writer_waits_for_all_of_them(table: Table) -> None:
+    a, b = table.claim("map(shared)"), table.claim("map(shared)")
+    writer = table.claim("map")
+    assert a.holds
+    assert b.holds
+    late = table.claim("map(shared)")
+    assert not late.holds, "or the writer would starve"
+    table.arbiter.leave(a)
+    assert not writer.holds
+    table.arbiter.leave(b)
+    assert writer.holds
+    table.arbiter.leave(writer)
+    assert late.holds
+
+
+def test_a_holder_that_cannot_yield_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
+    atomic = table.claim("base", can_yield=False)
+    middle = table.claim("arm", urgency=5)
+    urgent = table.claim("base", urgency=10)
+    assert atomic.state is State.HELD
+    inner = table.claim("arm", within=(atomic,))
+    assert inner.holds, "it goes before the one with urgency 5"
+    assert not middle.holds
+    table.arbiter.leave(inner)
+    table.arbiter.leave(atomic)
+    assert urgent.holds
+    assert middle.holds
+
+
+def test_a_deadlock_of_plans_fails_the_newest_of_the_least_urgent(table: Table) -> None:
+    one, other = table.claim("base", who="[a] !one"), table.claim("arm", who="[a] !other")
+    wants_arm = table.claim("arm", within=(one,), who="[a] !one")
+    assert not told(wants_arm)
+    wants_base = table.claim("base", within=(other,), who="[a] !other")
+    assert told(wants_base) == ["deadlock(base)"]
+    assert table.warnings == ["deadlock: [a] !other waits for base; its claim fails"]
+    table.arbiter.leave(other)
+    assert wants_arm.holds
+
+
+def test_a_deadlock_with_a_more_urgent_claim_ends_by_preemption(table: Table) -> None:
+    one, other = table.claim("base", urgency=1), table.claim("arm")
+    wants_base = table.claim("base", within=(other,))
+    wants_arm = table.claim("arm", within=(one,), urgency=1)
+    assert wants_arm.holds
+    assert not told(wants_base)
+    table.arbiter.leave(wants_arm)
+    table.arbiter.leave(one)
+    assert other.holds
+    assert wants_base.holds
+
+
+def test_a_long_wait_is_reported_once_and_moves_a_claim_forward(table: Table) -> None:
+    async def main() -> None:
+        table.claim("wheels", urgency=1, who="[a] !clean")
+        old = table.claim("wheels", who="[a] !scan")
+        await table.clock.sleep(PATIENCE + 1)
+        assert not table.warnings
+        new = table.claim("wheels", urgency=1)
+        assert table.arbiter.waiting() == (old, new)
+        urgent = table.claim("wheels", urgency=2)
+        assert urgent.holds
+        await table.clock.sleep(2 * REPORTED)
+        assert "[a] !scan has waited 300 s for wheels, held by another" in table.warnings
+        assert len(table.warnings) == 3
+        assert urgent.holds, "age takes nothing away"
+
+    run(main, table.clock)
+
+
+def test_uses_are_parsed() -> None:
+    assert read_uses("wheels") == (Use("wheels"),)
+    assert read_uses(("base", "lift(2)", "map(shared)")) == (
+        Use("base"),
+        Use("lift", 2),
+        Use("map", None, True),
+    )
+    assert read_uses(("lift(2)", "lift")) == (Use("lift", 2, units=2),)
+    assert scoped(read_uses("wheels"), "/r1") == (Use("/r1/wheels"),)
+    assert [str(each) for each in read_uses(("a", "b(2)", "c(shared)"))] == ["a", "b(2)", "c(shared)"]
+    for wrong in ("", "two words", "lift(0)", "lift(many)"):
+        with pytest.raises(ValueError, match="resource"):
+            read_use(wrong)
+
+
+# --- atomic plans ---------------------------------------------------------------------------------------------
+
+
+def test_an_atomic_plan_takes_what_a_plan_of_its_agent_holds_however_urgent_that_is() -> None:
+    table = Table()
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    atomic = table.claim("wheels", can_yield=False, blocks="robot")
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
+
+
+def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
+    table = Table()
+    for holder in (table.claim("wheels"), table.claim("wheels", plan_of="other", enter=False)):
+        table.arbiter.enter(holder)
+        atomic = table.claim("wheels", blocks="robot")
+        assert atomic.state is State.WAITING
+        table.arbiter.leave(holder)
+        assert atomic.state is State.HELD
+        table.arbiter.leave(atomic)
+
+
+def test_a_running_operation_ends_before_its_plan_yields_to_an_atomic_one() -> None:
+    table = Table()
+    plan = table.claim("wheels", plan_of="robot")
+    drive = table.claim("wheels", within=(plan,))
+    atomic = table.claim("wheels", blocks="robot")
+    assert (plan.state, drive.state, atomic.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(drive)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+
+
+def test_a_waiting_plan_queues_only_behind_an_atomic_one_of_its_agent() -> None:
+    table = Table()
+    holder = table.claim("wheels", plan_of="other", can_yield=False)
+    plan = table.claim("wheels", urgency=5, plan_of="robot")
+    guest = table.claim("wheels", urgency=5)
+    atomic = table.claim("wheels", plan_of="robot", blocks="robot")
+    table.arbiter.leave(holder)
+    assert (plan.state, guest.state, atomic.state) == (State.WAITING, State.HELD, State.WAITING)
+    table.arbiter.leave(guest)
+    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    table.arbiter.leave(atomic)
+    assert plan.state is State.HELD
+
+
+# --- claims that would have it again at once --------------------------------------------------------------------
+
+
+def test_a_claim_nested_in_one_that_stays_is_not_asked_to_yield() -> None:
+    table = Table()
+    plan = table.claim("base", urgency=1, can_yield=False)
+    step = table.claim("base", within=(plan,))
+    taker = table.claim("base", urgency=1, policy="take")
+    assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
+
+
+def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for_more() -> None:
+    table = Table()
+    plan = table.claim("lift(2)", urgency=1)
+    braking = table.claim("arm", "map(shared)", urgency=1, brakes=True)
+    step = table.claim("map(shared)", within=(plan,))
+    urgent = table.claim("arm", "map", urgency=5)
+    assert (braking.state, step.state) == (State.YIELDING, State.WAITING)
+    table.arbiter.gave_way(braking)
+    assert (plan.state, urgent.state, step.state) == (State.HELD, State.HELD, State.WAITING)
+    table.arbiter.leave(urgent)
+    assert (braking.state, step.state) == (State.HELD, State.HELD)
+
+
+def test_nothing_is_preempted_for_a_claim_that_waits_behind_others() -> None:
+    table = Table()
+    plan = table.claim("map(shared)", urgency=1)
+    step = table.claim("base", within=(plan,))
+    first = table.claim("map", urgency=1)
+    second = table.claim("base", "map(shared)", urgency=1)
+    assert (step.state, first.state, second.state) == (State.HELD, State.WAITING, State.WAITING)

@@ -1,0 +1,252 @@
+"""Guards: an operation waits until its guard is true, in the order of arrival."""
+
+from jacaros.artifacts import Artifact, Structure, operation
+
+
+class Store(Artifact):
+    def init(self, capacity: int = 100):
+        self.define_property("level", 0)
+        self.capacity = capacity
+        self.checks = []
+        self.closed = False
+
+    @operation
+    def fill(self, amount: int = 1):
+        self.update_property("level", self.value("level") + amount)
+
+    @operation(guard="has")
+    def take(self, amount: int = 1):
+        self.update_property("level", self.value("level") - amount)
+
+    def has(self, amount: int = 1):
+        self.checks.append((self.caller, amount))
+        return self.value("level") >= amount
+
+    @operation(guard="has")
+    async def slowly(self, amount: int):
+        self.update_property("level", self.value("level") - amount)
+        await self.sleep(1.0)
+
+    @operation(guard="is_open")
+    def visit(self, name: str):
+        self.log(name)
+
+    def is_open(self):
+        return not self.closed
+
+    @operation
+    def close(self, closed: bool):
+        self.closed = closed
+
+    @operation(guard="broken")
+    def wrong(self):
+        self.log("never")
+
+    def broken(self):
+        raise KeyError("guard")
+
+    @operation(guard="broken_later")
+    def wrong_later(self):
+        self.log("never")
+
+    def broken_later(self):
+        return self.closed and 1 / 0
+
+
+def level(stage, store):
+    return stage.property(store, "level")[0]
+
+
+def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_becomes_true(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        take = stage.call(store, "take", 3)
+        stage.call(store, "fill", 2)
+        assert take.outcome is None
+        stage.call(store, "fill", 2)
+        assert take.ok
+        assert level(stage, store) == 1
+
+    play(scene)
+
+
+def test_a_guard_that_is_true_at_once_does_not_delay(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        stage.call(store, "fill", 2)
+        assert stage.call(store, "take", 2).ok
+
+    play(scene)
+
+
+def test_a_step_completes_before_the_operations_that_it_enables(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        stage.watch(store)
+        stage.call(store, "take", 1)
+        stage.story.clear()
+        stage.call(store, "fill", 1)
+        assert stage.story == [
+            ("main", "-level(0) +level(1)"),
+            ("fill", "ok"),
+            ("main", "-level(1) +level(0)"),
+            ("take", "ok"),
+        ]
+
+    play(scene)
+
+
+def test_waiting_operations_are_served_in_the_order_of_arrival(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        takes = [stage.call(store, "take", 2, agent=name) for name in ("a", "b", "c")]
+        stage.call(store, "fill", 4)
+        assert [take.ok for take in takes] == [True, True, False]
+
+    play(scene)
+
+
+def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        big, small = stage.call(store, "take", 5), stage.call(store, "take", 1)
+        stage.call(store, "fill", 1)
+        assert (big.ok, small.ok) == (False, True)
+
+    play(scene)
+
+
+def test_a_bounded_buffer_loses_nothing(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        takes = [stage.call(store, "take") for _ in range(50)]
+        for _ in range(50):
+            stage.call(store, "fill")
+        assert all(take.ok for take in takes)
+        assert level(stage, store) == 0
+
+    play(scene)
+
+
+def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        first, second = stage.call(store, "take"), stage.call(store, "take")
+        first.execution.cancel()
+        assert first.execution.ended
+        stage.call(store, "fill", 5)
+        assert (first.outcome, second.ok) == (None, True)
+        assert level(stage, store) == 4
+
+    play(scene)
+
+
+def test_a_guarded_coroutine_begins_when_its_guard_is_true(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        slowly = stage.call(store, "slowly", 1)
+        await stage.clock.sleep(1.0)
+        stage.call(store, "fill", 1)
+        await slowly.wait()
+        assert slowly.ended_at == 2.0
+
+    play(scene)
+
+
+def test_a_guard_may_be_without_parameters(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        stage.call(store, "close", True)
+        visit = stage.call(store, "visit", "bob")
+        assert visit.outcome is None
+        stage.call(store, "close", False)
+        assert visit.ok
+
+    play(scene)
+
+
+def test_an_error_in_a_guard_fails_the_operation_now_or_later(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        assert stage.call(store, "wrong").reason == Structure("operation_error", ("wrong/0",))
+        later = stage.call(store, "wrong_later")
+        assert later.outcome is None
+        stage.call(store, "close", True)
+        assert later.reason == Structure("operation_error", ("wrong_later/0",))
+        assert stage.lines
+        assert not any(line.endswith("never") for line in stage.lines)
+
+    play(scene)
+
+
+def test_a_guard_can_read_the_caller(play):
+    async def scene(stage):
+        kept = []
+
+        class Private(Artifact):
+            @operation(guard="is_owner")
+            def use(self):
+                kept.append(self.caller)
+
+            def is_owner(self):
+                return self.caller == "owner"
+
+        private = await stage.make(Private)
+        stage.call(private, "use", agent="thief")
+        stage.call(private, "use", agent="owner")
+        assert kept == ["owner"]
+
+    play(scene)
+
+
+def test_guards_are_evaluated_on_arrival_and_after_each_step_only(play):
+    async def scene(stage):
+        checked = []
+
+        class Watched(Artifact):
+            @operation(guard="check")
+            def wait(self):
+                pass
+
+            def check(self):
+                checked.append(self.clock.now())
+                return False
+
+            @operation
+            def nothing(self):
+                pass
+
+        watched = await stage.make(Watched)
+        stage.call(watched, "wait")
+        await stage.clock.sleep(1.0)
+        assert len(checked) == 1
+        stage.call(watched, "nothing")
+        stage.call(watched, "nothing")
+        assert len(checked) == 3
+
+    play(scene)
+
+
+def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(play):
+    async def scene(stage):
+        store = await stage.make(Store)
+        chain = [stage.call(store, "take", 1) for _ in range(400)]
+
+        class Refill:
+            agent = "x"
+
+            def observe(self, observation):
+                if (
+                    observation.changed
+                    and chain[-1].outcome is None
+                    and observation.changed[0][1].values == (0,)
+                ):
+                    stage.call(store, "fill")
+
+        stage.main.focus(store, Refill())
+        chain_first = chain[0]
+        stage.call(store, "fill")
+        assert chain_first.ok
+        assert chain[-1].ok
+
+    play(scene)

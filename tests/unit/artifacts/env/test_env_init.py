@@ -1,0 +1,191 @@
+"""Methods `init`: which one is called, and what it may do."""
+
+import pytest
+from creation_lab import Counter
+
+from jacaros.artifacts import (
+    Artifact,
+    InvalidArtifact,
+    OperationFailed,
+    Structure,
+    initializer,
+    internal_operation,
+    operation,
+)
+from jacaros.artifacts.env.ports import ENDED
+from jacaros.runtime.trace import Cause
+
+
+def test_create_reports_a_plain_init_immediately(play):
+    async def scene(stage):
+        told = []
+        stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
+        stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
+        (made, outcome), (nothing, refusal) = told
+        assert stage.property(made, "count") == (3,)
+        assert outcome.ok
+        assert nothing is None
+        assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
+        assert stage.main.create("d", Counter).ended
+        assert stage.main.create("d", Counter) is ENDED, "a failure without a waiting caller"
+
+    play(scene)
+
+
+def test_the_cause_of_the_creation_is_that_of_its_processes(play):
+    class Alive(Artifact):
+        def init(self):
+            self.start(self.beat)
+
+        @internal_operation
+        async def beat(self):
+            await self.sleep(1.0)
+            self.signal("beat")
+
+    async def scene(stage):
+        why, made = Cause(1, 0, "act", "make"), []
+        stage.main.create("it", Alive, on_done=lambda artifact, _: made.append(artifact), cause=why)
+        watcher = stage.watch(made[0])
+        await stage.clock.sleep(2.0)
+        assert watcher.observations[0].cause == why
+
+    play(scene)
+
+
+def test_the_creator_is_the_caller_in_init(play):
+    class Curious(Artifact):
+        def init(self):
+            self.define_property("maker", self.caller)
+
+    async def scene(stage):
+        assert stage.property(await stage.make(Curious, creator="bob"), "maker") == ("bob",)
+
+    play(scene)
+
+
+def test_artifacts_know_their_workspace_in_init(play):
+    class Curious(Artifact):
+        def init(self):
+            self.define_property(
+                "told", self.name, self.workspace.path, self.workspace.name, self.clock.virtual
+            )
+            self.define_property("lent", self.resources["lent"])
+
+    async def scene(stage):
+        curious = await stage.make(Curious)
+        assert stage.property(curious, "told") == ("it", "/main", "main", True)
+        assert stage.property(curious, "lent") == ("this",)
+
+    play(scene, lent="this")
+
+
+def test_an_artifact_can_make_others(play):
+    class Maker(Artifact):
+        @operation(name="makeOne")
+        async def make_one(self, name: str):
+            made = await self.step(self.workspace.make_artifact(name, Counter, [9], self.caller))
+            self.signal("made", made)
+
+        @operation(name="makeHeld")
+        async def make_held(self, name: str):
+            await self.workspace.make_artifact(name, Counter)
+
+    async def scene(stage):
+        maker = await stage.make(Maker)
+        await stage.call(maker, "makeOne", "child").wait()
+        assert stage.property(stage.main.lookup("child"), "count") == (9,)
+        again = stage.call(maker, "makeOne", "child")
+        await again.wait()
+        assert again.reason == Structure("makeArtifactFailure", ("artifact_already_present", "child"))
+        held = stage.call(maker, "makeHeld", "other")
+        await held.wait()
+        assert held.ok
+
+    play(scene)
+
+
+def test_init_cannot_be_called_by_agents(play):
+    async def scene(stage):
+        counter = await stage.make(Counter)
+        assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
+
+    play(scene)
+
+
+class Several(Artifact):
+    def init(self, start: int = 0):
+        self.define_property("made", "usual", start)
+
+    @initializer
+    def init_in_a_room(self, room: str, start: int):
+        self.define_property("made", room, start)
+
+    @initializer
+    async def init_of_many(self, *rooms: str):
+        await self.sleep(1)
+        self.define_property("made", list(rooms))
+
+
+class Derived(Several):
+    def init_in_a_room(self, room: str, start: int):
+        self.define_property("made", f"derived {room}", start)
+
+
+def test_of_several_inits_the_one_with_that_number_of_arguments_runs(play):
+    async def scene(stage):
+        for kind, args, values in [
+            (Several, (), ("usual", 0)),
+            (Several, (3,), ("usual", 3)),
+            (Several, ("hall", 3), ("hall", 3)),
+            (Several, ("a", "b", "c"), (["a", "b", "c"],)),
+            (Derived, (1,), ("usual", 1)),
+            (Derived, ("hall", 3), ("derived hall", 3)),
+        ]:
+            it = await stage.make(kind, *args)
+            assert stage.property(it, "made") == values
+            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
+            stage.main.dispose_artifact(it)
+
+    play(scene)
+
+
+def test_two_inits_with_the_same_arity_are_an_error():
+    with pytest.raises(InvalidArtifact, match="are both init init with 1 arguments"):
+
+        class Twice(Artifact):
+            def init(self, start=0): ...
+
+            @initializer
+            def again(self, start): ...
+
+
+def test_an_init_that_is_an_operation_too_can_be_called_by_agents(play):
+    class Restart(Artifact):
+        @operation
+        def init(self, start: int):
+            self.define_property("start", start)
+
+    async def scene(stage):
+        it = await stage.make(Restart, 1)
+        assert stage.call(it, "init", 2).ok
+        assert len(stage.main.properties(it)) == 2
+
+    play(scene)
+
+
+def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones(play):
+    class Two(Artifact):
+        def init(self, a): ...
+
+        @initializer
+        def other(self, a, b: int): ...
+
+    async def scene(stage):
+        with pytest.raises(OperationFailed) as caught:
+            await stage.make(Two, 1, 2, 3)
+        assert (
+            "expected (a: any value) or (a: any value, b: an integer) as arguments of init, found 3 arguments"
+            in caught.value.message
+        )
+
+    play(scene)

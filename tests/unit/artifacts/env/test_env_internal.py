@@ -1,0 +1,322 @@
+"""Internal processes of an artifact, started by its operations, by ``init`` and by callbacks."""
+
+import pytest
+
+from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, internal_operation, operation
+from jacaros.runtime.trace import Cause
+
+
+class Clock(Artifact):
+    def init(self, pause: float = 0.1):
+        self.define_property("running", "no")
+        self.define_property("ticks", 0)
+        self._pause = pause
+
+    @operation(name="start")
+    def start_ticking(self, most: int):
+        self.update_property("running", "yes")
+        self.start(self.work, most)
+
+    @operation(name="startBroken")
+    def start_broken(self):
+        self.start("work", 3)
+        self.fail("changed my mind")
+
+    @operation
+    def stop(self):
+        self.update_property("running", "no")
+
+    @internal_operation
+    async def work(self, most: int):
+        tick = 1
+        while self.value("running") == "yes" and tick <= most:
+            await self.sleep(self._pause)
+            if self.value("running") == "yes":
+                self.signal("tick", tick)
+            tick += 1
+        self.update_property("running", "no")
+
+    @internal_operation
+    def count(self, by: int = 1):
+        self.update_property("ticks", self.value("ticks") + by)
+
+    @operation
+    def twice(self):
+        self.start(self.count, 10)
+        self.start("count", 100)
+        self.update_property("ticks", self.value("ticks") + 1)
+
+    @internal_operation
+    def breaks(self):
+        self.update_property("ticks", -1)
+        raise ValueError("inside")
+
+    @internal_operation
+    async def refuses(self):
+        self.update_property("ticks", 5)
+        await self.sleep(1.0)
+        self.update_property("ticks", -1)
+        raise OperationFailed("no way")
+
+    @operation(name="startAll")
+    def start_all(self):
+        self.start(self.breaks)
+        self.start(self.refuses)
+        self.start(self.count, 3)
+
+    @operation
+    def wrong(self):
+        self.start("no_such")
+
+    @operation(name="wrongMethod")
+    def wrong_method(self):
+        self.start(self.has_ticks)
+
+    @operation
+    async def early(self):
+        self.start(self.count)
+        self.signal("started")
+        self.fail("after the commit")
+
+    @internal_operation(guard="has_ticks")
+    def guarded(self):
+        self.signal("guarded")
+
+    def has_ticks(self):
+        return self.value("ticks") > 0
+
+    @operation(name="startGuarded")
+    def start_guarded(self):
+        self.start(self.guarded)
+
+
+def test_a_process_continues_after_the_operation_that_started_it(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        watcher = stage.watch(clock)
+        assert stage.call(clock, "start", 3).ok
+        await stage.clock.sleep(1.0)
+        assert watcher.notes[1:] == [
+            "-running('no') +running('yes')",
+            "~tick(1)",
+            "~tick(2)",
+            "~tick(3)",
+            "-running('yes') +running('no')",
+        ]
+
+    play(scene)
+
+
+def test_the_artifact_can_be_used_meanwhile(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        watcher = stage.watch(clock)
+        stage.call(clock, "start", 1000)
+        await stage.clock.sleep(0.25)
+        assert stage.call(clock, "stop").ok
+        watcher.take()
+        await stage.clock.sleep(1.0)
+        assert watcher.take() == ["-running('no') +running('no')"]
+
+    play(scene)
+
+
+def test_a_process_is_not_started_by_a_step_that_fails(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        watcher = stage.watch(clock)
+        watcher.take()
+        assert not stage.call(clock, "startBroken").ok
+        await stage.clock.sleep(1.0)
+        assert watcher.take() == []
+
+    play(scene)
+
+
+def test_a_process_started_before_a_commit_is_started_even_if_the_step_fails_later(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        call = stage.call(clock, "early")
+        await call.wait()
+        assert not call.ok
+        assert stage.property(clock, "ticks") == (1,)
+
+    play(scene)
+
+
+def test_processes_begin_after_the_step_that_starts_them_in_their_order(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        watcher = stage.watch(clock)
+        watcher.take()
+        stage.story.clear()
+        stage.call(clock, "twice")
+        assert stage.story == [
+            ("main", "-ticks(0) +ticks(1)"),
+            ("twice", "ok"),
+            ("main", "-ticks(1) +ticks(11)"),
+            ("main", "-ticks(11) +ticks(111)"),
+        ]
+
+    play(scene)
+
+
+def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        assert stage.call(clock, "startAll").ok
+        await stage.clock.sleep(2.0)
+        assert stage.property(clock, "ticks") == (8,), "refuses committed 5, count added 3"
+        assert stage.logged("[it] error in operation breaks/0")
+        assert stage.logged("ValueError: inside")
+        assert stage.logged("[it] operation refuses/0 failed: no way")
+
+    play(scene)
+
+
+def test_a_guarded_process_waits(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        watcher = stage.watch(clock)
+        stage.call(clock, "startGuarded")
+        watcher.take()
+        stage.call(clock, "twice")
+        assert watcher.take() == [
+            "-ticks(0) +ticks(1)",
+            "~guarded",
+            "-ticks(1) +ticks(11)",
+            "-ticks(11) +ticks(111)",
+        ]
+
+    play(scene)
+
+
+def test_an_unknown_process_is_an_error_of_the_artifact(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        call = stage.call(clock, "wrong")
+        assert "unknown internal operation `no_such/0`" in call.outcome.message
+        call = stage.call(clock, "wrongMethod")
+        assert "add @internal_operation above def has_ticks" in call.outcome.message
+
+    play(scene)
+
+
+def test_agents_cannot_call_internal_operations(play):
+    async def scene(stage):
+        clock = await stage.make(Clock)
+        call = stage.call(clock, "work", 3)
+        assert call.reason.functor == "unknown_operation"
+        assert "its internal operation of this name is for the artifact itself only" in call.outcome.message
+
+    play(scene)
+
+
+def test_a_process_started_in_init_begins_when_the_artifact_exists(play):
+    class Alive(Artifact):
+        def init(self):
+            self.define_property("beats", 0)
+            self.start(self.beat)
+
+        @internal_operation
+        async def beat(self):
+            assert self.workspace.lookup(self.name) is self.id
+            assert self.caller is None
+            while True:
+                await self.sleep(1.0)
+                self.update_property("beats", self.value("beats") + 1)
+
+    async def scene(stage):
+        alive = await stage.make(Alive)
+        await stage.clock.sleep(3.5)
+        assert stage.property(alive, "beats") == (3,)
+        assert stage.lines == []
+
+    play(scene)
+
+
+def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(play):
+    kept = []
+
+    class Sensor(Artifact):
+        def init(self):
+            self.define_property("sample", 0)
+            kept.append(self)
+
+        def on_sample(self, sample):
+            self.start(self.receive, sample)
+
+        @internal_operation
+        def receive(self, sample):
+            self.update_property("sample", sample)
+
+        @operation
+        async def hold(self):
+            await self.clock.sleep(1.0)
+
+    async def scene(stage):
+        sensor = await stage.make(Sensor)
+        kept[0].on_sample(7)
+        assert stage.property(sensor, "sample") == (7,)
+        stage.call(sensor, "hold")
+        await stage.clock.sleep(0.5)
+        kept[0].on_sample(8)
+        kept[0].on_sample(9)
+        assert stage.property(sensor, "sample") == (7,)
+        watcher = stage.watch(sensor)
+        await stage.clock.sleep(1.0)
+        assert watcher.notes == ["+sample(7)", "-sample(7) +sample(8)", "-sample(8) +sample(9)"]
+        stage.main.dispose_artifact(sensor)
+        kept[0].on_sample(10)
+        kept[0].start("receive", 11, cause=Cause(1, 0, "sample", "late"))
+        with pytest.raises(InvalidArtifact, match="unknown internal operation `receive/0`"):
+            kept[0].start("receive")
+
+    play(scene)
+
+
+def test_an_overridden_process_is_found_by_its_method(play):
+    class Old(Artifact):
+        def init(self):
+            self.define_property("p", "")
+
+        @internal_operation(name="work")
+        def work_hard(self):
+            self.update_property("p", "old")
+
+        @operation
+        def go(self):
+            self.start(self.work_hard)
+
+    class New(Old):
+        def work_hard(self):
+            self.update_property("p", "new")
+
+    async def scene(stage):
+        new = await stage.make(New)
+        stage.call(new, "go")
+        assert stage.property(new, "p") == ("new",)
+
+    play(scene)
+
+
+def test_an_artifact_may_start_its_ordinary_operations_too(play):
+    class Both(Artifact):
+        def init(self):
+            self.define_property("n", 0)
+
+        @operation
+        def inc(self):
+            self.update_property("n", self.value("n") + 1)
+
+        @operation
+        def later(self):
+            self.start(self.inc)
+            self.start("inc")
+
+    async def scene(stage):
+        both = await stage.make(Both)
+        stage.call(both, "later")
+        assert stage.property(both, "n") == (2,)
+
+    play(scene)

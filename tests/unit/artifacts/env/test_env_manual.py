@@ -1,0 +1,225 @@
+"""Manuals of artifact types."""
+
+from jacaros.artifacts import (
+    Artifact,
+    Out,
+    describe,
+    initializer,
+    internal_operation,
+    link,
+    manual_term,
+    operation,
+    text,
+)
+
+
+class Shining(Artifact):
+    """Shines.
+
+    Properties:
+        power(Watts): what all that shines takes
+        colour(R, G, B), mode(M): both between 0 and 1, as in the
+            docstring of its base.
+    """
+
+
+class Lamp(Shining):
+    """A lamp.
+
+    It shines.
+
+    Properties:
+        power(Watts): what it takes, in watts
+
+    Signals:
+        burnt(Hours): after so many hours.
+
+    Attributes:
+        shade: for authors.
+    """
+
+    ports = ("power",)
+    shade = None
+
+    def init(self, watts: int, name: str = ""):
+        self.define_property("power", watts)
+        self.define_property("name", name)
+        self.define_property("state", int(watts), "on", True, [1, 2], -watts, self._watts)
+        self.define_property("row", *range(3))
+        self.define_property(name + "x", 1)
+        if not name:
+            self.signal("tick")
+        self.signal_to("bob", "told", "him", 3)
+
+    @initializer
+    def init_in_a_room(self, watts: int, name: str, room: str):
+        """In a room.
+
+        Raises:
+            OperationFailed: never.
+        """
+
+    @operation(name="setPower", guard="is_free", pausable=True)
+    async def set_power(self, power: float, old: Out):
+        """Set the power.
+
+        Waits until it is free.
+        """
+
+    def is_free(self):
+        return True
+
+    @operation
+    def sum(self, *more: object): ...
+
+    @link
+    def peek(self, now: Out):
+        """Tell the power."""
+
+    @internal_operation
+    def flicker(self): ...
+
+
+class Bare(Artifact):
+    pass
+
+
+def test_a_manual_tells_what_a_type_offers():
+    manual = describe(Lamp)
+    assert (manual.type_name, manual.text) == ("Lamp", "A lamp.\n\nIt shines.")
+    assert [each.usage for each in manual.inits] == [
+        "init(watts: an integer, name: a text (optional))",
+        "init(watts: an integer, name: a text, room: a text)",
+    ]
+    assert manual.ports == ("power",)
+    assert [(each.kind, each.name) for each in manual.operations] == [
+        ("operation", "setPower"),
+        ("operation", "sum"),
+        ("linked operation", "peek"),
+        ("internal operation", "flicker"),
+    ]
+    first, second = manual.operations[:2]
+    assert first.usage == "setPower(power: a number, -old)"
+    assert first.text == "Set the power.\n\nWaits until it is free."
+    assert (first.guarded, first.pausable, first.more) == (True, True, False)
+    assert [(p.name, p.expected, p.output, p.optional) for p in first.parameters] == [
+        ("power", "a number", False, False),
+        ("old", "an unbound variable (it is an output)", True, False),
+    ]
+    assert (second.usage, second.more, second.text) == ("sum(...)", True, "")
+
+
+def test_properties_and_signals_are_found_in_docstrings_and_code():
+    manual = describe(Lamp)
+    assert [(each.name, each.usage, each.text) for each in manual.properties] == [
+        ("power", "power(Watts)", "what it takes, in watts"),
+        ("colour", "colour(R, G, B)", "both between 0 and 1, as in the docstring of its base."),
+        ("mode", "mode(M)", "both between 0 and 1, as in the docstring of its base."),
+        ("name", "name(name)", ""),
+        ("state", "state(watts, text, true or false, list, value, watts)", ""),
+        ("row", "row(...)", ""),
+    ]
+    assert [(each.name, each.usage, each.text) for each in manual.signals] == [
+        ("burnt", "burnt(Hours)", "after so many hours."),
+        ("tick", "tick", ""),
+        ("told", "told(text, number)", ""),
+    ]
+
+
+def test_a_type_created_at_run_time_is_described_without_its_source():
+    names = {"Artifact": Artifact}
+    exec("class Made(Artifact):\n    def init(self):\n        self.define_property('p', 1)\n", names)
+    assert describe(names["Made"]).properties == ()
+
+
+def test_a_manual_can_be_printed():
+    assert str(describe(Lamp)) == (
+        "Lamp\n"
+        "  A lamp.\n"
+        "\n"
+        "  It shines.\n"
+        "made with:\n"
+        "  init(watts: an integer, name: a text (optional))\n"
+        "  init(watts: an integer, name: a text, room: a text)\n"
+        "      In a room.\n"
+        "properties:\n"
+        "  power(Watts)\n"
+        "      what it takes, in watts\n"
+        "  colour(R, G, B)\n"
+        "      both between 0 and 1, as in the docstring of its base.\n"
+        "  mode(M)\n"
+        "      both between 0 and 1, as in the docstring of its base.\n"
+        "  name(name)\n"
+        "  state(watts, text, true or false, list, value, watts)\n"
+        "  row(...)\n"
+        "signals:\n"
+        "  burnt(Hours)\n"
+        "      after so many hours.\n"
+        "  tick\n"
+        "  told(text, number)\n"
+        "operations:\n"
+        "  setPower(power: a number, -old)  [may wait, pausable]\n"
+        "      Set the power.\n"
+        "\n"
+        "      Waits until it is free.\n"
+        "  sum(...)\n"
+        "linked operations:\n"
+        "  peek(-now)\n"
+        "      Tell the power.\n"
+        "out ports: power"
+    )
+    assert str(describe(Bare)) == "Bare\nmade with:\n  init()"
+
+
+def test_a_manual_is_a_term_for_agents():
+    assert text(manual_term(describe(Lamp)), quoted=True) == (
+        'manual("Lamp","A lamp.\n\nIt shines.",'
+        '[init([input(watts,"an integer"),optional(name,"a text")],""),'
+        'init([input(watts,"an integer"),input(name,"a text"),input(room,"a text")],"In a room.")],'
+        '[operation(setPower,[input(power,"a number"),output(old)],"Set the power.\n\nWaits until it is free."),'
+        'operation(sum,[more],""),linked(peek,[output(now)],"Tell the power.")],'
+        '[property(power,"power(Watts)","what it takes, in watts"),'
+        'property(colour,"colour(R, G, B)","both between 0 and 1, as in the docstring of its base."),'
+        'property(mode,"mode(M)","both between 0 and 1, as in the docstring of its base."),'
+        'property(name,"name(name)",""),'
+        'property(state,"state(watts, text, true or false, list, value, watts)",""),'
+        'property(row,"row(...)","")],'
+        '[signal(burnt,"burnt(Hours)","after so many hours."),signal(tick,"tick",""),'
+        'signal(told,"told(text, number)","")],[power])'
+    )
+
+
+def test_the_manual_of_one_artifact_shows_its_own_operations(play):
+    class Dynamic(Artifact):
+        def init(self):
+            self.define_operation("extra", self.extra)
+            self.define_property("of_" + "its_own", 1, 2)
+
+        def extra(self, x: int):
+            """Only here."""
+
+    async def scene(stage):
+        dynamic = await stage.make(Dynamic)
+        assert describe(Dynamic).operations == ()
+        (extra,) = describe(Dynamic, stage.main.interface(dynamic)).operations
+        assert (extra.usage, extra.text) == ("extra(x: an integer)", "Only here.")
+        manual = stage.main.manual(dynamic)
+        assert manual.operations == (extra,)
+        assert [each.usage for each in manual.properties] == ["of_its_own(_, _)"]
+
+    play(scene)
+
+
+class Meter(Artifact):
+    """Counts."""
+
+    def init(self):
+        self.define_property("count", 0)
+
+    @operation
+    def inc(self):
+        self.signal("counted", self.value("count"), self.value("count", 0))
+
+
+def test_a_value_read_from_a_property_is_called_like_it():
+    assert [each.usage for each in describe(Meter).signals] == ["counted(count, count)"]

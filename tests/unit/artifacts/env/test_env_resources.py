@@ -1,0 +1,306 @@
+"""Operations that use resources: they wait, yield, resume, and always release what they hold."""
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from jacaros.artifacts import Artifact, InvalidArtifact, operation
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.execution import OperationExecution
+from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
+from jacaros.artifacts.env.values import text
+from jacaros.artifacts.presence.session import Session
+from jacaros.runtime.clock import VirtualClock, run
+
+
+class Robot(Artifact):
+    """A robot that drives by the second, and an arm."""
+
+    def init(self) -> None:
+        self.lines: list[str] = []
+
+    def note(self, line: str) -> None:
+        """Take note of a line and the time."""
+        self.lines.append(f"{self.clock.elapsed:g} {line}")
+
+    @operation(uses="wheels", pausable=True)
+    async def drive(self, name: str, seconds: float) -> None:
+        """Drive; braking takes half a second."""
+        self.note(f"{name} begins")
+        left = float(seconds)
+        while left > 1e-6:
+            if self._steps.current("x").paused:
+                await self.sleep(0.5)
+                self.note(f"{name} stands")
+                await self.pause_point()
+                self.note(f"{name} continues")
+            await self.sleep(0.1)
+            left -= 0.1
+        self.note(f"{name} ends")
+
+    @operation(uses="wheels")
+    async def dock(self, name: str, seconds: float) -> None:
+        """Dock, which cannot be interrupted."""
+        self.note(f"{name} begins")
+        await self.sleep(seconds)
+        self.note(f"{name} ends")
+
+    @operation(uses=("wheels", "arm"), when_preempted="cancel")
+    async def grasp(self, name: str, seconds: float) -> None:
+        """Grasp; the attempt is lost when it is interrupted."""
+        self.note(f"{name} begins")
+        try:
+            await self.sleep(seconds)
+        finally:
+            self.note(f"{name} is over")
+
+    @operation(uses="lift(2)")
+    async def ride(self, name: str, seconds: float) -> None:
+        """Ride in the lift, which takes two."""
+        self.note(f"{name} rides")
+        await self.sleep(seconds)
+
+
+class Lab:
+    """A robot, and operations that are begun with an urgency."""
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.logged: list[str] = []
+        self.environment = Environment(self.clock, log=self.logged.append)
+        self.told: list[str] = []
+        self.outcomes: dict[str, str] = {}
+
+    async def make(self) -> None:
+        self.id = await self.environment.workspace("/main").make_artifact("robot", Robot)
+
+    @property
+    def lines(self) -> list[str]:
+        robot: Any = self.environment.artifact(self.id)
+        return robot.lines  # type: ignore[no-any-return]
+
+    def begin(self, name: str, seconds: float, urgency: int = 0, do: str = "drive") -> OperationExecution:
+        def done(outcome: OperationOutcome) -> None:
+            self.outcomes[name] = "ok" if outcome.ok else text(outcome.reason, True)
+
+        request = OperationRequest(self.id, do, (name, seconds), "a", on_done=done, urgency=urgency)
+        request.on_preempted = lambda resource: self.told.append(f"{name} {resource}")
+        execution = self.environment.execute(request)
+        assert isinstance(execution, OperationExecution)
+        return execution
+
+
+def in_lab(body: Any) -> None:
+    lab = Lab()
+
+    async def main() -> None:
+        await lab.make()
+        await body(lab)
+
+    run(main, lab.clock)
+
+
+def test_operations_with_the_same_resource_run_in_turn() -> None:
+    async def body(lab: Lab) -> None:
+        lab.begin("one", 1)
+        lab.begin("two", 1, do="dock")
+        await lab.clock.sleep(3)
+        assert lab.lines == ["0 one begins", "1 one ends", "1 two begins", "2 two ends"]
+
+    in_lab(body)
+
+
+def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues() -> None:
+    async def body(lab: Lab) -> None:
+        lab.begin("tour", 3)
+        await lab.clock.sleep(1.05)
+        lab.begin("flee", 1, urgency=10)
+        assert lab.told == ["tour wheels"]
+        await lab.clock.sleep(10)
+        assert lab.lines == [
+            "0 tour begins",
+            "1.6 tour stands",
+            "1.6 flee begins",
+            "2.6 flee ends",
+            "2.6 tour continues",
+            "4.5 tour ends",
+        ]
+        assert lab.told == ["tour wheels", "tour None"]
+        assert lab.outcomes == {"tour": "ok", "flee": "ok"}
+
+    in_lab(body)
+
+
+def test_preemption_finishes_or_cancels_what_cannot_pause() -> None:
+    async def body(lab: Lab) -> None:
+        lab.begin("dock", 2, do="dock")
+        lab.begin("grasp", 5, do="grasp")
+        await lab.clock.sleep(1)
+        lab.begin("flee", 1, urgency=1)
+        await lab.clock.sleep(3)
+        assert lab.lines[:4] == ["0 dock begins", "2 dock ends", "2 flee begins", "3 flee ends"]
+        lab.begin("again", 1, urgency=1)
+        await lab.clock.sleep(3)
+        assert lab.lines[4:] == ["3 grasp begins", "4 grasp is over", "4 again begins", "5 again ends"]
+        assert lab.outcomes["grasp"] == "preempted(wheels)"
+
+    in_lab(body)
+
+
+def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards() -> None:
+    async def body(lab: Lab) -> None:
+        tour = lab.begin("tour", 2)
+        await lab.clock.sleep(1.05)
+        tour.pause()
+        await lab.clock.sleep(1)
+        lab.begin("other", 2)
+        await lab.clock.sleep(1)
+        tour.resume()
+        await lab.clock.sleep(5)
+        assert lab.lines == [
+            "0 tour begins",
+            "1.6 tour stands",
+            "2.05 other begins",
+            "4.05 other ends",
+            "4.05 tour continues",
+            "4.95 tour ends",
+        ]
+        assert not lab.told, "it was suspended by its caller"
+
+    in_lab(body)
+
+
+def test_a_preempted_operation_that_is_suspended_does_not_continue() -> None:
+    async def body(lab: Lab) -> None:
+        tour = lab.begin("tour", 2)
+        await lab.clock.sleep(1.05)
+        lab.begin("flee", 1, urgency=1)
+        await lab.clock.sleep(1)
+        tour.pause()
+        assert lab.told == ["tour wheels", "tour None"]
+        await lab.clock.sleep(5)
+        assert lab.lines[-1] == "2.6 flee ends"
+        tour.resume()
+        await lab.clock.sleep(5)
+        assert lab.lines[-2:] == ["7.05 tour continues", "7.95 tour ends"]
+
+    in_lab(body)
+
+
+def test_the_end_of_an_agent_releases_what_it_held_and_waited_for() -> None:
+    async def body(lab: Lab) -> None:
+        first, second = lab.begin("first", 9), lab.begin("second", 9)
+        lab.begin("third", 1)
+        await lab.clock.sleep(0.05)
+        second.cancel()
+        first.cancel()
+        await lab.clock.sleep(2)
+        assert lab.lines == ["0 first begins", "0.05 third begins", "1.05 third ends"]
+        lab.begin("fourth", 9)
+        lab.begin("fifth", 9)
+        lab.environment.workspace("/main").dispose_artifact(lab.id)
+        await lab.clock.sleep(1)
+        arbiter = lab.environment.arbiter
+        assert not arbiter.waiting()
+        assert not arbiter.holders("wheels")
+        assert lab.outcomes["fifth"] == 'artifact_disposed("robot")'
+
+    in_lab(body)
+
+
+def test_a_lift_has_two_units_and_a_time_limit_includes_waiting() -> None:
+    async def body(lab: Lab) -> None:
+        for name in ("a", "b", "c"):
+            lab.begin(name, 2, do="ride")
+        await lab.clock.sleep(3)
+        assert lab.lines == ["0 a rides", "0 b rides", "2 c rides"]
+
+    in_lab(body)
+
+
+def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
+    async def body(lab: Lab) -> None:
+        lab.begin("tour", 2)
+        outcomes: list[OperationOutcome] = []
+        request = OperationRequest(lab.id, "drive", ("x", 1), "a", on_done=outcomes.append, policy="refuse")
+        lab.environment.execute(request)
+        assert text(outcomes[0].reason, True) == "resource_busy(wheels)"
+        assert outcomes[0].message == "operation drive/2 of artifact robot: wheels is in use"
+
+    in_lab(body)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"uses": "two words"}, "invalid resource `two words`"),
+        ({"uses": "lift(0)"}, "the capacity must be at least 1"),
+        ({"uses": "x", "when_preempted": "pause"}, "needs pausable=True"),
+        ({"uses": "x", "when_preempted": "never"}, "expected pause, cancel or finish"),
+        ({"uses": "x", "when_preempted": "cancel", "threaded": True}, "cannot be cancelled"),
+    ],
+)
+def test_wrong_declarations_are_refused_when_the_class_is_made(arguments: Any, message: str) -> None:
+    def work(self: Artifact) -> None:
+        """Do nothing."""
+
+    with pytest.raises(InvalidArtifact, match=message):
+        type("Wrong", (Artifact,), {"work": operation(**arguments)(work)})
+
+
+def test_two_environments_share_nothing() -> None:
+    async def body(lab: Lab) -> None:
+        other = Lab()
+        other.clock = lab.clock
+        other.environment = Environment(lab.clock)
+        await other.make()
+        lab.begin("one", 1)
+        other.begin("two", 1)
+        await asyncio.sleep(0)
+        await lab.clock.sleep(1.5)
+        assert other.lines == ["0 two begins", "1 two ends"]
+
+    in_lab(body)
+
+
+def test_operations_of_a_session_have_an_urgency() -> None:
+    async def body(lab: Lab) -> None:
+        session = Session(lab.environment, "script")
+        tour = session.begin("drive", "tour", 2)
+        await lab.clock.sleep(1.05)
+        await session.act("drive", "flee", 1, urgency=5)
+        await tour
+        assert lab.lines[2:] == ["1.6 flee begins", "2.6 flee ends", "2.6 tour continues", "3.5 tour ends"]
+
+    in_lab(body)
+
+
+class Clumsy(Artifact):
+    """Starts an operation that needs more of a resource than there is."""
+
+    def init(self) -> None:
+        self.carried = 0
+
+    @operation(uses=("arm", "arm"))
+    def carry(self) -> None:
+        """Carry something with two arms."""
+        self.carried += 1
+
+    @operation
+    def ask_for_it(self) -> None:
+        """Start the operation from within another one."""
+        self.start(self.carry)
+
+
+def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources() -> None:
+    async def main() -> None:
+        logged: list[str] = []
+        environment = Environment(VirtualClock(), log=logged.append)
+        clumsy = await environment.workspace("/main").make_artifact("clumsy", Clumsy)
+        artifact: Any = environment.artifact(clumsy)
+        artifact.start("carry")
+        environment.execute(OperationRequest(clumsy, "ask_for_it"))
+        assert artifact.carried == 0
+
+    asyncio.run(main())

@@ -1,0 +1,321 @@
+"""Operations of several steps: interleaving, atomicity, publication, roll-back of the failing step."""
+
+import asyncio
+
+import pytest
+
+from jacaros.artifacts import Artifact, InvalidArtifact, Out, Structure, operation
+
+
+class Lane(Artifact):
+    def init(self):
+        self.define_property("trace", [])
+        self.open = False
+
+    def _append(self, text):
+        self.update_property("trace", [*self.value("trace"), text])
+
+    @operation
+    async def run(self, name: str, steps: int, pause: float):
+        for number in range(1, steps + 1):
+            self._append(f"{name}{number}")
+            await self.sleep(pause)
+
+    @operation
+    def mark(self, name: str):
+        self._append(name)
+
+    @operation
+    async def hold(self, name: str, pause: float):
+        self._append(f"{name} begins")
+        await self.clock.sleep(pause)
+        self._append(f"{name} ends")
+
+    @operation(name="openGate")
+    def open_gate(self):
+        self.open = True
+
+    @operation
+    async def wait(self, name: str):
+        await self.until(lambda: self.open)
+        self._append(name)
+
+    @operation
+    async def wait_wrong(self):
+        await self.until(lambda: 1 / 0 and True)
+
+    @operation
+    async def wait_wrong_later(self):
+        await self.until(lambda: bool(self.open and 1 / 0))
+
+    @operation
+    async def result(self, given: Out):
+        given.set(await self.step(self._answer()))
+
+    async def _answer(self):
+        await self.clock.sleep(1.0)
+        return 42
+
+    @operation
+    async def awaiting_fails(self):
+        self._append("before")
+        try:
+            await self.step(self._explode())
+        except OSError:
+            self._append("caught")
+
+    async def _explode(self):
+        await self.clock.sleep(1.0)
+        raise OSError("gone")
+
+    @operation
+    async def late(self):
+        self._append("first")
+        await self.sleep(0.05)
+        self._append("second")
+        self.fail("late", "late", 2)
+
+    @operation
+    async def crash(self):
+        self._append("first")
+        await self.sleep(0.05)
+        self._append("second")
+        raise RuntimeError("boom")
+
+    @operation
+    async def at_once(self):
+        self._append("at once")
+
+
+def trace(stage, lane):
+    return stage.property(lane, "trace")[0]
+
+
+def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        a = stage.call(lane, "run", "a", 3, 0.4)
+        await stage.clock.sleep(0.13)
+        b = stage.call(lane, "run", "b", 2, 0.4)
+        await stage.clock.sleep(0.13)
+        assert stage.call(lane, "mark", "x").ok
+        await a.wait()
+        assert trace(stage, lane) == ["a1", "b1", "x", "a2", "b2", "a3"]
+        assert (b.ended_at, a.ended_at) == (0.93, 1.2)
+
+    play(scene)
+
+
+def test_a_pause_publishes_the_changes_so_far(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        watcher = stage.watch(lane)
+        stage.call(lane, "run", "a", 2, 0.1)
+        await stage.clock.sleep(0.05)
+        assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
+        await stage.clock.sleep(0.1)
+        assert watcher.notes[-1] == "-trace(['a1']) +trace(['a1', 'a2'])"
+
+    play(scene)
+
+
+def test_awaiting_without_a_step_boundary_blocks_the_artifact(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        watcher = stage.watch(lane)
+        watcher.take()
+        hold = stage.call(lane, "hold", "a", 1.0)
+        await stage.clock.sleep(0.5)
+        mark = stage.call(lane, "mark", "x")
+        assert mark.outcome is None
+        assert watcher.take() == [], "nothing of the step is published"
+        await mark.wait()
+        assert (hold.ended_at, mark.ended_at) == (1.0, 1.0)
+        assert trace(stage, lane) == ["a begins", "a ends", "x"]
+        assert len(watcher.take()) == 2
+
+    play(scene)
+
+
+def test_operations_that_wait_for_the_artifact_are_served_in_their_order(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        stage.call(lane, "hold", "a", 1.0)
+        stage.call(lane, "mark", "x")
+        stage.call(lane, "at_once")
+        last = stage.call(lane, "mark", "y")
+        await last.wait()
+        assert trace(stage, lane) == ["a begins", "a ends", "x", "at once", "y"]
+
+    play(scene)
+
+
+def test_an_operation_that_resumes_queues_behind_waiting_ones(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        run = stage.call(lane, "run", "r", 2, 1.0)
+        await stage.clock.sleep(0.9)
+        stage.call(lane, "hold", "h", 1.0)
+        stage.call(lane, "mark", "x")
+        await run.wait()
+        assert trace(stage, lane) == ["r1", "h begins", "h ends", "x", "r2"]
+
+    play(scene)
+
+
+def test_until_continues_when_a_step_of_another_operation_makes_it_true(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        first, second = stage.call(lane, "wait", "1"), stage.call(lane, "wait", "2")
+        await stage.clock.sleep(1.0)
+        stage.call(lane, "mark", "x")
+        assert first.outcome is None
+        stage.call(lane, "openGate")
+        await second.wait()
+        assert trace(stage, lane) == ["x", "1", "2"]
+        third = stage.call(lane, "wait", "3")
+        await third.wait()
+        assert third.ended_at == 1.0, "a condition that is true at once does not delay"
+
+    play(scene)
+
+
+def test_an_error_in_a_condition_fails_the_operation(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        now, later = stage.call(lane, "wait_wrong"), stage.call(lane, "wait_wrong_later")
+        await now.wait()
+        assert now.reason == Structure("operation_error", ("wait_wrong/0",))
+        stage.call(lane, "openGate")
+        await later.wait()
+        assert later.reason == Structure("operation_error", ("wait_wrong_later/0",))
+        assert stage.call(lane, "mark", "x").ok
+
+    play(scene)
+
+
+def test_anything_can_be_awaited_in_a_step_of_its_own(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        given = Out()
+        result = stage.call(lane, "result", given)
+        await stage.clock.sleep(0.5)
+        assert stage.call(lane, "mark", "meanwhile").ok
+        await result.wait()
+        assert given.value == 42
+
+    play(scene)
+
+
+def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        call = stage.call(lane, "awaiting_fails")
+        await call.wait()
+        assert call.ok
+        assert trace(stage, lane) == ["before", "caught"]
+
+    play(scene)
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("late", Structure("late", (2,))), ("crash", Structure("operation_error", ("crash/0",)))],
+)
+def test_only_the_failing_step_is_rolled_back(play, name, reason):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        call = stage.call(lane, name)
+        await call.wait()
+        assert call.reason == reason
+        assert trace(stage, lane) == ["first"]
+        assert call.ended_at == 0.05
+
+    play(scene)
+
+
+def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(play):
+    async def scene(stage):
+        lane = await stage.make(Lane)
+        stage.call(lane, "hold", "a", 1.0)
+        await stage.clock.sleep(0.5)
+        watcher = stage.watch(lane)
+        assert watcher.notes == ["+trace([])"]
+        await stage.clock.sleep(1.0)
+        assert watcher.notes[-1] == "-trace([]) +trace(['a begins', 'a ends'])"
+
+    play(scene)
+
+
+def test_only_a_coroutine_may_end_its_step_in_the_middle(play):
+    kept = []
+
+    class Plain(Artifact):
+        @operation
+        def run(self):
+            kept.append(self.sleep(1.0))
+            kept[0].send(None)
+
+    async def scene(stage):
+        call = stage.call(await stage.make(Plain), "run")
+        assert call.reason == Structure("operation_error", ("run/0",))
+        assert "async def" in call.outcome.message
+
+    play(scene)
+
+
+def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(play):
+    class Held(Artifact):
+        def init(self):
+            self.define_property("p", 0)
+            kept.append(self)
+
+        @operation
+        async def hold(self):
+            await self.clock.sleep(1.0)
+
+    kept = []
+
+    async def scene(stage):
+        held = await stage.make(Held)
+        stage.call(held, "hold")
+        await stage.clock.sleep(0.5)
+        with pytest.raises(InvalidArtifact, match=r"self\.start"):
+            kept[0].update_property("p", 1)
+        with pytest.raises(InvalidArtifact, match=r"self\.start"):
+            await kept[0].sleep(1.0)
+        with pytest.raises(InvalidArtifact, match=r"self\.start"):
+            await kept[0].step(asyncio.get_running_loop().create_future())
+
+    play(scene)
+
+
+def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(play):
+    class Waiting(Artifact):
+        @operation
+        async def wait(self):
+            future = asyncio.get_running_loop().create_future()
+            future.cancel()
+            await self.step(future)
+
+    async def scene(stage):
+        call = stage.call(await stage.make(Waiting), "wait")
+        await call.wait()
+        assert call.reason == Structure("operation_error", ("wait/0",))
+
+    play(scene)
+
+
+def test_many_operations_on_many_artifacts_run_in_the_same_order_each_time(play):
+    def once():
+        async def scene(stage):
+            lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]
+            for number in range(20):
+                for index, lane in enumerate(lanes):
+                    stage.call(lane, "run", f"{index}.{number}.", 3, 0.01 * (number % 7 + 1))
+            await stage.clock.sleep(10.0)
+            stage.result = [trace(stage, lane) for lane in lanes]
+
+        return play(scene).result
+
+    assert once() == once()
