@@ -34,7 +34,7 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
 """Goals by which a test simulates the environment."""
 
-_CLOSED: Final = ("jacaros.artifacts.", "jacaros.artifacts.")
+_CLOSED: Final = "jacaros.artifacts."
 """Modules whose artifacts have only the operations that their classes declare."""
 
 _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")

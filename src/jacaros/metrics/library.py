@@ -9,7 +9,13 @@ import jacaros
 from jacaros.metrics import python_source
 from jacaros.metrics.sources import PythonFile, Sources
 
-OWN: Final = ("jacaros.artifacts", "jacaros.behaviour_trees")
+OWN: Final = (
+    *(
+        f"jacaros.artifacts.{each}"
+        for each in ("kit", "map", "mapping", "registry", "robots", "thesis", "tools")
+    ),
+    "jacaros.behaviour_trees",
+)
 """Our packages that a program could contain itself. Language, middleware and simulator are the platform."""
 
 DEFAULT: Final = ("py_trees",)
