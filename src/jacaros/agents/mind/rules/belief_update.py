@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.belief_base import Row, Table, literal, parts, ta
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import Posted, Raised
 from jacaros.agents.mind.state.rule import OpenFact, Rule
-from jacaros.agents.mind.state.triggers import Goal, Trigger, resolve_all
+from jacaros.agents.mind.state.triggers import Trigger, resolve_all
 from jacaros.agents.mind.state.triggers import apart as with_own_variables
 from jacaros.agents.terms.order import merge_annotations
 from jacaros.agents.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
@@ -36,7 +36,7 @@ _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b``: the event belongs to the intention that made it."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations))
+    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations))
 
 
 def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -56,25 +56,47 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+>b``: the belief answers last."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations, last=True))
+    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations, last=True))
 
 
 def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``++b``: the event is an external one."""
-    return _own_event(agent, symbol, row, insert(agent, symbol, row, annotations), apart=True)
+    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations), apart=True)
 
 
 def _own_event(
-    agent: Circumstance, symbol: Functor, row: Row, new: Annotations | None, apart: bool = False
+    agent: Circumstance,
+    operator: str,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations | None,
+    apart: bool = False,
 ) -> Raised:
-    """Raise the event of a belief that a step has added; *new* are the annotations that it did not have before."""
-    if new is None:
+    """Raise the event of a belief that a step has changed: for the step's intention, or (*apart*) as an external one.
+
+    Args:
+        annotations: those that came or went; None if none did.
+    """
+    if annotations is None:
         return None
-    if agent.waits.conditions:
+    table, waits = agent.beliefs[symbol], agent.waits
+    kind = table.added if operator == "+" else table.deleted
+    if waits.conditions:
         note_change(agent, symbol, row)
     if agent.observers.hear_beliefs:
-        _tell_change(agent, "+", symbol, row, new, agent.cause_now())
-    return _raise(agent, (agent.beliefs[symbol].added, *row), new, apart)
+        _tell_change(agent, operator, symbol, row, annotations, agent.cause_now())
+    apart = apart or agent.options.new_focus
+    if (
+        agent.library.selects[kind] is None
+        and not (waits.events or _is_kept(agent, kind))
+        and (apart or not (agent.events or agent.intentions))
+    ):
+        return None  # nothing comes in between: the event would only be taken up and skipped
+    goal = (kind, *row)
+    if apart:
+        agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
+        return None
+    return goal if annotations is BY_SELF else Posted(goal, annotations)
 
 
 def _tell_change(
@@ -97,28 +119,10 @@ def _tell_change(
         observers.step.notes_unhandled(agent, (kind, *row), annotations)
 
 
-def _raise(agent: Circumstance, goal: Goal, annotations: Annotations, apart: bool) -> Raised:
-    """Pass the event to the step's intention, or queue it as external; None if no plan or observer needs it."""
-    kind, library = goal[0], agent.library
-    unplanned = (
-        library.selects[kind] is None
-        and not (library.reactions.of and library.reactions[kind])
-        and agent.options.events == "discard"
-    )
-    if apart or agent.options.new_focus:
-        if unplanned and not agent.waits.events:
-            return None
-        agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
-        return None
-    if unplanned and not (agent.events or agent.intentions or agent.waits.events):
-        # Nothing comes in between: the event would only be taken up and skipped.
-        return None
-    return goal if annotations is BY_SELF else Posted(goal, annotations)
-
-
 def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
-    """Return whether an external event would be handled rather than skipped."""
-    return agent.may_handle(kind) or agent.options.events != "discard"
+    """Return whether an event without a plan is handled rather than skipped: by a sub-plan, or again later."""
+    reactions = agent.library.reactions
+    return bool(reactions.of and reactions[kind]) or agent.options.events != "discard"
 
 
 def is_quiet(agent: Circumstance) -> bool:
@@ -139,7 +143,7 @@ def insert(
     for argument in row:  # most are numbers, strings and atoms
         if argument.__class__ not in ATOMIC and not is_key(argument):
             return _insert_aside(table, symbol, row, annotations, last)
-    held = table.get(row)
+    held = table.rows.get(row) if not table.late else table.get(row)
     return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
 
 
@@ -172,11 +176,7 @@ def delete_belief(
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
-    if agent.waits.conditions:
-        note_change(agent, symbol, removed)
-    if agent.observers.hear_beliefs:
-        _tell_change(agent, "-", symbol, removed, annotations, agent.cause_now())
-    return _raise(agent, (agent.beliefs[symbol].deleted, *removed), annotations, apart)
+    return _own_event(agent, "-", symbol, removed, annotations, apart)
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
