@@ -3,8 +3,9 @@
 Names are imported on first use: pytest imports this package at every start, for `pytest_plugin`.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
+
+from jacaros.exports import exported
 
 if TYPE_CHECKING:
     from jacaros.mas.embedding.running_agent import PursuedGoal
@@ -50,21 +51,14 @@ __all__ = [
 ]
 
 _MODULES = {
-    "fake_graph": ("FakeGraph",),
-    "harness": ("AgentHarness", "PursuedGoal"),
-    "outcomes": ("Outcome", "Problem", "SuiteOutcome", "write_junit"),
-    "paths": ("Verdict", "judge"),
-    "recorded": ("ActionFailed", "RecordedAct", "SentMessage"),
-    "run": ("RunResult", "run_project"),
-    "suites": ("AgentTest", "Suite", "collect", "suite_of"),
-    "trial": ("TrialOptions", "run_suite"),
+    "jacaros.mas.embedding.running_agent": "PursuedGoal",
+    "jacaros.testing.fake_graph": "FakeGraph",
+    "jacaros.testing.harness": "AgentHarness",
+    "jacaros.testing.paths": "Verdict judge",
+    "jacaros.testing.recorded": "ActionFailed RecordedAct SentMessage",
+    "jacaros.testing.run": "AgentTest Outcome Problem RunResult Suite SuiteOutcome "
+    "collect run_project suite_of write_junit",
+    "jacaros.testing.trial": "TrialOptions run_suite",
 }
-_HOME = {name: module for module, names in _MODULES.items() for name in names}
 
-
-def __getattr__(name: str) -> object:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__} has no attribute {name}")
-    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-    globals()[name] = value
-    return value
+__getattr__ = exported(__name__, _MODULES)
