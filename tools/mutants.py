@@ -488,7 +488,9 @@ def _parser() -> argparse.ArgumentParser:
     names = ", ".join(each.removeprefix("jacaros/") for each in SUBJECTS)
     parser.add_argument("subjects", nargs="*", help=f"packages (default: {names}), or PACKAGE=TESTS,TESTS")
     parser.add_argument(
-        "--sample", type=int, help=f"mutants of a package (default {SAMPLE}, 200 of agents/mind/rules; 0: all)"
+        "--sample",
+        type=int,
+        help=f"mutants of a package (default {SAMPLE}, 200 of agents/mind/rules; 0: all)",
     )
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample (default 1)")
     parser.add_argument(

@@ -213,6 +213,7 @@ def test_the_programs_of_the_repository_have_no_problems(capsys: pytest.CaptureF
 
 
 MEANT = {
+    "concurrency/fork_with_needs": {"short-wait"},
     "failure/goal_variable_failure_continues": {"context-never-true"},
     "failure/inapplicable_handler_drops_intention": {"context-never-true", "narrow-handler"},
     "failure/warning_inapplicable_handler": {"narrow-handler"},

@@ -84,7 +84,7 @@ def library(program: ProgramMetrics, group: Group = Group.LIBRARY, root: Path = 
 
 def test_plans_of_the_package_are_library_code(tmp_path: Path) -> None:
     program = measured(tmp_path, {"a.asl": f'{{ include("$jacaros/navigation.asl") }}\n{AGENT}'})
-    assert library(program) == {"asl/library/navigation.asl"}
+    assert library(program) == {"agents/language/library/navigation.asl"}
     assert program.counts(Group.AGENTS).lines == 3
 
 
@@ -100,7 +100,11 @@ def test_artifacts_of_the_package_are_library_code_with_what_they_import(
     tmp_path: Path, files: dict[str, str]
 ) -> None:
     found = library(measured(tmp_path, files))
-    assert {"artifacts/robots/battery.py", "artifacts/kit/ros_artifact.py", "artifacts/__init__.py"} <= found
+    assert {
+        "artifacts/robots/battery.py",
+        "artifacts/kit/ros_artifact.py",
+        "artifacts/kit/__init__.py",
+    } <= found
     assert not {"artifacts/robots/velocity.py", "artifacts/registry.py"} & found
     assert all(name.startswith("artifacts/") for name in found), "the platform does not count"
 

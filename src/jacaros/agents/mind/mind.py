@@ -35,10 +35,9 @@ from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP, Frame, Intention, NextStep, Posted, Raised
 from jacaros.agents.mind.state.pending import ACTION, Need, Waiting, Wanted
-from jacaros.agents.mind.state.plan import FAILED, SUSPENDED, Engine, Fail, Failure
+from jacaros.agents.mind.state.plan import FAILED, SUSPENDED, Engine, Fail, Failure, OpenFact, Rule
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.mind.state.ports import Architecture
-from jacaros.agents.mind.state.rule import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,

@@ -28,8 +28,15 @@ from jacaros.agents.mind.state.belief_base import take_away
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import EVENT_INTENTION, Intention
 from jacaros.agents.mind.state.pending import CoroutineWait
-from jacaros.agents.mind.state.plan import Plan, every_plan, label_of, position_of, with_subplans
-from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.plan import (
+    OpenFact,
+    Plan,
+    Rule,
+    every_plan,
+    label_of,
+    position_of,
+    with_subplans,
+)
 from jacaros.agents.mind.state.triggers import Trigger, trigger
 from jacaros.agents.terms.collections import QueueValue
 from jacaros.agents.terms.order import number_of

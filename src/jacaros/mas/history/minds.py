@@ -8,7 +8,7 @@ from jacaros.agents.mind.rules.meta_events import observe_mind
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.intention import Frame, Intention
-from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.terms.values import Annotated, Functor, Term, atom
 from jacaros.mas.history.deliberations import Allowance, DeliberationRecords, Links

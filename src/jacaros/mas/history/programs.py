@@ -8,9 +8,8 @@ from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.mind.explaining.failure_reason import unbracketed
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.state.plan import Plan, every_plan
+from jacaros.agents.mind.state.plan import Plan, Rule, every_plan
 from jacaros.agents.mind.state.plan_library import ProgramPlans
-from jacaros.agents.mind.state.rule import Rule
 from jacaros.agents.terms.text import text
 from jacaros.mas.history.words import named
 

@@ -10,7 +10,7 @@ from recording_host import printed
 
 from jacaros.agents.mind.state import belief_base
 from jacaros.agents.mind.state.belief_base import BeliefTables, Table
-from jacaros.agents.mind.state.rule import OpenFact
+from jacaros.agents.mind.state.plan import OpenFact
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, unify
 from jacaros.agents.terms.values import BY_SELF, Var, atom, functor

@@ -9,7 +9,7 @@ from jacaros.agents.mind.actions.internal_action import WrongArguments, elements
 from jacaros.agents.mind.rules import belief_update
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.state.belief_base import Table, parts, without_sources
-from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import own_annotations
 from jacaros.agents.terms.order import annotation_set, compare, ordered_by_python
 from jacaros.agents.terms.plans import RULE

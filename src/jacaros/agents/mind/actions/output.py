@@ -42,7 +42,7 @@ def printf(ctx: Context, template: Term, *arguments: Term) -> None:
     Raises:
         ActionError: the format is invalid or does not fit the arguments.
     """
-    from jacaros.agents.mind.actions.strings import (
+    from jacaros.agents.mind.actions.java_format import (
         java_format,  # imported here: few programs use it, and it needs decimal
     )
 

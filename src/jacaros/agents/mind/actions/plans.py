@@ -18,8 +18,7 @@ from jacaros.agents.mind.rules import plan_terms
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.plan import Plan
-from jacaros.agents.mind.state.rule import Rule
+from jacaros.agents.mind.state.plan import Plan, Rule
 from jacaros.agents.mind.storage import knowledge
 from jacaros.agents.terms.text import plan_text, text
 from jacaros.agents.terms.values import (

@@ -16,9 +16,8 @@ from jacaros.agents.mind.rules.searching import run, solve
 from jacaros.agents.mind.state.budget import SearchBudget
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP, Frame, NextStep
-from jacaros.agents.mind.state.plan import Every, Plan, Select
+from jacaros.agents.mind.state.plan import Answers, Every, Plan, Rule, Select
 from jacaros.agents.mind.state.plan_library import ProgramPlans
-from jacaros.agents.mind.state.rule import Answers, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.mind.state.triggers import trigger as trigger_of_kind
 from jacaros.agents.terms.substitution import ATOMIC

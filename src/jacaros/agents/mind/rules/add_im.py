@@ -25,9 +25,8 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     NextStep,
 )
-from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Every, Plan, Select
+from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Every, Plan, Rule, Select
 from jacaros.agents.mind.state.ports import MindObserver
-from jacaros.agents.mind.state.rule import Answers, Rule
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,

@@ -10,7 +10,7 @@ from jacaros.agents.mind.rules.searching import unify_rows
 from jacaros.agents.mind.state.belief_base import Row, Table, literal, parts, take_away, with_source
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import Posted, Raised
-from jacaros.agents.mind.state.rule import OpenFact, Rule
+from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import Trigger, resolve_all
 from jacaros.agents.mind.state.triggers import apart as with_own_variables
 from jacaros.agents.terms.order import merge_annotations

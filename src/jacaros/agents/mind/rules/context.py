@@ -16,9 +16,8 @@ from jacaros.agents.mind.state.belief_base import BeliefTables, Item, Table
 from jacaros.agents.mind.state.budget import SearchBudget, SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, Intention
-from jacaros.agents.mind.state.plan import Plan
+from jacaros.agents.mind.state.plan import Answers, Plan, Rule
 from jacaros.agents.mind.state.ports import Architecture
-from jacaros.agents.mind.state.rule import Answers, Rule
 from jacaros.agents.terms.arithmetic import RUNNING
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify

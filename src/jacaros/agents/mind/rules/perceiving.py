@@ -12,7 +12,7 @@ from jacaros.agents.mind.state.act import Percept
 from jacaros.agents.mind.state.belief_base import Row, Table, literal, take_away
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import EVENT_GOAL, EVENT_INTENTION, GOAL, Intention
-from jacaros.agents.mind.state.rule import OpenFact
+from jacaros.agents.mind.state.plan import OpenFact
 from jacaros.agents.mind.state.triggers import Trigger
 from jacaros.agents.terms.collections import detached, holds_collection
 from jacaros.agents.terms.substitution import ATOMIC, is_key

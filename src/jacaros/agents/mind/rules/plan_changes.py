@@ -13,9 +13,8 @@ from jacaros.agents.mind.rules.meta_events import AWAKING, SLEEPING
 from jacaros.agents.mind.state.belief_base import is_source
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN as PLAN_OF_FRAME
-from jacaros.agents.mind.state.plan import Failure, Plan, label_of, with_subplans
+from jacaros.agents.mind.state.plan import Failure, Plan, Rule, label_of, with_subplans
 from jacaros.agents.mind.state.plan_library import PlanLibrary, ProgramPlans
-from jacaros.agents.mind.state.rule import Rule
 from jacaros.agents.terms.plans import PLAN, RULE, TRIGGERS, is_body
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text

@@ -23,7 +23,7 @@ from jacaros.agents.mind.rules.searching import (
 )
 from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.rule import Answers, OpenFact, Rule
+from jacaros.agents.mind.state.plan import Answers, OpenFact, Rule
 from jacaros.agents.mind.state.triggers import namespace_name
 from jacaros.agents.terms import plans
 from jacaros.agents.terms.arithmetic import settle

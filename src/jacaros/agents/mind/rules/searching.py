@@ -8,8 +8,7 @@ from typing import Any, NoReturn, Protocol
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.state.belief_base import Table
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.plan import Failure
-from jacaros.agents.mind.state.rule import Answers
+from jacaros.agents.mind.state.plan import Answers, Failure
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.unifier import Trail, each_annotation_match, undo, unify
 from jacaros.agents.terms.values import String, Term, Var, atom, functor

@@ -8,8 +8,7 @@ from math import inf
 from typing import Any, TypeVar
 
 from jacaros.agents.mind.state.budget import Budget, SearchBudget
-from jacaros.agents.mind.state.plan import Engine
-from jacaros.agents.mind.state.rule import Answers, Entry, OpenFact
+from jacaros.agents.mind.state.plan import Answers, Engine, Entry, OpenFact
 from jacaros.agents.mind.state.triggers import Trigger, trigger
 from jacaros.agents.terms import values
 from jacaros.agents.terms.order import annotation_set

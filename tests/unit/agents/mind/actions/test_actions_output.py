@@ -4,7 +4,7 @@ import pytest
 from fake_context import FakeContext
 
 from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
-from jacaros.agents.mind.actions.strings import java_format
+from jacaros.agents.mind.actions.java_format import java_format
 from jacaros.agents.terms.values import String, Var
 
 
