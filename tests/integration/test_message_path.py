@@ -33,7 +33,7 @@ def is_apart(code: CodeType) -> bool:
     """Whether a function, with all that it calls, lies off the way."""
     name = code.co_qualname
     return (
-        code.co_filename.startswith((f"{SOURCES}sim/", f"{SOURCES}clock.py", f"{SOURCES}timer_queue.py"))
+        code.co_filename.startswith((f"{SOURCES}sim/", f"{SOURCES}runtime/clock.py"))
         or name in OTHERS
         or name.endswith("__missing__")
         or name.startswith(("AskedFor", "step_boundary"))
