@@ -60,10 +60,7 @@ def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cy
             if incoming.called or not always:
                 look_around(agent, counts.cycles)
             if agent.events:
-                if agent.atomic is None:
-                    handle_event(agent)
-                else:
-                    handle_atomic_event(agent, agent.atomic)
+                (handle_event if agent.atomic is None else handle_atomic_event)(agent)
         else:
             chosen = _continue_held(agent)
         if chosen is None:
@@ -82,8 +79,6 @@ def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cy
             left = fuel = end - counts.cycles
             try:
                 left = execute(agent, chosen, fuel)
-            except InternalError:
-                raise
             except Exception as fault:
                 failure.drop_after_error(agent, agent.current or chosen, fault)
                 left -= 1

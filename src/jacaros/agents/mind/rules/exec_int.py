@@ -54,8 +54,6 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
         if step is not None:
             try:
                 posted = step(agent, frame)
-            except InternalError:
-                raise
             except Exception as fault:
                 posted = step_failed(agent, intention, fault)
             if posted is FAILED:
@@ -79,20 +77,14 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
             )
             if listened:
                 announce(agent, intention, goal, annotations)
-            if fuel <= last or events or intentions or incoming.called:
-                if not _post(agent, intention, goal, annotations):
-                    break
-            elif not push(agent, intention, goal, annotations):
-                break
-            elif agent.atomic is None:
-                continue  # the next cycle, which would handle this event alone, has begun
-            agent.make_ready(intention)
+            alone = not (fuel <= last or events or intentions or incoming.called)
+            if (push if alone else _post)(agent, intention, goal, annotations):
+                if alone and agent.atomic is None:
+                    continue  # the next cycle, which would handle this event alone, has begun
+                agent.make_ready(intention)
             break
         if fuel <= last or events or intentions or incoming.called:
-            if agent.selections.urgencies is None:
-                intentions.append(intention)
-            else:
-                agent.make_ready(intention)
+            agent.make_ready(intention)
             break
     agent.current = None
     return fuel
@@ -114,6 +106,8 @@ def _post(agent: Circumstance, intention: Intention, goal: Goal, annotations: Ev
 
 def step_failed(agent: Circumstance, intention: Intention, fault: Exception | None = None) -> object:
     """A step failed, or raised an exception: return the event for the nearest handler, or `SUSPENDED` without one."""
+    if isinstance(fault, InternalError):
+        raise fault
     if agent.trail:
         undo(agent.trail, 0)
     if fault is not None and fault.__class__ is not Fail:

@@ -297,7 +297,13 @@ def report_skipped(agent: Circumstance, what: str, fault: Exception) -> None:
 
 
 def drop_after_error(agent: Circumstance, intention: Intention, fault: Exception) -> None:
-    """End an intention that cannot continue, without failure events."""
+    """End an intention that cannot continue, without failure events.
+
+    Raises:
+        InternalError: that is what *fault* is.
+    """
+    if isinstance(fault, InternalError):
+        raise fault
     note_lack_of_memory(agent, fault)
     undo(agent.trail, 0)
     agent.current = None

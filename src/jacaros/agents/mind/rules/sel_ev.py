@@ -131,10 +131,11 @@ def handle_held_event(agent: Circumstance, event: Event) -> None:
         handle_event(agent, event)
 
 
-def handle_atomic_event(agent: Circumstance, intention: Intention) -> None:
-    """An atomic intention's own event comes before all others, which wait."""
-    event = event_of(agent, intention)
-    if event is not None:
+def handle_atomic_event(agent: Circumstance) -> None:
+    """The atomic intention's own event comes before all others, which wait."""
+    intention = agent.atomic
+    event = None if intention is None else event_of(agent, intention)
+    if intention is not None and event is not None:
         remove_event(agent, event)
         if not is_held_before_event(agent, event):
             _push_atomic(agent, intention, event)
