@@ -36,9 +36,19 @@ USED = "\n".join(
 )
 
 
-@pytest.mark.parametrize("name", [*ANNOTATIONS, *PATTERNS, *OPERATORS])
-def test_a_feature_is_used(name: str) -> None:
-    assert re.search(rf"\b{name}\b", USED)
+@pytest.mark.parametrize("name", ANNOTATIONS)
+def test_an_annotation_is_used(name: str) -> None:
+    assert re.search(rf"\[[^\]\n]*\b{name}\b[^\]\n]*\]", USED)
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_a_goal_pattern_is_used(name: str) -> None:
+    assert re.search(rf"\{{ *begin {name}\(", USED)
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_an_operator_is_used(name: str) -> None:
+    assert re.search(rf"derive\(\w+, *{name}\(", USED)
 
 
 PROGRAM = """
