@@ -230,12 +230,7 @@ class Mind(Circumstance):
         deadlines.adopt(self, event)
         self.architecture.ready()
 
-    def run(self, fuel: int) -> bool:
-        """Run at most *fuel* reasoning cycles; return True if there is more to do."""
-        more = cycle.run(self, fuel)
-        if self.waits.needs:
-            needs.sweep(self)
-        return more
+    run = cycle.run
 
     # --- from outside --------------------------------------------------------------------------------------
 
@@ -259,7 +254,8 @@ class Mind(Circumstance):
             raise self.budgets["mailbox_limit"].failure(
                 len(self.incoming.messages), f" that {self.name} has not read"
             )
-        self.selections.note_message(message)
+        if self.selections.urgencies is not None:
+            self.selections.note_message(message)
         self.incoming.messages.append(message)
         self.incoming.called = True
         self.architecture.ready()

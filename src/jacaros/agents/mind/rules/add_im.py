@@ -157,12 +157,14 @@ def select_plan(
     trail.serial += 1
     if intention is not None and intention.frames and intention.frames[-1][PLAN].nested:
         frame = forks.select_in_scope(agent, intention, goal, annotations)
-    if frame is None:
-        if selections.chooses or selections.option_filter.rows:
-            frame = selections.select_option(goal, annotations, intention)
-        else:
-            select = agent.library.selects[goal[0]]
-            frame = None if select is None else select(agent, goal, annotations)
+    if frame is not None:
+        pass
+    elif selections.chooses or selections.option_filter.rows:
+        frame = selections.select_option(goal, annotations, intention)
+    else:
+        select = agent.library.selects[goal[0]]
+        if select is not None:
+            frame = select(agent, goal, annotations)
     if trail:
         trail.clear()
     return frame
@@ -202,7 +204,7 @@ def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: Eve
         and caller[PLAN].replaceable
         and kind.on_fail is not None
         and agent.options.tail_calls
-        and not any(need.is_of(caller) for need in agent.waits.needs.values())
+        and not (agent.waits.needs and any(need.is_of(caller) for need in agent.waits.needs.values()))
     ):
         frames[-1] = frame
         if agent.features.meta:

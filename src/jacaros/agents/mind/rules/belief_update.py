@@ -51,7 +51,7 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
         external_change(agent, "-", symbol, newest, BY_SELF)
     else:
         delete_any(agent, symbol, annotations)
-    return add_belief(agent, symbol, row, annotations)
+    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations))
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -86,11 +86,7 @@ def _own_event(
     if agent.observers.hear_beliefs:
         _tell_change(agent, operator, symbol, row, annotations, agent.cause_now())
     apart = apart or agent.options.new_focus
-    if (
-        agent.library.selects[kind] is None
-        and not (waits.events or _is_kept(agent, kind))
-        and (apart or not (agent.events or agent.intentions))
-    ):
+    if (apart or not (agent.events or agent.intentions)) and not _matters(agent, kind):
         return None  # nothing comes in between: the event would only be taken up and skipped
     goal = (kind, *row)
     if apart:
@@ -119,10 +115,17 @@ def _tell_change(
         observers.step.notes_unhandled(agent, (kind, *row), annotations)
 
 
-def _is_kept(agent: Circumstance, kind: Trigger) -> bool:
-    """Return whether an event without a plan is handled rather than skipped: by a sub-plan, or again later."""
-    reactions = agent.library.reactions
-    return bool(reactions.of and reactions[kind]) or agent.options.events != "discard"
+def _matters(agent: Circumstance, kind: Trigger) -> bool:
+    """Return whether an event may have an effect: there are plans or sub-plans for it, something waits for events, or those
+    without a plan are kept.
+    """
+    library = agent.library
+    return bool(
+        library.selects[kind] is not None
+        or agent.waits.events
+        or (library.reactions.of and library.reactions[kind])
+        or agent.options.events != "discard"
+    )
 
 
 def is_quiet(agent: Circumstance) -> bool:
@@ -304,7 +307,7 @@ def external_change(
         _tell_change(agent, operator, symbol, row, annotations, cause, believed)
     table = agent.beliefs[symbol]
     kind = table.added if operator == "+" else table.deleted
-    if agent.library.selects[kind] is not None or agent.waits.events or _is_kept(agent, kind):
+    if _matters(agent, kind):
         agent.post(((kind, *row), None, annotations, cause))
     if agent.waits.conditions:
         note_change(agent, symbol, row)

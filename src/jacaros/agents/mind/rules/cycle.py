@@ -3,7 +3,7 @@
 Each cycle takes in new input, handles one event, and lets one intention run one step.
 """
 
-from jacaros.agents.mind.rules import failure, meta_events
+from jacaros.agents.mind.rules import failure, meta_events, needs
 from jacaros.agents.mind.rules.clr_int import end_achieved_goals
 from jacaros.agents.mind.rules.exec_int import execute, select_intention
 from jacaros.agents.mind.rules.pending import check_conditions
@@ -27,11 +27,11 @@ from jacaros.errors import InternalError
 
 def run(agent: Circumstance, fuel: int) -> bool:
     """Make at most *fuel* cycles; True when there is more to do."""
-    if agent.options.search_limit and fuel > 1:
-        # Each cycle gets the whole budget of searches.
-        return all(run(agent, 1) for _ in range(fuel))
-    if agent.beliefs.budget is not None:
-        agent.beliefs.budget.renew()
+    budget = agent.beliefs.budget
+    if budget is not None:
+        if fuel > 1:  # each cycle gets the whole budget
+            return all(run(agent, 1) for _ in range(fuel))
+        budget.renew()
     # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
@@ -45,6 +45,8 @@ def run(agent: Circumstance, fuel: int) -> bool:
         if agent.counts.cycles >= agent.counts.next_check:
             agent.beliefs.forget_names()
             agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
+        if agent.waits.needs:
+            needs.sweep(agent)
 
 
 def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cycle is here
@@ -136,8 +138,11 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         check_conditions(agent)
         do_tasks(agent)
     if looks and incoming.messages:
-        for message in agent.selections.select_messages():
-            read_message(agent, message)
+        if agent.selections.plain:
+            read_message(agent, incoming.messages.popleft())
+        else:
+            for message in agent.selections.select_messages():
+                read_message(agent, message)
     incoming.called = bool(
         incoming.percepts
         or incoming.messages

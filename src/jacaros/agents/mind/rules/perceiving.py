@@ -44,30 +44,31 @@ def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
         InternalError: a literal of a percept is not a literal.
     """
     beliefs, selects, reactions = agent.beliefs, agent.library.selects, agent.library.reactions
-    holders = beliefs.held_percepts
+    holders, reacts = beliefs.held_percepts, bool(reactions.of)
     for percept in percepts:
         symbol, row, keyed = percept.kept or _keep(percept)
         kind, shown, annotations = percept.kind, percept.literal, percept.annotations
         table = beliefs[symbol]
-        own: Row | None = row
+        trigger = table.added
         if kind == "add" and keyed and shown not in holders and row not in table.rows and not table.late:
-            own = None if table.add(row, annotations) is None else row
-            if own is not None:
-                holders[shown] = annotations
+            if table.add(row, annotations) is None:
+                continue
+            holders[shown] = annotations
         elif kind == "remove" and keyed and holders.get(shown) is annotations is table.rows.get(row):
+            trigger = table.deleted
             del holders[shown]  # nothing else makes the agent believe it
             table.remove(row)
         elif kind != "signal" or not keyed:
-            own = _take_unusual(agent, symbol, row, percept, keyed)
-        if own is None:
-            continue
+            trigger = table.deleted if kind == "remove" else table.added
+            changed = _take_unusual(agent, symbol, row, percept, keyed)
+            if changed is None:
+                continue
+            row = changed
         if not quiet:
-            operator = "-" if kind == "remove" else "+"
-            external_change(agent, operator, symbol, own, annotations, percept.cause, kind != "signal")
-            continue
-        trigger = table.deleted if kind == "remove" else table.added
-        if selects[trigger] is not None or (reactions.of and reactions[trigger]):
-            agent.post(((trigger, *own), None, annotations, percept.cause))
+            believed = kind != "signal"
+            external_change(agent, trigger.operator, symbol, row, annotations, percept.cause, believed)
+        elif selects[trigger] is not None or (reacts and reactions[trigger]):
+            agent.post(((trigger, *row), None, annotations, percept.cause))
 
 
 def _take_unusual(

@@ -61,8 +61,15 @@ def read_message(agent: Circumstance, message: SpeechAct) -> None:
     if observer is not None:
         observer.reads(message)
     try:
-        if message.in_reply_to is None or not _answers_question(agent, message):
-            _receive(agent, message)
+        if message.in_reply_to is not None and _answers_question(agent, message):
+            pass
+        elif agent.accepts(message):
+            performative = message.performative
+            waits_its_turn = performative not in _IMMEDIATE and (agent.events or agent.atomic is not None)
+            if waits_its_turn or agent.library.selects[RECEIVED] is not None:
+                _post(agent, message)
+            else:
+                _ACTIONS.get(performative, _warn_of)(agent, message)
     except InternalError:
         raise
     except Exception as fault:
@@ -77,21 +84,15 @@ def _skip(agent: Circumstance, message: SpeechAct, fault: Exception) -> None:
         answer(agent, message, None)
 
 
-def _receive(agent: Circumstance, message: SpeechAct) -> None:
-    """Receive a message unless it is refused: now, or as an event in the order of the queue.
+def _post(agent: Circumstance, message: SpeechAct) -> None:
+    """Post ``+!kqml_received`` for a message, in the order of the queue.
 
-    As in Jason, ``+!kqml_received`` is posted for plans of the program. Questions and the like are posted, too, because
-    they must not overtake the effects of earlier messages, or see those of half an atomic plan.
+    As in Jason, plans of the program may handle it. Questions and the like are posted, too, because they must not overtake
+    the effects of earlier messages, or see those of half an atomic plan.
     """
-    if not agent.accepts(message):
-        return
-    waits_its_turn = message.performative not in _IMMEDIATE and (agent.events or agent.atomic is not None)
-    if waits_its_turn or agent.library.selects[RECEIVED] is not None:
-        sender, performative = atom(message.sender), atom(message.performative)
-        goal: Goal = (RECEIVED, sender, performative, message.content, atom(message.id))
-        agent.post((goal, None, BY_SELF, agent.cause_now()))
-    else:
-        _act(agent, message)
+    sender, performative = atom(message.sender), atom(message.performative)
+    goal: Goal = (RECEIVED, sender, performative, message.content, atom(message.id))
+    agent.post((goal, None, BY_SELF, agent.cause_now()))
 
 
 def receive_event(agent: Circumstance, goal: Goal) -> None:
@@ -99,18 +100,14 @@ def receive_event(agent: Circumstance, goal: Goal) -> None:
     sender, performative, content, id = goal[1:]
     message = SpeechAct(text(performative), text(sender), agent.name, content, text(id))
     try:
-        _act(agent, message)
+        _ACTIONS.get(message.performative, _warn_of)(agent, message)
     except InternalError:
         raise
     except Exception as fault:
         _skip(agent, message, fault)
 
 
-def _act(agent: Circumstance, message: SpeechAct) -> None:
-    action = _ACTIONS.get(message.performative)
-    if action is not None:
-        action(agent, message)
-        return
+def _warn_of(agent: Circumstance, message: SpeechAct) -> None:
     agent.architecture.log(
         "warning", f"unknown performative {message.performative} in a message from {message.sender}"
     )

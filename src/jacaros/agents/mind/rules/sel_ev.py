@@ -93,18 +93,13 @@ def handle_event(agent: Circumstance, event: Event | None = None) -> None:
 
     *event* is the one before which an observer held the agent, if it did.
     """
-    selections, step = agent.selections, agent.observers.step
     while event is not None or agent.events:
         if event is None:
-            event = agent.events.popleft() if selections.plain else selections.select_event()
-            if event is None or (step is not None and is_held_before_event(agent, event)):
+            event = agent.events.popleft() if agent.selections.plain else agent.selections.select_event()
+            if event is None or (agent.observers.step is not None and is_held_before_event(agent, event)):
                 return
         try:
-            intention = event[EVENT_INTENTION]
-            if intention is None:
-                if begin_intention(agent, event):
-                    return
-            elif _continue_intention(agent, intention, event):
+            if (begin_intention if event[EVENT_INTENTION] is None else _continue_intention)(agent, event):
                 return
         except InternalError:
             raise
@@ -113,8 +108,9 @@ def handle_event(agent: Circumstance, event: Event | None = None) -> None:
         event = None
 
 
-def _continue_intention(agent: Circumstance, intention: Intention, event: Event) -> bool:
-    if intention.dropped:
+def _continue_intention(agent: Circumstance, event: Event) -> bool:
+    intention = event[EVENT_INTENTION]
+    if intention is None or intention.dropped:
         return False
     agent.current = intention  # contexts may ask for it
     if push(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS]):
@@ -177,13 +173,13 @@ def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
 def begin_intention(agent: Circumstance, event: Event) -> bool:
     """Begin an intention for an external event; False when it has no plan and is dropped silently."""
     goal, _, annotations, cause = event
-    kind, observer, reactions, reacted = goal[0], agent.observers.mind, agent.library.reactions, False
+    kind, reactions, reacted = goal[0], agent.library.reactions, False
     if reactions.of and kind.kind == "" and reactions[kind]:
         reacted = _react(agent, event, reactions[kind])
-    if observer is None:
+    if agent.observers.mind is None:
         frame = select_plan(agent, goal, annotations)
     else:
-        frame, cause = select_for_reasons(agent, observer, goal, annotations, None, cause)
+        frame, cause = select_for_reasons(agent, agent.observers.mind, goal, annotations, None, cause)
     if frame is None:
         return _begin_without_plan(agent, (goal, None, annotations, cause), reacted)
     intention = agent.new_intention(cause)
@@ -191,7 +187,7 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
     if kind.failing:
         intention.handlers.append(0)
     # A goal that needs something has annotations beside its source.
-    plain = not kind.kind or (isinstance(annotations, tuple) and len(annotations) == 1)
+    plain = not kind.kind or (annotations.__class__ is tuple and len(annotations) == 1)
     if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
         if agent.selections.urgencies is None:
             agent.intentions.append(intention)

@@ -337,9 +337,8 @@ class Circumstance(_Rules):
 
     def new_intention(self, cause: Any = None) -> Intention:
         """Make an intention with a new number; it is not in any queue yet."""
-        self.counts.intentions += 1
-        intention = Intention(self.counts.intentions, cause)
-        self.alive[intention.id] = intention
+        number = self.counts.intentions = self.counts.intentions + 1
+        intention = self.alive[number] = Intention(number, cause)
         return intention
 
     def note_plan(self, intention: Intention, plan: Plan) -> None:
@@ -373,7 +372,6 @@ class Circumstance(_Rules):
                 self.observe_rest(intention)
             self.end_above(intention, 0)
             intention.frames.clear()
-        if intention.handlers:
             intention.handlers.clear()
         self.alive.pop(intention.id, None)
         if self.holders or self.conditioned:

@@ -58,7 +58,7 @@ class Intention:
 
     urgencies: list[tuple[Frame, int]]
 
-    def __init__(self, number: int, cause: Cause | None = None) -> None:
+    def __init__(self, number: int, cause: Cause | None) -> None:
         self.id = number
         self.frames: list[Frame] = []
         self.handlers: list[int] = []
