@@ -30,7 +30,6 @@ COMMANDS = {
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
     "check": ("jacaros.cli.check", "Report problems in programs, projects and mapping files."),
     "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
-    "compile": ("jacaros.cli.compile", "Show the Python code generated for a program."),
     "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
     "why": ("jacaros.cli.why", "Explain why something did or did not happen in a recorded run."),
     "replay": ("jacaros.cli.replay", "Replay a recorded run against a changed program."),

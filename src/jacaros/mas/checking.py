@@ -423,12 +423,12 @@ def _check_program(
 
 def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
     """Return warnings about plans that run slower because they are too large for Python's compiler."""
-    from jacaros.agents.mind.generated.compiler import Units, too_large
+    from jacaros.agents.mind.generated.compiler import too_large
     from jacaros.agents.mind.mind import new_engine  # here: see `_of_artifacts`
     from jacaros.agents.mind.state.plan_library import ProgramPlans
 
     plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
-    for plan, fault in too_large(plans, Units(code.actions)):
+    for plan, fault in too_large(plans, code.actions):
         yield Diagnostic(
             "warning",
             f"{fault}, so it runs slower",

@@ -11,7 +11,8 @@ from typing import Any
 
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.generated.compiler import Units
+from jacaros.agents.mind.generated.compiler import executed
+from jacaros.agents.mind.generated.unit import write_select
 from jacaros.agents.mind.state.plan import Plan, label_of
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.unifier import Trail
@@ -36,7 +37,7 @@ def selected(program: str, actions: dict[str, InternalAction] | None = None) -> 
     tree, _ = load_program("robot.asl", program)
     plans = [Plan(node, label_of(node, i)) for i, node in enumerate(tree.plans)]
     kind = trigger("+", "!", functor("g", 1))
-    select = Units(actions or {}).select(kind, plans)
+    select = executed(write_select(kind, plans, actions or {}))
     frame = select(Bare(), (kind, 3.0), BY_SELF)
     assert frame is not None
     return frame
@@ -143,7 +144,7 @@ def test_steps_of_an_included_plan_carry_their_own_file(tmp_path: Path) -> None:
         ".bad": InternalAction(".bad", broken),
         ".print": InternalAction(".print", broken),
     }
-    select = Units(actions).select(kind, plans)
+    select = executed(write_select(kind, plans, actions))
     places = []
     for argument in (1.0, 6.0):
         frame = select(Bare(), (kind, argument), BY_SELF)

@@ -1,7 +1,6 @@
-"""Generated text is compiled with the line numbers of the agent program, in one way or the other."""
+"""Generated text is compiled with the line numbers of the agent program."""
 
 import traceback
-from types import CodeType
 
 import pytest
 
@@ -21,18 +20,7 @@ def inner(call):
 ORIGINS = [0, 900, 900, 7, 7, 100_000, 7, 12, 900, 3, 3, 3]
 
 
-def lines_by_name(code, found=None):
-    found = {} if found is None else found
-    found.setdefault(code.co_name, set()).update(line for _, _, line in code.co_lines() if line is not None)
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            lines_by_name(constant, found)
-    return found
-
-
-@pytest.mark.parametrize("by_table", [True, False])
-def test_a_traceback_shows_the_lines_of_the_program(by_table, monkeypatch):
-    monkeypatch.setattr(function, "_TABLES_ARE_KNOWN", by_table)
+def test_a_traceback_shows_the_lines_of_the_program():
     names = {}
     exec(function.compile_text(TEXT, ORIGINS, "program.asl"), names)
     with pytest.raises(ZeroDivisionError) as raised:
@@ -44,10 +32,3 @@ def test_a_traceback_shows_the_lines_of_the_program(by_table, monkeypatch):
         ("program.asl", 12, "<lambda>"),
     ]
     assert names["first"].__code__.co_firstlineno == 900
-
-
-def test_both_ways_give_the_same_lines(monkeypatch):
-    by_table = lines_by_name(function.compile_text(TEXT, ORIGINS, "program.asl"))
-    monkeypatch.setattr(function, "_TABLES_ARE_KNOWN", False)
-    by_tree = lines_by_name(function.compile_text(TEXT, ORIGINS, "program.asl"))
-    assert by_table == by_tree

@@ -24,38 +24,7 @@ from jacaros.agents.terms.substitution import ATOMIC
 from jacaros.agents.terms.unifier import Trail
 from jacaros.agents.terms.values import CONS, NIL, Functor, List, String, Term, Var, functor
 
-# Units of generated code, made into functions.
-
-
 Function = Callable[..., Any]
-
-
-class Units:
-    """Makes functions of plans and rules.
-
-    Args:
-        actions: the internal actions that they may call.
-    """
-
-    def __init__(self, actions: Mapping[str, InternalAction]) -> None:
-        self.actions = actions
-
-    def select(
-        self, kind: Trigger, plans: Sequence[Plan], outer: Plan | None = None, every: bool = False
-    ) -> Function:
-        """The select function of an event kind, see `jacaros.agents.mind.generated.unit.write_select`."""
-        return executed(write_select(kind, plans, self.actions, outer, every))
-
-    def search(
-        self, symbol: Functor, pattern: int, before: Sequence[Rule], after: Sequence[Rule], trampoline: bool
-    ) -> Function:
-        """The generator function of a predicate for one pattern of use, see `jacaros.agents.mind.generated.selection`."""
-        first, last = [rule.node for rule in before], [rule.node for rule in after]
-        return executed(write_search(symbol, pattern, first, last, self.actions, trampoline))
-
-    def rule(self, rule: Rule) -> Function:
-        """The generator function of a rule."""
-        return executed(write_rule(rule.node, self.actions))
 
 
 def executed(made: Written) -> Function:
@@ -99,7 +68,7 @@ class Searches(dict[int, Search]):
     """The generator functions of a predicate with rules, by pattern of use, each made when it is first wanted.
 
     Args:
-        units: makes them.
+        actions: the internal actions that they may call.
         functions: where functions are kept that all agents of a program share.
 
     Attributes:
@@ -110,13 +79,13 @@ class Searches(dict[int, Search]):
     def __init__(
         self,
         predicate: Predicate,
-        units: Units,
+        actions: Mapping[str, InternalAction],
         functions: dict[Any, Any],
         deep: bool = False,
     ) -> None:
         super().__init__()
         self.predicate = predicate
-        self._units, self._functions = units, functions
+        self._actions, self._functions = actions, functions
         self.deep = deep
         self.before = False
 
@@ -170,7 +139,8 @@ class Searches(dict[int, Search]):
         key = (symbol, pattern, names, self.deep)
         if key not in functions:
             try:
-                search = self._units.search(symbol, pattern, before, after, self.deep)
+                first, last = [rule.node for rule in before], [rule.node for rule in after]
+                search = executed(write_search(symbol, pattern, first, last, self._actions, self.deep))
             except (SyntaxError, RecursionError):
                 return None  # Python's limits for one function
             # What was written is held, so that nothing else can be at its place in memory.
@@ -346,7 +316,6 @@ class Compiler(Interpreter):
 
     def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         super().__init__(actions)
-        self._units = Units(actions)
         self._functions: dict[Any, Any] = {}
         self._begun = False
         self._one_by_one: dict[Trigger, PlanByPlan] = {}
@@ -356,7 +325,7 @@ class Compiler(Interpreter):
 
         def compiled(some: Sequence[Plan], outer: Plan | None) -> Select:
             try:
-                return self._units.select(trigger, some, outer)
+                return executed(write_select(trigger, some, self.actions, outer))
             except TOO_LARGE:
                 if len(some) > 1:
                     raise
@@ -373,7 +342,7 @@ class Compiler(Interpreter):
     def every(self, trigger: Trigger, plans: Sequence[Plan]) -> Every:
         """The same for all applicable plans."""
         try:
-            return self._units.select(trigger, plans, every=True)
+            return executed(write_select(trigger, plans, self.actions, every=True))
         except TOO_LARGE:
             return super().every(trigger, plans)
 
@@ -407,7 +376,7 @@ class Compiler(Interpreter):
             return
         self._begun = True
         program = agent.library.program
-        for _, told in too_large(program.plans, self._units):
+        for _, told in too_large(program.plans, self.actions):
             agent.architecture.log("warning", f"{told}: it runs slower")
         urgencies = agent.selections.urgencies
         if urgencies is not None:
@@ -436,14 +405,14 @@ class Compiler(Interpreter):
         key = (id(rule.written),)
         if key not in functions:
             # Hold the syntax, so that no other object can get the same id.
-            functions[key] = (self._units.rule(rule), rule.written)
+            functions[key] = (executed(write_rule(rule.node, self.actions)), rule.written)
         return functions[key][0]
 
     def searches(self, predicate: Any) -> tuple[Any, Any] | None:
         """Functions that answer questions for a predicate with rules, and those for deep searches."""
         return (
-            Searches(predicate, self._units, self._functions),
-            Searches(predicate, self._units, self._functions, deep=True),
+            Searches(predicate, self.actions, self._functions),
+            Searches(predicate, self.actions, self._functions, deep=True),
         )
 
 
@@ -451,7 +420,7 @@ _LARGE = 100
 """Parts of a plan from which on it is looked at whether it can be compiled."""
 
 
-def too_large(plans: Sequence[Plan], units: Units) -> Iterator[tuple[Plan, str]]:
+def too_large(plans: Sequence[Plan], actions: Mapping[str, InternalAction]) -> Iterator[tuple[Plan, str]]:
     """Yield the plans that are too large to compile, each with a description."""
     for plan in plans:
         if sum(1 for _ in islice(walk(plan.node), _LARGE)) < _LARGE:
@@ -460,7 +429,7 @@ def too_large(plans: Sequence[Plan], units: Units) -> Iterator[tuple[Plan, str]]
         symbol = plan.trigger_functor()
         kind = trigger_of_kind(head.operator, head.kind, symbol or functor("plan", 0))
         try:
-            units.select(kind, [plan])
+            executed(write_select(kind, [plan], actions))
         except TOO_LARGE as fault:
             name = f"{head.operator}{head.kind}{'_' if symbol is None else repr(symbol)}"
             span = plan.node.span
