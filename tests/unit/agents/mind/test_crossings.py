@@ -1,0 +1,159 @@
+"""Two features that meet: handlers and scopes, forks and resources, goal conditions and faults, queues and limits."""
+
+import pytest
+from recording_host import RecordingHost, mind, printed
+
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.actions.internal_action import ActionError
+from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
+from jacaros.agents.terms.values import SOURCE_PERCEPT, structure
+
+
+def message(performative: str, content: str) -> SpeechAct:
+    return SpeechAct(performative, "friend", "tester", lower_value(parse_term(content)), "m1")
+
+
+def percept(name: str, value: float) -> Percept:
+    return Percept("add", structure(name, value), (SOURCE_PERCEPT,))
+
+
+def needs_granted(act: Act) -> Completion | None:
+    return Completion(True) if act.functor.name == ".needs" else None
+
+
+def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs() -> None:
+    """Jason handles it there again, for ever."""
+    host = mind(
+        """
+        !g.
+        +!g <- .fail.
+        -!g <- .print(handles_g); !h.
+        +!h <: false <- !s; .print(not_reached). { +!s <- .fail. }
+        -!h <- .print(handles_h); .stopMAS.
+        """
+    )
+    host.run(fuel=100)
+    assert host.printed == ["handles_g", "handles_h"]
+
+
+def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts() -> None:
+    host = mind(
+        """
+        !g(2).
+        +!g(0) <- .wait(100).
+        +!g(N) <: false <- !g(N - 1). { +e(_) <- .print(reacts(N)). }
+        """
+    )
+    host.run(seconds=0.05)
+    host.agent.perceive([percept("e", 1.0)])
+    host.run(seconds=0.01)
+    assert host.printed == ["reacts(1)"]
+
+
+def test_the_first_branch_of_an_atomic_plan_is_not_interrupted() -> None:
+    lines = printed(
+        """
+        !g. !other.
+        @p[atomic] +!g <- (.print(a1); .print(a2); .print(a3)) |&| (.print(b1); .print(b2)).
+        +!other <- .print(o1); .print(o2).
+        """
+    )
+    assert lines[:3] == ["a1", "a2", "a3"]
+    assert sorted(lines[3:]) == ["b1", "b2", "o1", "o2"]
+
+
+def test_branches_keep_what_their_plan_needs_until_the_last_has_ended() -> None:
+    host = mind(
+        "!g. @p[needs(arm)] +!g <- (.wait(10); .print(first)) |&| (.wait(50); .print(second)); .print(both).",
+        complete=needs_granted,
+    )
+    host.run(seconds=0.03)
+    assert host.printed == ["first"]
+    assert host.cancelled == []
+    host.run()
+    assert host.printed == ["first", "second", "both"]
+    assert host.cancelled == [host.acts[0].id]
+    host.agent.receive(message("tell", "p"))
+    host.run()
+    assert len(host.cancelled) == 1
+
+
+def test_a_goal_condition_that_cannot_be_evaluated_is_reported_once_and_looked_at_again() -> None:
+    host = mind(
+        """
+        n(0). !start.
+        +!start <- !g; .print(after).
+        +!g <: n(N) & 5 div N > 1 <- .wait(50); -+n(5); .print(five); .wait(50); -+n(2); .wait(50); .print(late).
+        """
+    )
+    host.run()
+    assert host.printed == ["five", "after"]
+    assert [text for level, text in host.logged if level == "error"] == [
+        "goal condition of plan p__2 skipped: ArithmeticFault: integer division by zero"
+    ]
+
+
+def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too() -> None:
+    assert printed(
+        """
+        !start.
+        +!start <- !g[within(50)]; .print(after).
+        @p[within(5000)] +!g <- .wait(1000); .print(late).
+        -!g[error(E)] <- .print(E).
+        """
+    ) == ["deadline", "after"]
+
+
+def test_each_message_without_an_effect_takes_a_cycle() -> None:
+    host = mind("")
+    for _ in range(3):
+        host.agent.receive(message("sing", "p"))
+    host.agent.run(2)
+    assert len(host.logged) == 2
+    assert len(host.agent.incoming.messages) == 1
+
+
+def test_after_an_urgent_message_others_are_read_one_in_a_cycle_again() -> None:
+    host = mind("@s[urgency(5)] +bump(_) <- .print(bump). +low(N) <- .print(N).")
+    host.agent.receive(message("tell", "bump(1)"))
+    host.agent.run(5)
+    for number in range(3):
+        host.agent.receive(message("tell", f"low({number})"))
+    host.agent.run(1)
+    assert host.printed[0] == "bump"
+    assert len(host.agent.incoming.messages) == 2
+
+
+def test_a_change_is_untaken_while_its_event_waits() -> None:
+    host = mind("+p(_) <- true; true. +q(_) <- true; true.")
+    host.agent.perceive([percept("p", 1.0), percept("q", 1.0)])
+    host.agent.run(1)
+    assert host.agent.has_untaken("q")
+    assert not host.agent.has_untaken("r")
+    host.run()
+    assert not host.agent.has_untaken("q")
+
+
+def test_a_program_included_at_run_time_must_not_take_a_label(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "more.asl").write_text("@same +!h <- .print(other).\n@free +!k <- true.\n")
+    (tmp_path / "again.asl").write_text("@same +!h <- .print(own).\n@added +!k <- .print(k).\n")
+
+    class Files(RecordingHost):
+        def read_program(self, path: str) -> tuple[str, str]:
+            return path, (tmp_path / path).read_text()
+
+    host = mind("@same +!h <- .print(own).")
+    host.__class__ = Files
+    plans = len(host.agent.library.plans)
+    with pytest.raises(ActionError, match="another plan has the label same"):
+        host.agent.include("more.asl")
+    assert len(host.agent.library.plans) == plans
+    host.agent.include("again.asl")
+    assert len(host.agent.library.plans) == plans + 1
+
+
+def test_a_limit_multiplies_a_random_number() -> None:
+    host = mind("!g. +!g <- .findall(X, .range(_, 1, 60) & X = math.random(10), L); .max(L, M); .print(M).")
+    host.run()
+    assert 3 < float(host.printed[0]) < 10
