@@ -689,19 +689,6 @@ class _RealEventLoop(_DaemonThreads, _Loop):  # type: ignore[misc]
     """The loop of asyncio, with daemon threads."""
 
 
-@contextmanager
-def standing_still(loop: asyncio.AbstractEventLoop) -> Iterator[None]:
-    """Stop virtual time while another thread works for *loop*; the wall clock continues."""
-    selector = loop.virtual_selector if isinstance(loop, VirtualEventLoop) else None
-    if selector is not None:
-        selector.foreign_work += 1
-    try:
-        yield
-    finally:
-        if selector is not None:
-            selector.foreign_work -= 1
-
-
 def new_event_loop(clock: Clock) -> asyncio.AbstractEventLoop:
     """Make the event loop that goes with *clock*."""
     return VirtualEventLoop(clock) if isinstance(clock, VirtualClock) else _RealEventLoop()

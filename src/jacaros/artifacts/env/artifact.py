@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, ClassVar, NoReturn, Protocol, TypeVar, overload
 
 from jacaros.artifacts.env.errors import ArtifactId, InvalidArtifact, OperationFailed
-from jacaros.artifacts.env.execution import OperationExecution
+from jacaros.artifacts.env.execution import OperationExecution, call_all
 from jacaros.artifacts.env.operation import (
     OPERATION,
     Mark,
@@ -20,7 +20,6 @@ from jacaros.artifacts.env.ports import UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, PropertySnapshot, plain_annotations
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
 from jacaros.artifacts.kernel.declaration import Interface, declare_function, interface_of
-from jacaros.artifacts.kernel.external import ExternalSession, call_all
 from jacaros.artifacts.kernel.faults import step_boundary, text_of, watch_operations
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.runtime.clock import Clock
@@ -348,9 +347,8 @@ class Artifact:
 
     def commit(self) -> None:
         """Publish the changes of the step so far. They can no longer be rolled back."""
-        holder = self._steps.current("a commit")
-        if not holder.declared.threaded:
-            self._steps.commit()
+        self._steps.current("a commit")
+        self._steps.commit()
 
     @step_boundary
     async def sleep(self, delay: float) -> None:
@@ -366,7 +364,8 @@ class Artifact:
     async def step(self, awaitable: Awaitable[T]) -> T:
         """Await anything else, such as a service call. This is a step boundary.
 
-        Without `step`, an ``await`` blocks all other operations of the artifact.
+        Without `step`, an ``await`` blocks all other operations of the artifact. Code that blocks runs in a thread:
+        ``await self.step(asyncio.to_thread(self.ask_server))``.
         """
         return await self._steps.leave(awaitable, "waiting for something")
 
@@ -390,8 +389,8 @@ class Artifact:
     ) -> None:
         """Run an internal operation as a process of its own. Its failure is logged and has no other effect.
 
-        From within an operation, it begins after the step has succeeded; from a callback, as soon as the artifact is
-        free. Use it to change properties from a callback.
+        From within an operation, it begins after the step has succeeded; from a callback or another thread, as soon as
+        the artifact is free. Use it to change properties from there.
 
         Args:
             operation: a method marked `internal_operation` (or `operation`), or its name.
@@ -444,22 +443,6 @@ class Artifact:
         # CArtAgO's reason: there, every failed call is an error of the operation.
         self.fail(message, "operation_error", self.current.request.key)
 
-    def external_session(self, cause: Cause | None = None) -> ExternalSession:
-        """Get exclusive access to the artifact from elsewhere: ``with`` in another thread, ``async with`` in another task.
-
-        It waits for its turn, as an operation does. At its end, the changes are published together; if it ends with an
-        exception, they are rolled back. A callback of the event loop, which cannot wait, calls `start`.
-
-        Args:
-            cause: what led to it, such as a sensor sample.
-
-        Raises:
-            InvalidArtifact: (on entering) ``with`` was used in the thread of the event loop, or within an operation.
-            OperationFailed: (on entering) the artifact has been disposed; reason ``artifact_not_available(Name)`` or
-                ``artifact_disposed(Name)``.
-        """
-        return ExternalSession(self._steps, cause)
-
     def define_operation(
         self,
         name: str,
@@ -467,7 +450,6 @@ class Artifact:
         *,
         guard: Callable[..., object] | None = None,
         pausable: bool = False,
-        threaded: bool = False,
     ) -> None:
         """Add an operation to this artifact at run time, such as one read from a file.
 
@@ -476,9 +458,8 @@ class Artifact:
             function: gets the arguments without the artifact. Its signature counts as that of a method.
             guard: gets the same arguments, or none. The operation waits until it is true.
             pausable: see `operation`.
-            threaded: see `operation`.
         """
-        mark = Mark(OPERATION, name, None, pausable, threaded)
+        mark = Mark(OPERATION, name, None, pausable)
         self._own_interface().operations.add(declare_function(mark, name, function, guard))
 
     def remove_operation(self, name: str) -> None:

@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
 from jacaros.artifacts.env.errors import ArtifactId
@@ -54,9 +55,7 @@ class OperationExecution:
         cancelled: True if it was cancelled. Its outcome is not reported.
         verdict: the outcome that its caller gets however it ends, because its artifact is gone or its time limit has
             passed. None while it ends normally.
-        told: True once the caller has the outcome. The operation may still run (a thread cannot be stopped).
         limit: timer of its time limit. None without a limit.
-        thread: the thread in which it runs. None if it runs on the event loop.
         ended: True when everything has ended, including code in ``finally``.
         holding: the resources that it holds. None if it uses none.
         suspended: its caller has paused it. It may also be paused because it waits for a resource.
@@ -73,9 +72,7 @@ class OperationExecution:
     begun: bool = field(default=False, init=False)
     cancelled: bool = field(default=False, init=False)
     verdict: OperationOutcome | None = field(default=None, init=False)
-    told: bool = field(default=False, init=False)
     limit: Timer | None = field(default=None, init=False)
-    thread: int | None = field(default=None, init=False)
     ended: bool = field(default=False, init=False)
     holding: "Holding | None" = field(default=None, init=False)
     suspended: bool = field(default=False, init=False)
@@ -92,7 +89,7 @@ class OperationExecution:
         """Cancel it: a coroutine is cancelled and runs its ``finally`` blocks; a waiting operation is removed.
 
         The outcome is not reported. Changes of the step in progress are rolled back; changes in ``finally`` are
-        published. An operation in a thread runs to its end.
+        published.
         """
         self.turns.cancel(self)
 
@@ -396,6 +393,57 @@ class Holding:
     def _changed(self) -> None:
         for callback in list(self._watchers):
             callback()
+
+
+# Call the linked operations behind an out port, and wait for all of them.
+
+
+Execute = Callable[[OperationRequest], UnderWay]
+
+
+async def call_all(
+    execute: Execute,
+    targets: tuple[ArtifactId, ...],
+    operation: str,
+    arguments: tuple[object, ...],
+    execution: OperationExecution,
+) -> None:
+    """Call *operation* of all *targets* on behalf of *execution*, and wait for all of them.
+
+    Cancelling or pausing *execution* meanwhile cancels or pauses them.
+
+    Raises:
+        OperationFailed: one of them failed, with the message and reason of the first one in the given order.
+    """
+    outcomes: list[OperationOutcome | None] = [None] * len(targets)
+    all_done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def done(index: int, outcome: OperationOutcome) -> None:
+        outcomes[index] = outcome
+        if None not in outcomes and not all_done.done():
+            all_done.set_result(None)
+
+    agent, cause = execution.request.agent, execution.cause
+    calls: list[UnderWay] = []
+    for index, target in enumerate(targets):
+        request = OperationRequest(target, operation, arguments, agent, cause, partial(done, index))
+        request.urgency, request.on_preempted = execution.request.urgency, execution.request.on_preempted
+        request.within, request.yields = execution.claims, execution.request.yields
+        calls.append(execute(request))
+        execution.linked = (*execution.linked, calls[-1])
+        if execution.paused:
+            calls[-1].pause()
+    try:
+        await all_done
+    except asyncio.CancelledError:
+        for call in calls:
+            call.cancel()
+        raise
+    finally:
+        execution.linked = tuple(each for each in execution.linked if each not in calls)
+    for outcome in outcomes:
+        if outcome is not None and not outcome.ok:
+            raise outcome.failure
 
 
 # The port through which a whole environment is observed. See `Environment.listener`.

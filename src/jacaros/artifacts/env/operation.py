@@ -21,7 +21,6 @@ OPERATION = "operation"
 LINK = "linked operation"
 INTERNAL = "internal operation"
 INIT = "init"
-EXTERNAL = "external session"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +107,6 @@ class Mark:
     name: str | None = None
     guard: str | None = None
     pausable: bool = False
-    threaded: bool = False
     common: bool = False
     uses: Uses = ()
     when_preempted: WhenPreempted | None = None
@@ -128,7 +126,6 @@ class StartedOptions(TypedDict, total=False):
 
     name: str | None
     guard: str | None
-    threaded: bool
 
 
 class OperationOptions(StartedOptions, total=False):
@@ -162,8 +159,6 @@ def operation(function: F | None = None, /, **options: Unpack[OperationOptions])
                 different numbers of arguments.
             guard: name of a method with the same parameters. The operation waits until it returns true.
             pausable: whether the operation stops its work while paused (see `Artifact.pause_point`).
-            threaded: whether the method blocks, and so runs in a worker thread: a plain ``def`` whose changes and signals
-                are published together at its end.
             uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several names;
                 ``"lift(2)"`` for two units; ``"map(shared)"`` for shared (read) access. In an artifact with a
                 `robot_prefix` they belong to this robot, otherwise to the run.

@@ -227,8 +227,7 @@ class DeclaredOperation:
         signature: its parameters.
         guard: takes the same as `function`. The operation waits while it is false.
         pausable: whether it obeys a pause.
-        threaded: whether it runs in a worker thread.
-        coroutine: whether it runs as a task, because it may have several steps or a thread.
+        coroutine: whether it runs as a task, because it may have several steps.
         common: whether every artifact has it.
         depth: depth of its class in the hierarchy. A deeper class overrides those above it.
         uses: resources that it holds while it runs, without the name of the robot.
@@ -242,7 +241,6 @@ class DeclaredOperation:
     signature: Signature
     guard: Callable[..., object] | None
     pausable: bool
-    threaded: bool
     coroutine: bool
     depth: int
     common: bool = False
@@ -255,7 +253,7 @@ def _nothing(_: object) -> None:
 
 
 NOTHING: Final = DeclaredOperation(
-    "nothing", INTERNAL, _nothing, _nothing, Signature((), None), None, False, False, False, 0
+    "nothing", INTERNAL, _nothing, _nothing, Signature((), None), None, False, False, 0
 )
 """Stands for the operation of requests that have none: refused ones, sensor messages, an ``init`` that does not exist."""
 
@@ -266,8 +264,7 @@ def declare_method(
     """Declare *function*, the method *method* of the class *owner*, as an operation.
 
     Raises:
-        InvalidArtifact: a threaded operation is a coroutine, agents cannot pass one of its parameters, or its guard
-            does not fit.
+        InvalidArtifact: agents cannot pass one of its parameters, or its guard does not fit.
     """
     guard = None
     if mark.guard is not None:
@@ -316,9 +313,6 @@ def _declare(
     guard: Callable[..., object] | None,
     depth: int,
 ) -> DeclaredOperation:
-    coroutine = inspect.iscoroutinefunction(source)
-    if mark.threaded and coroutine:
-        raise InvalidArtifact(f"{name_of(source)} runs in a thread, so it cannot be async; write a plain def")
     uses, when_preempted = _uses(mark, source)
     return DeclaredOperation(
         name,
@@ -328,8 +322,7 @@ def _declare(
         signature,
         guard,
         mark.pausable,
-        mark.threaded,
-        coroutine or mark.threaded,
+        inspect.iscoroutinefunction(source),
         depth,
         mark.common,
         uses,
@@ -352,10 +345,6 @@ def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], When
         )
     if wanted == "pause" and not mark.pausable:
         raise InvalidArtifact(f'{name_of(source)}: when_preempted="pause" needs pausable=True')
-    if wanted == "cancel" and mark.threaded:
-        raise InvalidArtifact(
-            f'{name_of(source)} runs in a thread, which cannot be cancelled; write when_preempted="finish"'
-        )
     return uses, wanted
 
 

@@ -124,13 +124,11 @@ class Setting:
         """Return whether the caller is in another thread than that of the event loop."""
         return self.loop is not None and self._loop_thread != threading.get_ident()
 
-    def call_on_loop(self, callback: Callable[[], object]) -> bool:
-        """Call *callback* on the event loop, from another thread. Return False if the loop has ended."""
+    def call_on_loop(self, callback: Callable[[], object]) -> None:
+        """Call *callback* on the event loop, from another thread. No effect if the loop has ended."""
         if self.loop is not None:
             with suppress(RuntimeError):
                 self.loop.call_soon_threadsafe(callback)
-                return True
-        return False
 
     def log_error(self, who: str, what: str, error: BaseException) -> None:
         """Log that *what* failed in *who*, with the traceback of *error* below the kernel."""
@@ -181,7 +179,6 @@ class Publication:
     coming: set[str] = field(default_factory=set, init=False)
     _observers: dict[Observer, None] = field(default_factory=dict, init=False)
     _untaken: tuple[Callable[[str], bool], ...] = field(default=(), init=False)
-    _frozen: tuple[ObservableProperty, ...] | None = field(default=None, init=False)
     _telling: _Telling = field(default=_NOBODY, init=False)
 
     @property
@@ -191,15 +188,7 @@ class Publication:
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """Return the properties as observers know them."""
-        return self._frozen if self._frozen is not None else self.properties.committed()
-
-    def freeze(self) -> None:
-        """Show observers the current state while a worker thread changes the properties."""
-        self._frozen = self.properties.committed()
-
-    def thaw(self) -> None:
-        """End `freeze`: the worker thread has ended."""
-        self._frozen = None
+        return self.properties.committed()
 
     def add(self, observer: Observer) -> None:
         """Add an observer. It receives what is published, beginning with all properties. Adding it again has no effect."""

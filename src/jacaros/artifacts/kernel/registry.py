@@ -1,10 +1,6 @@
 """All artifacts of an environment, in any workspace, and the links between them."""
 
-import asyncio
-import threading
 from collections.abc import Callable
-from contextlib import suppress
-from functools import partial
 
 from jacaros.artifacts.env.errors import ArtifactId
 from jacaros.artifacts.kernel.declaration import Interface
@@ -14,8 +10,6 @@ Promise = tuple[Interface, Callable[[], Steps]]
 """The operations of an artifact that does not exist yet, and the function that creates it."""
 OutPort = tuple[ArtifactId, str]
 """An artifact and the name of one of its out ports."""
-THREADS = 2.0
-"""Seconds to wait for operations in threads when the environment is closed."""
 
 
 class Registry:
@@ -34,8 +28,6 @@ class Registry:
         self._ending: list[Steps] = []
         self._links: dict[OutPort, dict[ArtifactId, None]] = {}
         self._last_number = 0
-        self._limit: threading.Timer | None = None
-        self._threads_left = False
         self.when_disposed: list[Callable[[ArtifactId], None]] = []
 
     def next_number(self) -> int:
@@ -86,22 +78,9 @@ class Registry:
             callback(steps.id)
 
     async def ended(self) -> None:
-        """Wait until all disposed artifacts have released everything; for threads, at most `THREADS` seconds in total."""
-        if self._threads_left:
-            self._leave_threads()
-        elif self._limit is None and any(steps.threads for steps in self._ending):
-            # On the wall clock: virtual time does not advance while a thread runs.
-            loop = asyncio.get_running_loop()
-            self._limit = threading.Timer(THREADS, partial(_call_on, loop, self._leave_threads))
-            self._limit.daemon = True
-            self._limit.start()
+        """Wait until all disposed artifacts have released everything."""
         for steps in self._ending:
             await steps.closed()
-
-    def _leave_threads(self) -> None:
-        self._threads_left = True
-        for steps in self._ending:
-            steps.abandon_threads(THREADS)
 
     def _remove(self, artifact_id: ArtifactId) -> None:
         del self._steps[artifact_id]
@@ -118,8 +97,3 @@ class Registry:
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
         """The artifacts behind *port* of *from_id*, in the order of linking."""
         return tuple(self._links.get((from_id, port), ()))
-
-
-def _call_on(loop: asyncio.AbstractEventLoop, callback: Callable[[], None]) -> None:
-    with suppress(RuntimeError):  # the event loop has been closed
-        loop.call_soon_threadsafe(callback)

@@ -7,7 +7,6 @@ This module does not depend on what an artifact looks like to its author (`Artif
 
 import asyncio
 import inspect
-import threading
 from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
@@ -16,7 +15,6 @@ from typing import Any, TypeVar
 from jacaros.artifacts.env.errors import ArtifactId, InvalidArtifact, OperationFailed
 from jacaros.artifacts.env.execution import Holding, OperationExecution
 from jacaros.artifacts.env.operation import (
-    EXTERNAL,
     LINK,
     SUCCEEDED,
     OperationOutcome,
@@ -32,7 +30,7 @@ from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
 from jacaros.artifacts.resources.claim import Use, read_uses, scoped
 from jacaros.errors import InternalError
-from jacaros.runtime.clock import Clock, standing_still, start_thread
+from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause
 
 # Release what an artifact holds, when the last of its operations has ended.
@@ -117,7 +115,6 @@ class Steps:
         self.turns = TurnQueue(self._begin)
         self.disposed = False
         self._started: list[OperationExecution] = []
-        self._delayed: list[tuple[Signal, str | None]] = []
         self.artifact = artifact
         self.interface, self.ports = interface, ports
         self.initialised = False
@@ -133,8 +130,6 @@ class Steps:
         holder = self.turns.holder
         if holder is None or holder.task is None or self.turns.asking:
             return holder is not None
-        if holder.thread is not None:
-            return holder.thread == threading.get_ident()
         try:
             return asyncio.current_task() is holder.task
         except RuntimeError:
@@ -160,13 +155,11 @@ class Steps:
             return holder
         raise InvalidArtifact(
             f"artifact {self.id.name}: {wanted} {name} is only possible within an operation; from a callback, "
-            "another task or a thread, run an internal operation with self.start(...), or use self.external_session()"
+            "another task or a thread, run an internal operation with self.start(...)"
         )
 
     def commit(self) -> None:
         """Publish the changes of the step so far. Operations that it started may begin."""
-        if self._delayed:
-            self._publish_delayed()
         if self.publication.properties.changing:
             holder = self.turns.holder
             self.publication.publish(holder.cause if holder is not None else None)
@@ -177,29 +170,16 @@ class Steps:
                     self._claim(each)
                 self.turns.line_up([each for each in started if not each.ended], self._guard)
 
-    def _publish_delayed(self) -> None:
-        delayed, self._delayed = self._delayed, []
-        holder = self.turns.holder
-        cause = holder.cause if holder is not None else None
-        self.publication.publish(cause, tuple(signal for signal, addressee in delayed if addressee is None))
-        for signal, addressee in delayed:
-            if addressee is not None:
-                self.publication.publish(cause, (signal,), addressee)
-
     def _roll_back(self) -> None:
-        """Undo what the step has changed, signalled (in a thread) and started since the last commit."""
+        """Undo what the step has changed and started since the last commit."""
         self.publication.properties.roll_back()
         self._started.clear()
-        self._delayed.clear()
 
     def signal(self, name: str, arguments: tuple[object, ...], addressee: str | None) -> None:
         """Send a signal, together with the changes of the step so far."""
         holder = self.current("the signal", name)
         check_name(name)
         signal = Signal(name, tuple(map(plain, arguments)))
-        if holder.declared.threaded:
-            self._delayed.append((signal, addressee))
-            return
         self.publication.publish(holder.cause, (signal,), addressee)
         self.commit()
 
@@ -358,23 +338,6 @@ class Steps:
         self.turns.enter(execution, None)
         return execution
 
-    async def enter_task(self, execution: OperationExecution) -> None:
-        """Give the turn to the running task, which is not an operation.
-
-        Raises:
-            OperationFailed: the artifact was disposed meanwhile.
-        """
-        execution.task, execution.begun = asyncio.current_task(), True
-        self._running[execution] = None
-        try:
-            await self.turns.retake(execution)
-        except BaseException as error:
-            self.end(execution, error)
-            raise
-        if execution.verdict is not None:
-            self.end(execution, None)
-            raise execution.verdict.failure
-
     # ---- resources of operations
 
     def used(self) -> tuple[Use, ...]:
@@ -462,7 +425,9 @@ class Steps:
         try:
             if not execution.stopped:
                 execution.begun = True
-                error = await self._call(execution)
+                result = await execution.declared.function(self.artifact, *execution.arguments)
+                if result is not None:
+                    self._refuse_result(execution.declared, result)
         except asyncio.CancelledError as cancelled:
             cancellation = cancelled
             task = asyncio.current_task()
@@ -482,27 +447,6 @@ class Steps:
             self.end(execution, None)
             raise cancellation
         self.end(execution, error)
-
-    async def _call(self, execution: OperationExecution) -> BaseException | None:
-        """Run the code of a coroutine or of a thread. Return what a thread raised, instead of raising it."""
-        declared = execution.declared
-        if not declared.threaded:
-            result = await declared.function(self.artifact, *execution.arguments)
-            if result is not None:
-                self._refuse_result(declared, result)
-            return None
-        self.publication.freeze()
-        try:
-            if declared.kind == EXTERNAL:
-                raised: BaseException | None = await declared.function(execution)
-                return raised
-            work = partial(
-                _in_thread, execution, partial(declared.function, self.artifact, *execution.arguments)
-            )
-            with standing_still(asyncio.get_running_loop()):
-                return await start_thread(work)
-        finally:
-            self.publication.thaw()
 
     def _refuse_result(self, declared: DeclaredOperation, result: object) -> None:
         """Report an operation whose return value is lost."""
@@ -524,7 +468,7 @@ class Steps:
             if error is None and not execution.stopped:
                 error = mistake
         if error is None:
-            if self.publication.properties.changing or self._started or self._delayed:
+            if self.publication.properties.changing or self._started:
                 self.commit()
             outcome = SUCCEEDED
         else:
@@ -544,6 +488,8 @@ class Steps:
             self.setting.report(error)
 
     def _tell(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
+        if execution.ended:
+            return  # it was abandoned
         execution.ended = True
         if execution.holding is not None:
             execution.holding.leave()
@@ -554,20 +500,16 @@ class Steps:
         if execution.cancelled:
             if not self.initialised and not self.disposed:
                 self.abandon()
-        elif not execution.told:
-            self._inform(execution, outcome)
-
-    def _inform(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
-        execution.told = True
-        try:
-            execution.request.on_done(outcome)
-        except Exception as error:
-            self.setting.report(error)
+        else:
+            try:
+                execution.request.on_done(outcome)
+            except Exception as error:
+                self.setting.report(error)
 
     def _note(self, execution: OperationExecution, error: BaseException) -> None:
         """Log an error that is not reported elsewhere, or that its author must see."""
         key = execution.request.key
-        if isinstance(error, InternalError) or execution.request.operation == EXTERNAL:
+        if isinstance(error, InternalError):
             return
         if not isinstance(error, OperationFailed):
             self.setting.log_error(self.id.name, f"error in operation {key}; its step is rolled back:", error)
@@ -599,11 +541,9 @@ class Steps:
             self._tell(execution, SUCCEEDED)  # only a listener hears of it: it was cancelled
 
     def _interrupt(self, execution: OperationExecution) -> None:
-        task, declared = execution.task, execution.declared
-        if task is None or declared.threaded or not execution.begun:
+        task = execution.task
+        if task is None or not execution.begun:
             return
-        if declared.kind == EXTERNAL:
-            return  # the task is not an operation's
         if asyncio.current_task() is not task and self.turns.holder is execution:
             self._roll_back()
         task.cancel()
@@ -633,15 +573,10 @@ class Steps:
             self._stop(execution, faults.timed_out(execution.request, seconds))
 
     def _stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
-        """End an operation from outside. Its caller gets *outcome* when it has ended.
-
-        A thread cannot be ended, so its caller gets the outcome immediately.
-        """
+        """End an operation from outside. Its caller gets *outcome* when it has ended."""
         execution.verdict = outcome
         if self.turns.withdraw(execution):
             self._tell(execution, outcome)
-        elif execution.declared.threaded:
-            self._inform(execution, outcome)
         else:
             self._interrupt(execution)
 
@@ -649,35 +584,24 @@ class Steps:
         """Wait until the disposed artifact has released everything. Operations that do not end in time are abandoned."""
         if self.ending.over:
             return
-        limit = self.clock.call_later(PATIENCE, partial(self._leave_behind, self._running, PATIENCE))
+        limit = self.clock.call_later(PATIENCE, self._leave_behind)
         try:
             await self.ending.over_with()
         finally:
             limit.cancel()
 
-    @property
-    def threads(self) -> list[OperationExecution]:
-        """Return the operations that run in a thread."""
-        return [each for each in self._running if each.declared.threaded]
-
-    def abandon_threads(self, seconds: float) -> None:
-        """Stop waiting for threads of the disposed artifact, after *seconds*."""
-        if self.threads:
-            self._leave_behind(self.threads, seconds)
-
-    def _leave_behind(self, executions: Iterable[OperationExecution], seconds: float) -> None:
-        for execution in tuple(executions):
-            key = execution.request.key
+    def _leave_behind(self) -> None:
+        for execution in tuple(self._running):
             told = (
-                f"operation {key} did not stop within {seconds:g} s of its artifact's disposal; abandoning it"
+                f"operation {execution.request.key} did not stop within {PATIENCE:g} s of its artifact's disposal; "
+                "abandoning it"
             )
             self.setting.log(f"[{self.id.name}] {told}")
             self._tell(execution, faults.disposed(execution.request))
-            if execution.task is not None and execution.declared.kind != EXTERNAL:
+            if execution.task is not None:
                 self._abandon_task(execution.task)
-            self._running.pop(execution, None)
-        if not self._running:
-            self.ending.run(self.initialised, self.complain)
+        self._running.clear()
+        self.ending.run(self.initialised, self.complain)
 
     def _abandon_task(self, task: "asyncio.Task[None]") -> None:
         """End a task that ignores its cancellation. Otherwise the end of the event loop would wait for it forever."""
@@ -702,23 +626,3 @@ def _is_abandoned(execution: OperationExecution) -> bool:
         return asyncio.current_task() is not execution.task
     except RuntimeError:
         return True
-
-
-def _in_thread(execution: OperationExecution, work: Callable[[], object]) -> BaseException | None:
-    """Run *work* in this thread. Return what it raised, or None.
-
-    It is returned, because a future does not accept every exception (``StopIteration``).
-    """
-    execution.thread = threading.get_ident()
-    try:
-        result = work()
-        if inspect.iscoroutine(result):
-            result.close()
-            raise InvalidArtifact(
-                f"{execution.request.operation} returned a coroutine, which a thread cannot run"
-            )
-    except BaseException as error:
-        return error
-    finally:
-        execution.thread = None
-    return None

@@ -20,6 +20,9 @@ class Sensor(Artifact):
         self.signal("over")
 
     def measure(self) -> None:
-        with self.external_session():
-            self.update_property("level", self.value("level") + 1)
-            self.update_property("level", self.value("level") + 10)
+        self.start(self.rise)
+
+    @internal_operation
+    def rise(self) -> None:
+        self.update_property("level", self.value("level") + 1)
+        self.update_property("level", self.value("level") + 10)

@@ -44,12 +44,7 @@ def test_decorators_work_with_and_without_arguments():
     assert Mixed.interface.links.keys() == ["d/0", "dee/0"]
     assert Mixed.interface.internals.keys() == ["e/0", "ee/0"]
     declared = Mixed.interface.operations.find("b", 2)
-    assert (declared.name, declared.pausable, declared.threaded, declared.coroutine) == (
-        "b",
-        False,
-        False,
-        False,
-    )
+    assert (declared.name, declared.pausable, declared.coroutine) == ("b", False, False)
     assert len(list(Mixed.interface.operations)) == 4
 
 
@@ -164,14 +159,6 @@ def test_guards_are_checked_when_the_class_is_made(members, told):
     }
     with pytest.raises(InvalidArtifact, match=told):
         type("Guarded", (Artifact,), namespace)
-
-
-def test_a_threaded_operation_is_a_plain_def():
-    with pytest.raises(InvalidArtifact, match="runs in a thread, so it cannot be async"):
-
-        class Threaded(Artifact):
-            @operation(threaded=True)
-            async def go(self): ...
 
 
 def test_a_parameter_that_agents_cannot_pass_is_an_error():

@@ -238,7 +238,6 @@ def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
         ({"uses": "lift(0)"}, "the capacity must be at least 1"),
         ({"uses": "x", "when_preempted": "pause"}, "needs pausable=True"),
         ({"uses": "x", "when_preempted": "never"}, "expected pause, cancel or finish"),
-        ({"uses": "x", "when_preempted": "cancel", "threaded": True}, "cannot be cancelled"),
     ],
 )
 def test_wrong_declarations_are_refused_when_the_class_is_made(arguments: Any, message: str) -> None:

@@ -1,6 +1,5 @@
 """Operations with a time limit: after it they are cancelled, and fail with ``operation_timeout``."""
 
-import threading
 
 import pytest
 
@@ -12,7 +11,6 @@ class Slow(Artifact):
 
     def init(self):
         self.define_property("state", "idle")
-        self.gate = threading.Event()
 
     @operation
     async def work(self, seconds: float):
@@ -37,14 +35,6 @@ class Slow(Artifact):
 
     def never(self):
         return False
-
-    @operation(threaded=True)
-    def block(self):
-        assert self.gate.wait(60.0)
-
-    @operation
-    def open(self):
-        self.gate.set()
 
     @operation
     async def through(self, seconds: float):
@@ -106,22 +96,6 @@ def test_waiting_for_a_guard_the_artifact_or_the_end_of_a_pause_counts(play, op)
         await call.wait()
         assert (stage.elapsed, call.reason) == (2.0, Structure("operation_timeout", (f"{op}/0", 2000)))
         assert call.outcome.message.endswith("did not end within 2 s")
-
-    play(scene)
-
-
-def test_a_thread_continues_after_its_time_limit_but_its_caller_does_not_wait(play):
-    async def scene(stage):
-        it = await stage.make(Slow)
-        call = stage.call(it, "block", timeout=0.0)
-        stage.main._registry.find(it)._time_is_up(
-            call.execution
-        )  # virtual time does not advance while threads run
-        assert call.reason == Structure("operation_timeout", ("block/0", 0))
-        assert not call.execution.ended
-        stage.main._registry.find(it).artifact.gate.set()
-        assert (await stage.call(it, "quick").wait()).ok
-        assert call.execution.ended
 
     play(scene)
 
