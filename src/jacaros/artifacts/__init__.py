@@ -24,7 +24,7 @@ if TYPE_CHECKING:
         resolve_path,
     )
     from jacaros.artifacts.env.execution import OperationExecution
-    from jacaros.artifacts.env.manual import Manual, describe, manual_term
+    from jacaros.artifacts.env.manual import Manual, describe
     from jacaros.artifacts.env.operation import (
         OperationOutcome,
         OperationRequest,
@@ -36,12 +36,7 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.property import ObservableProperty, Observation, Observer, Signal
     from jacaros.artifacts.env.values import UNSET, Atom, Out, Structure, plain, text
     from jacaros.artifacts.env.workspace import Workspace
-    from jacaros.artifacts.presence.perception import (
-        ObservedProperty,
-        PropertyChange,
-        ReceivedSignal,
-        SignalStream,
-    )
+    from jacaros.artifacts.presence.perception import ObservedProperty, PropertyChange, ReceivedSignal
     from jacaros.artifacts.presence.session import Session, SessionOperation
 
 
@@ -73,7 +68,6 @@ __all__ = [
     "Session",
     "SessionOperation",
     "Signal",
-    "SignalStream",
     "Structure",
     "UnknownArtifact",
     "UnknownArtifactType",
@@ -85,7 +79,6 @@ __all__ = [
     "initializer",
     "internal_operation",
     "link",
-    "manual_term",
     "operation",
     "plain",
     "resolve_path",
@@ -98,13 +91,13 @@ _MODULES = {
     "jacaros.artifacts.env.errors": "ArtifactId InvalidArtifact OperationFailed UnknownArtifact "
     "UnknownArtifactType UnknownProperty UnknownWorkspace WorkspaceError resolve_path",
     "jacaros.artifacts.env.execution": "OperationExecution",
-    "jacaros.artifacts.env.manual": "Manual describe manual_term",
+    "jacaros.artifacts.env.manual": "Manual describe",
     "jacaros.artifacts.env.operation": "OperationOutcome OperationRequest initializer "
     "internal_operation link operation",
     "jacaros.artifacts.env.property": "ObservableProperty Observation Observer Signal",
     "jacaros.artifacts.env.values": "Atom Out Structure UNSET plain text",
     "jacaros.artifacts.env.workspace": "Workspace",
-    "jacaros.artifacts.presence.perception": "ObservedProperty PropertyChange ReceivedSignal SignalStream",
+    "jacaros.artifacts.presence.perception": "ObservedProperty PropertyChange ReceivedSignal",
     "jacaros.artifacts.presence.session": "Session SessionOperation",
 }
 

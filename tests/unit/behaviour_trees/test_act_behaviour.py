@@ -181,7 +181,7 @@ def test_an_artifact_disposed_under_way_is_a_failure(on_rails):
     async def scene(rails):
         async def dispose():
             await rails.clock.sleep(1.5)
-            rails.other.dispose_artifact("cart")
+            await rails.other.act("disposeArtifact", rails.other.lookup("cart"))
 
         drive = Act("drive", 9)
         status, _ = await asyncio.gather(rails.runner(drive).run(), dispose())

@@ -99,7 +99,7 @@ def test_properties_go_to_the_blackboard(on_rails):
         await rails.other.act("paint", "red")
         await rails.runner(copy).run()
         after = dict(Blackboard.storage), copy.feedback_message
-        rails.other.dispose_artifact("cart")
+        await rails.other.act("disposeArtifact", rails.other.lookup("cart"))
         await rails.runner(PropertiesToBlackboard("battery")).run()
         await rails.runner(copy).run()
         return before, after, dict(Blackboard.storage)

@@ -185,7 +185,7 @@ class Program:
         elif action == "stop":
             session.stop_focus(name)
         else:
-            session.dispose_artifact(name)
+            await session.act("disposeArtifact", session.lookup(name))
 
     def script(self, kind):
         return [self.scripted(kind) for _ in range(self.random.randint(0, 5))]

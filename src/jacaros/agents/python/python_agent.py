@@ -192,7 +192,6 @@ class PythonAgent:
     values = _of("session", Session.values)
     has_property = _of("session", Session.has_property)
     properties = _of("session", Session.properties)
-    signals = _of("session", Session.signals)
 
     async def act(self, operation: str, *arguments: object, **options: Unpack[ActOptions]) -> Any:
         """Run an operation, wait for its end, and return the values of its `Out` arguments; see `Session.act`.

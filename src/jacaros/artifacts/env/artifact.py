@@ -17,7 +17,7 @@ from jacaros.artifacts.env.operation import (
     operation,
 )
 from jacaros.artifacts.env.ports import UnderWay, Workspace
-from jacaros.artifacts.env.property import ObservableProperty, PropertySnapshot, plain_annotations
+from jacaros.artifacts.env.property import ObservableProperty, plain_annotations
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
 from jacaros.artifacts.kernel.declaration import Interface, declare_function, interface_of
 from jacaros.artifacts.kernel.faults import step_boundary, text_of, watch_operations
@@ -260,15 +260,15 @@ class Artifact:
         return self._steps.publication.properties.all(name, values)
 
     @common_operation("observeProperty")
-    def observe_property(self, name: str, snapshot: Out) -> None:
-        """Return a property as it is now, as an object, to an agent that need not focus the artifact.
+    def observe_property(self, name: str, found: Out) -> None:
+        """Return a property as it is now, as a term, to an agent that need not focus the artifact.
 
         Fails with ``unknown_property(Name)``.
         """
-        found = self.find_properties(name)
-        if not found:
+        if not self.has_property(name):
             self.fail(f"Property not found {name}", "unknown_property", str(name))
-        snapshot.set(PropertySnapshot(found[0]))
+        now = self._steps.publication.properties.first(name)
+        found.set(Structure(now.name, now.values, now.annotations) if now.values else Atom(now.name))
 
     def has_untaken(self, name: str) -> bool:
         """Return whether an observer has not yet processed an earlier change of properties called *name* (backpressure).

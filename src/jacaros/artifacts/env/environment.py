@@ -13,7 +13,7 @@ from jacaros.artifacts.env.errors import (
     UnknownArtifactType,
     resolve_path,
 )
-from jacaros.artifacts.env.manual import Manual, describe, manual_term
+from jacaros.artifacts.env.manual import describe
 from jacaros.artifacts.env.operation import OPERATION, OperationRequest
 from jacaros.artifacts.env.ports import UnderWay
 from jacaros.artifacts.env.values import Structure, equal, plain, text
@@ -125,16 +125,6 @@ class WorkspaceArtifact(Artifact):
         """Create a workspace."""
         self._tree.create_workspace(resolve_path(self._here.path, path))
 
-    @operation(name="createWorkspace")
-    def create_elsewhere(self, path: str, address: str) -> None:
-        """Create a workspace on another computer. Not supported yet."""
-        refuse(self, f"cannot create workspace {path} at {address}: remote workspaces are not supported yet")
-
-    @operation(name="createWorkspaceWithTopology")
-    def create_with_topology(self, path: str, topology: object) -> None:
-        """Create a workspace in which agents and artifacts have positions. Not supported."""
-        refuse(self, f"cannot create workspace {path} with a topology; use createWorkspace")
-
     @operation(name="linkWorkspace")
     def link_workspace(self, path: str, local_name: str) -> None:
         """Make a name in this workspace lead to another workspace."""
@@ -148,19 +138,19 @@ class WorkspaceArtifact(Artifact):
         above = self._tree.workspace(resolve_path(here, source)).path
         self._tree.link_workspace(resolve_path(above, local_name), resolve_path(here, target))
 
-    @operation(name="linkRemoteWorkspace")
-    def link_remote_workspace(self, *arguments: object) -> None:
-        """Link a workspace of another system. Not supported yet."""
-        refuse(
-            self, "linking remote workspaces is not supported yet; use linkWorkspace for one of this process"
-        )
+    @operation(name="createWorkspace")
+    def create_elsewhere(self, path: str, address: str) -> None:
+        """Create a workspace on another computer. Not supported."""
+        self.use_remote_workspace()
 
+    @operation(name="createWorkspaceWithTopology")
+    @operation(name="linkRemoteWorkspace")
     @operation(name="mountWorkspace")
-    def mount_workspace(self, mas_url: str, remote_path: str, local_path: str) -> None:
-        """Mount a workspace of another system. Not supported yet."""
+    def use_remote_workspace(self, *arguments: object) -> None:
+        """Use a workspace of another system, or one with a topology. Not supported."""
         refuse(
             self,
-            f"cannot mount {mas_url}{remote_path} at {local_path}: remote workspaces are not supported yet",
+            "all workspaces are of this process, without topology; use createWorkspace and linkWorkspace",
         )
 
 
@@ -296,32 +286,21 @@ class SystemArtifact(Artifact):
         stop()
 
     @operation
-    def crash(self) -> None:
-        """Kill the process. Not supported."""
-        refuse(self, "a run cannot be killed; use shutdownNode or .stopMAS to end it")
-
     @operation(name="spawnNode")
-    def spawn(self, *arguments: object) -> None:
-        """Start another process. Not supported yet."""
-        refuse(self, "starting other processes is not supported yet")
+    def crash(self, *arguments: object) -> None:
+        """Kill this process, or start another one. Not supported."""
+        refuse(self, "a run is one process; use shutdownNode or .stopMAS to end it")
 
 
 class ManualRepository(Artifact):
     """Manuals of artifact types.
 
-    Every type has a manual, generated from its code: operations, properties and signals with their descriptions. Agents may
-    replace the text of a manual.
+    Every type has a manual, generated from its code: operations, properties and signals with their descriptions.
     """
 
-    def init(self, workspace: Workspace, tree: WorkspaceTree) -> None:
-        """Start without manuals of agents."""
-        self._here, self._tree = workspace, tree
-        self._stored: dict[str, str] = {}
-
-    @operation(name="storeManual")
-    def store(self, type_name: str, content: str) -> None:
-        """Store a text as the manual of a type."""
-        self._stored[str.__str__(type_name)] = content
+    def init(self, workspace: Workspace) -> None:
+        """Know the types of a workspace."""
+        self._here = workspace
 
     @operation(name="getManualContent")
     def give_content(self, type_name: str, content: Out) -> None:
@@ -334,22 +313,8 @@ class ManualRepository(Artifact):
         for line in self._content(type_name).splitlines():
             write_line(self, line)
 
-    @operation(name="getManual")
-    def give(self, what: ArtifactId | str, manual: Out) -> None:
-        """Return the manual of a type or an artifact (with its own operations) as a term."""
-        manual.set(manual_term(self._manual(what)))
-
     def _content(self, type_name: str) -> str:
-        stored = self._stored.get(type_name)
-        return stored if stored is not None else str(self._manual(type_name))
-
-    def _manual(self, what: ArtifactId | str) -> Manual:
-        if isinstance(what, ArtifactId):
-            workspace = self._tree.workspace(what.workspace)
-            if isinstance(workspace, Workspace):
-                return workspace.manual(what)
-            what = what.type_name
-        return describe(self._here.artifact_type(what))
+        return str(describe(self._here.artifact_type(type_name)))
 
 
 DEFAULT_TYPES = frozenset(
@@ -362,7 +327,7 @@ def add_standard_artifacts(workspace: Workspace, tree: WorkspaceTree) -> None:
     """Add the standard artifacts to a workspace. Each one is created at its first use."""
     workspace.offer("blackboard", Blackboard)
     workspace.offer("console", Console)
-    workspace.offer("manrepo", ManualRepository, (workspace, tree))
+    workspace.offer("manrepo", ManualRepository, (workspace,))
     workspace.offer("system", SystemArtifact)
     workspace.offer("workspace", WorkspaceArtifact, (workspace, tree))
 

@@ -4,14 +4,12 @@ import ast
 import inspect
 import re
 import textwrap
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from jacaros.artifacts.env.artifact import Artifact
-from jacaros.artifacts.env.operation import INTERNAL, LINK, OPERATION
-from jacaros.artifacts.env.property import ObservableProperty
-from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, Signature
+from jacaros.artifacts.env.operation import LINK, OPERATION
+from jacaros.artifacts.kernel.declaration import DeclaredOperation, Signature
 
 # Properties and signals of an artifact type, read from its source and docstrings.
 
@@ -162,23 +160,6 @@ NOT_FOR_USERS = ("Properties", "Signals", "Attributes")
 
 
 @dataclass(frozen=True, slots=True)
-class ParameterManual:
-    """One parameter.
-
-    Attributes:
-        name: its name.
-        expected: the kind of value it accepts, as text.
-        output: whether it is an output.
-        optional: whether it has a default value.
-    """
-
-    name: str
-    expected: str
-    output: bool
-    optional: bool
-
-
-@dataclass(frozen=True, slots=True)
 class OperationManual:
     """One operation.
 
@@ -186,8 +167,6 @@ class OperationManual:
         name: its name for callers.
         kind: ``operation``, ``linked operation``, ``internal operation``, or ``init`` for the initialisation.
         usage: name and parameters in one line, outputs with a minus sign.
-        parameters: the positional parameters.
-        more: whether any number of further arguments may follow.
         text: its description.
         guarded: whether it may have to wait before it begins.
         pausable: whether it pauses while the intention that called it is suspended.
@@ -196,8 +175,6 @@ class OperationManual:
     name: str
     kind: str
     usage: str
-    parameters: tuple[ParameterManual, ...]
-    more: bool
     text: str
     guarded: bool
     pausable: bool
@@ -285,59 +262,39 @@ def _indented(text: str, width: int) -> Iterator[str]:
         yield f"{' ' * width}{line}".rstrip()
 
 
-def describe(
-    artifact_type: type[Artifact],
-    interface: Interface | None = None,
-    properties: Iterable[ObservableProperty] = (),
-) -> Manual:
+def describe(artifact_type: type[Artifact]) -> Manual:
     """Return the manual of *artifact_type*.
 
     Properties and signals come from the sections ``Properties:`` and ``Signals:`` of its docstring, and from the names that
     its code defines and sends.
-
-    Args:
-        artifact_type: the class.
-        interface: the operations of an artifact that defines more of its own (`Workspace.interface`).
-        properties: the properties of an artifact.
     """
-    # Imported on demand: only manuals read sources.
-
-    offered = interface if interface is not None else artifact_type.interface
+    offered = artifact_type.interface
     tables = (offered.operations, offered.links, offered.internals)
-    has = {each.name: _usage(each) for each in properties}
-    written = {**has, **written_properties(artifact_type)}
     return Manual(
         artifact_type.__name__,
         without_sections(inspect.cleandoc(artifact_type.__doc__ or ""), NOT_FOR_USERS),
         tuple(map(_describe, offered.inits)) or (_NO_INIT,),
         tuple(_describe(declared) for table in tables for declared in table),
-        _observables(described(artifact_type, "Properties"), written),
+        _observables(described(artifact_type, "Properties"), written_properties(artifact_type)),
         _observables(described(artifact_type, "Signals"), written_signals(artifact_type)),
         tuple(artifact_type.ports),
     )
 
 
-_NO_INIT = OperationManual("init", "init", "init()", (), False, "", False, False)
+_NO_INIT = OperationManual("init", "init", "init()", "", False, False)
 
 
-def _usage(observed: ObservableProperty) -> str:
-    return f"{observed.name}({', '.join('_' for _ in observed.values)})" if observed.values else observed.name
-
-
-def _observables(told: dict[str, tuple[str, str]], written: dict[str, str]) -> tuple[ObservableManual, ...]:
+def _observables(told: Entries, written: Usages) -> tuple[ObservableManual, ...]:
     rest = {name: (usage, "") for name, usage in written.items() if name not in told}
     return tuple(ObservableManual(name, *each) for name, each in {**told, **rest}.items())
 
 
 def _describe(declared: DeclaredOperation) -> OperationManual:
-    signature = _worded(declared)
     return OperationManual(
         declared.name,
         declared.kind,
-        f"{declared.name}({signature})",
-        _parameters(signature),
-        signature.rest is not None,
-        _text(declared.source),
+        f"{declared.name}({_worded(declared)})",
+        without_sections(inspect.cleandoc(declared.source.__doc__ or ""), ("Raises", "Returns")),
         declared.guard is not None,
         declared.pausable,
     )
@@ -351,53 +308,3 @@ def _worded(declared: DeclaredOperation) -> Signature:
         each._replace(expected=words.get(each.name, each.expected)) for each in signature.parameters
     ]
     return Signature(tuple(parameters), signature.rest)
-
-
-def _parameters(signature: Signature) -> tuple[ParameterManual, ...]:
-    return tuple(ParameterManual(p.name, p.expected, p.output, p.optional) for p in signature.parameters)
-
-
-def _text(source: Callable[..., object]) -> str:
-
-    return without_sections(inspect.cleandoc(source.__doc__ or ""), ("Raises", "Returns"))
-
-
-def manual_term(manual: Manual) -> Structure:
-    """Return a manual as a term for agents.
-
-    ``manual(Type,Text,Inits,Operations,Properties,Signals,Ports)``: Type and all texts are strings, names are atoms.
-    An init is ``init(Parameters,Text)``; an operation for agents ``operation(Name,Parameters,Text)``, one for other
-    artifacts ``linked(Name,Parameters,Text)``. A parameter is ``input(Name,Expected)``, ``optional(Name,Expected)``,
-    ``output(Name)`` or, for any number of further ones, the atom ``more``. A property is
-    ``property(Name,Usage,Text)``, a signal ``signal(Name,Usage,Text)``, and a port its name.
-    """
-    operations = [each for each in manual.operations if each.kind != INTERNAL]
-    return Structure(
-        "manual",
-        (
-            manual.type_name,
-            manual.text,
-            [Structure("init", (_parameter_terms(each), each.text)) for each in manual.inits],
-            [_operation_term(each) for each in operations],
-            [Structure("property", (Atom(each.name), each.usage, each.text)) for each in manual.properties],
-            [Structure("signal", (Atom(each.name), each.usage, each.text)) for each in manual.signals],
-            [Atom(port) for port in manual.ports],
-        ),
-    )
-
-
-def _operation_term(operation: OperationManual) -> Structure:
-    functor = "linked" if operation.kind == LINK else "operation"
-    return Structure(functor, (Atom(operation.name), _parameter_terms(operation), operation.text))
-
-
-def _parameter_terms(operation: OperationManual) -> list[object]:
-    terms: list[object] = [_parameter_term(parameter) for parameter in operation.parameters]
-    return [*terms, Atom("more")] if operation.more else terms
-
-
-def _parameter_term(parameter: ParameterManual) -> Structure:
-    if parameter.output:
-        return Structure("output", (Atom(parameter.name),))
-    functor = "optional" if parameter.optional else "input"
-    return Structure(functor, (Atom(parameter.name), parameter.expected))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from jacaros.artifacts.env.errors import ArtifactId, InvalidArtifact, UnknownProperty
-from jacaros.artifacts.env.values import SCALARS, Structure, equal, plain, text
+from jacaros.artifacts.env.values import SCALARS, equal, plain
 from jacaros.files.texts import aside
 from jacaros.runtime.trace import Cause
 
@@ -28,63 +28,6 @@ class ObservableProperty:
     annotations: tuple[object, ...]
     key: int
     written: Any = field(default=None, compare=False, repr=False)
-
-
-class PropertySnapshot:
-    """A property at one moment, as ``observeProperty`` returns it: an opaque object for agents.
-
-    The methods with Java names are for ``cartago.invoke_obj`` in programs written for CArtAgO.
-
-    Attributes:
-        name: name of the property.
-        values: its plain values.
-        annotations: its annotations.
-    """
-
-    __slots__ = ("annotations", "name", "values")
-
-    def __init__(self, of: ObservableProperty) -> None:
-        self.name, self.values, self.annotations = of.name, of.values, of.annotations
-
-    def value(self, index: int = 0) -> object:
-        """Return one of the values."""
-        return plain(self.values[index])
-
-    def getName(self) -> str:  # noqa: N802 - Java's name
-        """Return the name of the property."""
-        return self.name
-
-    def getValue(self, index: int = 0) -> object:  # noqa: N802 - Java's name
-        """Return one of the values."""
-        return self.value(int(index))
-
-    def getValues(self) -> list[object]:  # noqa: N802 - Java's name
-        """Return all values."""
-        return [plain(value) for value in self.values]
-
-    def intValue(self, index: int = 0) -> int:  # noqa: N802 - Java's name
-        """Return one of the values as an integer."""
-        return int(self.values[int(index)])  # type: ignore[call-overload,no-any-return]  # raises if it is not a number
-
-    def doubleValue(self, index: int = 0) -> float:  # noqa: N802 - Java's name
-        """Return one of the values as a float."""
-        return float(self.values[int(index)])  # type: ignore[arg-type]  # raises if it is not a number
-
-    def stringValue(self, index: int = 0) -> str:  # noqa: N802 - Java's name
-        """Return one of the values as a string."""
-        return text(self.values[int(index)])
-
-    def booleanValue(self, index: int = 0) -> bool:  # noqa: N802 - Java's name
-        """Return one of the values as a Boolean."""
-        return bool(self.values[int(index)])
-
-    def __str__(self) -> str:
-        return text(Structure(self.name, self.values)) if self.values else self.name
-
-    toString = __str__  # noqa: N815 - Java's name
-
-    def __repr__(self) -> str:
-        return f"<property {self}>"
 
 
 Change = tuple[ObservableProperty, ObservableProperty]

@@ -16,7 +16,6 @@ from jacaros.artifacts.env.creation import (
 )
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownArtifact
 from jacaros.artifacts.env.execution import OperationExecution
-from jacaros.artifacts.env.manual import Manual, describe
 from jacaros.artifacts.env.operation import (
     LINK,
     OPERATION,
@@ -260,15 +259,6 @@ class Workspace(ports.Workspace):
             OperationFailed: the type is unknown.
         """
         return artifact_type_of(type_name, self._find_type, self._setting)
-
-    def manual(self, artifact_id: ArtifactId) -> Manual:
-        """Return the manual of an artifact, including operations that it has defined itself.
-
-        Raises:
-            UnknownArtifact: it is gone.
-        """
-        steps = self._steps_of(artifact_id)
-        return describe(type(steps.artifact), steps.interface, steps.publication.committed())
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
         """Update the indexes after an artifact has changed its operations."""

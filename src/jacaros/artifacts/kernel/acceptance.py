@@ -4,7 +4,6 @@ import collections.abc
 import dataclasses
 import enum
 import inspect
-import sys
 import types
 import typing
 from collections.abc import Callable, Sequence
@@ -187,8 +186,6 @@ def kind_of(annotation: Any) -> Kind:
     made = _CONTAINERS.get(container) if _hashable(container) else None
     if made is not None:
         return made(members)
-    if _of_numpy(container, "ndarray"):
-        return _array(container, members)
     if isinstance(container, type):
         return _kind_of_class(container)
     return ANYTHING
@@ -205,26 +202,10 @@ def _unwrapped(annotation: Any) -> Any:
             annotation = annotation.__supertype__
         elif typing.get_origin(annotation) is typing.Annotated:
             annotation = typing.get_args(annotation)[0]
-        elif _is_alias(annotation):
+        elif type(annotation).__name__ == "TypeAliasType":  # Python 3.11 has only that of typing_extensions
             annotation = annotation.__value__
-        elif _is_alias(typing.get_origin(annotation)):
-            annotation = _alias_of(annotation)
         else:
             return annotation
-
-
-def _is_alias(annotation: Any) -> bool:
-    # By name: Python 3.11 has only the aliases of typing_extensions.
-    return type(annotation).__name__ == "TypeAliasType"
-
-
-def _alias_of(annotation: Any) -> Any:
-    """Resolve an alias with parameters, such as numpy's ``NDArray[float64]``."""
-    alias = typing.get_origin(annotation)
-    given = dict(zip(alias.__type_params__, typing.get_args(annotation), strict=False))
-    value = alias.__value__
-    parameters = getattr(value, "__parameters__", ())
-    return value[tuple(given.get(each, Any) for each in parameters)] if parameters else value
 
 
 def _kind_of_class(kind: type) -> Kind:
@@ -327,16 +308,6 @@ def _tuple(members: tuple[Any, ...]) -> Kind:
     return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
 
 
-def _set_of(make: Callable[[list[Any]], object]) -> Callable[[list[Any]], object]:
-    def accept(items: list[Any]) -> object:
-        try:
-            return make(items)
-        except TypeError:
-            raise Unsuitable("lists and maps cannot be members of a set") from None
-
-    return accept
-
-
 def _mapping(members: tuple[Any, ...]) -> Kind:
     keys, values = (kind_of(member) for member in members) if members else (None, None)
 
@@ -353,40 +324,6 @@ def _mapping(members: tuple[Any, ...]) -> Kind:
     if keys is None or values is None:
         return Kind("a map", accept)
     return Kind(f"a map from {keys.expected} to {values.expected}", accept)
-
-
-def _of_numpy(kind: Any, name: str) -> bool:
-    """Return whether it is a class of numpy, which the author of the annotation has imported."""
-    numpy = sys.modules.get("numpy")
-    wanted = getattr(numpy, name, None)
-    return isinstance(wanted, type) and isinstance(kind, type) and issubclass(kind, wanted)
-
-
-def _array(container: Any, members: tuple[Any, ...]) -> Kind:
-    numpy = sys.modules["numpy"]
-    kinds = (kind for member in members for kind in typing.get_args(member))
-    wanted = next((kind for kind in kinds if _of_numpy(kind, "generic")), None)
-
-    def accept(argument: object) -> object:
-        if isinstance(argument, container):
-            return argument
-        if not isinstance(argument, list):
-            raise Unsuitable
-        try:
-            made = numpy.array(argument)
-        except (ValueError, TypeError):
-            raise Unsuitable from None
-        if made.dtype.kind not in "biuf":
-            raise Unsuitable
-        if wanted is None:
-            return made
-        converted = made.astype(wanted)
-        if not _of_numpy(wanted, "floating") and not numpy.array_equal(made, converted):
-            raise Unsuitable
-        return converted
-
-    whole = wanted is not None and _of_numpy(wanted, "integer")
-    return Kind(f"a list of {'integers' if whole else 'numbers'} (or of such lists of equal length)", accept)
 
 
 def _takes_none(argument: object) -> object:
@@ -413,14 +350,8 @@ _LIST = _list_like(lambda items: items)
 _CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
     list: _LIST,
     tuple: _tuple,
-    set: _list_like(_set_of(set)),
-    frozenset: _list_like(_set_of(frozenset)),
     dict: _mapping,
     collections.abc.Mapping: _mapping,
-    collections.abc.MutableMapping: _mapping,
     collections.abc.Sequence: _LIST,
-    collections.abc.MutableSequence: _LIST,
-    collections.abc.Collection: _LIST,
     collections.abc.Iterable: _LIST,
-    collections.abc.Set: _list_like(_set_of(set)),
 }

@@ -5,12 +5,11 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from functools import partial
 from types import TracebackType
 from typing import Any, TypedDict, TypeVar, Unpack
-from weakref import ref
 
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.artifacts.env.creation import artifact_named
 from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, WorkspaceError, resolve_path
+from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, WorkspaceError
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import ENDED, UnderWay, Workspace, awaited
 from jacaros.artifacts.env.property import Observation
@@ -24,7 +23,6 @@ from jacaros.artifacts.presence.perception import (
     Observer,
     PropertyChange,
     ReceivedSignal,
-    SignalStream,
     changes_of,
 )
 from jacaros.artifacts.presence.presence import ANYWHERE, Direction, Presence
@@ -187,8 +185,6 @@ class Session:
         self.environment, self.name = environment, name
         self._account: Account = account if account is not None else NoAccount()
         self._observed = Observed(name, self._tell)
-        # In the order of creation, so that a run is reproducible. A stream lives as long as its reader.
-        self._streams: list[ref[SignalStream]] = []
         self._conditions = Conditions()
         self._on_change: list[Callable[[PropertyChange], object]] = []
         self._on_signal: list[Callable[[ReceivedSignal], object]] = []
@@ -234,21 +230,6 @@ class Session:
         """
         self.presence.quit(self.presence.workspaces.named(workspace))
 
-    def create_workspace(self, path: str) -> str:
-        """Create a workspace without joining it.
-
-        Args:
-            path: full, or relative to the current workspace.
-
-        Returns:
-            The full path.
-
-        Raises:
-            OperationFailed: it already exists, or its parent workspace does not.
-        """
-        self._check()
-        return self.environment.create_workspace(resolve_path(self._here.path, path)).path
-
     @property
     def _here(self) -> Workspace:
         return self.presence.workspaces.current()
@@ -288,24 +269,6 @@ class Session:
             workspace, name = self.environment.place(self._here, name)
             return workspace.lookup(name)
         return artifact_named(self.presence.workspaces.in_order(), name)
-
-    def dispose_artifact(self, artifact: ArtifactId | str) -> None:
-        """Dispose an artifact. See `Workspace.dispose_artifact`.
-
-        Raises:
-            OperationFailed: it does not exist, or its workspace is not joined.
-        """
-        found = self._artifact(artifact)
-        self.presence.workspaces.at(found.workspace).dispose_artifact(found)
-
-    def link_artifacts(self, source: ArtifactId | str, port: str, target: ArtifactId | str) -> None:
-        """Link an out port of *source* to *target*. See `Workspace.link`.
-
-        Raises:
-            OperationFailed: an artifact or the port does not exist.
-        """
-        found = self._artifact(source)
-        self.presence.workspaces.at(found.workspace).link(found, port, self._artifact(target))
 
     def _artifact(self, wanted: ArtifactId | str) -> ArtifactId:
         self._check()
@@ -407,20 +370,6 @@ class Session:
             return next(named, None) or self.lookup(artifact)
         return artifact
 
-    def signals(self, name: str | None = None, artifact: ArtifactId | str | None = None) -> SignalStream:
-        """Return a stream of the signals of the focused artifacts from now on, for ``async for``.
-
-        No signal is lost between two turns of the event loop. The stream ends when it, or the session, is closed.
-
-        Args:
-            name: only signals of this name.
-            artifact: only signals of this artifact.
-        """
-        self._check()
-        stream = SignalStream(name, self._narrowed(artifact), self._account.waiting)
-        self._streams.append(ref(stream, self._streams.remove))
-        return stream
-
     def on_change(self, callback: Callable[[PropertyChange], object]) -> Callable[[], None]:
         """Call *callback* with every change of a property of the focused artifacts. Return a function that ends this.
 
@@ -466,8 +415,6 @@ class Session:
     def _tell(self, observation: Observation) -> None:
         for name, arguments in observation.signals:
             signal = ReceivedSignal(name, tuple(map(plain, arguments)), observation.artifact)
-            for stream in self._read_streams():
-                stream.put(signal)
             for on_signal in tuple(self._on_signal):
                 self._call(on_signal, signal, "an on_signal callback raised:")
         if self._on_change:
@@ -475,9 +422,6 @@ class Session:
                 for on_change in tuple(self._on_change):
                     self._call(on_change, change, "an on_change callback raised:")
         self._conditions.evaluate()
-
-    def _read_streams(self) -> list[SignalStream]:
-        return [stream for each in self._streams if (stream := each()) is not None]
 
     def _call(self, callback: Callable[[T], object], told: T, what: str) -> None:
         try:
@@ -586,15 +530,13 @@ class Session:
     # ---- the end
 
     def close(self) -> None:
-        """Cancel the running operations, stop focusing, and end the streams of signals. Closing again has no effect."""
+        """Cancel the running operations and stop focusing. Closing again has no effect."""
         if self._closed:
             return
         self._closed = True
         self.cancel_operations()
         self._on_change.clear()
         self._on_signal.clear()
-        for stream in self._read_streams():
-            stream.close()
         self._conditions.close(self._is_closed())
         self.presence.leave()
 

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import pairwise
 
-import numpy as np
-
 from jacaros.artifacts import Artifact, Out, operation
 
 
@@ -41,5 +39,5 @@ class Navigator(Artifact):
         length.set(sum(math.dist((a.x, a.y), (b.x, b.y)) for a, b in pairwise(poses)))
 
     @operation
-    def mean(self, numbers: np.ndarray, mean: Out) -> None:
-        mean.set(numbers.mean())
+    def mean(self, numbers: list[float], mean: Out) -> None:
+        mean.set(sum(numbers) / len(numbers))

@@ -2,13 +2,11 @@
 
 import collections.abc
 import enum
-import sys
 import typing
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, NamedTuple, NewType
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -105,8 +103,6 @@ def received(annotation, argument):
         (tuple[float, ...], [1, 2, 3], (1.0, 2.0, 3.0)),
         (tuple, [1, "a"], (1, "a")),
         (typing.Tuple, [1], (1,)),  # noqa: UP006
-        (set[int], [1, 2.0, 2], {1, 2}),
-        (frozenset[str], ["a"], frozenset({"a"})),
         (collections.abc.Sequence[int], [1.0], [1]),
         (collections.abc.Iterable[str], ["a"], ["a"]),
         (collections.abc.Mapping[str, list[int]], {"a": [1.0]}, {"a": [1]}),
@@ -153,7 +149,6 @@ def test_an_argument_becomes_what_the_annotation_says(annotation, argument, expe
             'element 2 is [2,"x"]: element 2 is "x"',
         ),
         (list[int], [Out()], "a list, each an integer", "element 1 is an unbound variable"),
-        (set[object], [[1]], "a list", "lists and maps cannot be members of a set"),
         (dict[str, int], {"a": "b"}, "a map from a text to an integer", 'the value of "a" is "b"'),
         (dict[int, int], {"a": 1}, "a map from an integer to an integer", 'key is "a"'),
         (dict, [1], "a map", ""),
@@ -161,10 +156,7 @@ def test_an_argument_becomes_what_the_annotation_says(annotation, argument, expe
         (Literal["on", True], "off", '"on" or true', ""),
         (Literal[1], True, "1", ""),
         (int | list[int], ["a"], "an integer or a list, each an integer", 'element 1 is "a"'),
-        (np.ndarray, "abc", "a list of numbers", ""),
-        (np.ndarray, ["a"], "a list of numbers", ""),
-        (np.ndarray, [[1, 2], [3]], "a list of numbers", ""),
-        (npt.NDArray[np.int64], [1, 2.5], "a list of integers", ""),
+        (np.ndarray, [1, 2], "ndarray", ""),
     ],
 )
 def test_a_failure_names_what_was_expected_and_the_part_that_is_wrong(annotation, argument, expected, part):
@@ -173,15 +165,6 @@ def test_a_failure_names_what_was_expected_and_the_part_that_is_wrong(annotation
     with pytest.raises(Unsuitable) as caught:
         kind.accept(argument)
     assert str(caught.value) == part
-
-
-def test_a_list_of_numbers_becomes_an_array():
-    made = received(np.ndarray, [[1, 2], [3, 4.5]])
-    assert made.tolist() == [[1, 2], [3, 4.5]]
-    assert received(npt.NDArray[np.float32], [1, 2]).dtype == np.float32
-    assert received(npt.NDArray[np.int64], [1, 2.0]).dtype == np.int64
-    array = np.zeros(3)
-    assert received(np.ndarray, array) is array
 
 
 def test_a_type_alias_of_python_3_12_is_looked_through():
@@ -241,14 +224,13 @@ VALUES = [
     (list[int], st.lists(SMALL, max_size=4)),
     (tuple[int, str], st.tuples(SMALL, WORDS)),
     (dict[str, float], st.dictionaries(WORDS, FINITE, max_size=3)),
-    (frozenset[int], st.lists(SMALL, max_size=3).map(frozenset)),
 ]
 
 
 @given(st.one_of([strategy.map(lambda value, kind=kind: (kind, value)) for kind, strategy in VALUES]))
 def test_what_an_artifact_gives_comes_back_as_it_was(case):
     kind, value = case
-    given_away = plain(sorted(value) if isinstance(value, frozenset) else value)
+    given_away = plain(value)
     term = to_term(given_away, References())
     back = to_value(term)
     assert equal(back, given_away) or isinstance(back, dict)
@@ -262,18 +244,6 @@ def test_what_an_artifact_gives_comes_back_as_it_was(case):
 )
 def test_any_input_is_taken_as_it_is_where_nothing_is_said(value):
     assert received(object, value) is value
-
-
-T = typing.TypeVar("T")
-
-
-@pytest.mark.skipif(sys.version_info < (3, 12), reason="Python 3.11 has no such aliases")
-def test_an_alias_with_a_parameter_is_what_it_stands_for() -> None:
-    """Newer versions of numpy make ``NDArray`` such an alias."""
-    several = typing.TypeAliasType("several", list[T], type_params=(T,))
-    assert received(several[int], [1, 2.0]) == [1, 2]
-    with pytest.raises(Unsuitable):
-        received(several[int], ["one"])
 
 
 @pytest.mark.parametrize("argument", [Atom("kitchen"), "kitchen"])

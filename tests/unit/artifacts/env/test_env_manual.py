@@ -7,9 +7,7 @@ from jacaros.artifacts import (
     initializer,
     internal_operation,
     link,
-    manual_term,
     operation,
-    text,
 )
 
 
@@ -101,12 +99,8 @@ def test_a_manual_tells_what_a_type_offers():
     first, second = manual.operations[:2]
     assert first.usage == "setPower(power: a number, -old)"
     assert first.text == "Set the power.\n\nWaits until it is free."
-    assert (first.guarded, first.pausable, first.more) == (True, True, False)
-    assert [(p.name, p.expected, p.output, p.optional) for p in first.parameters] == [
-        ("power", "a number", False, False),
-        ("old", "an unbound variable (it is an output)", True, False),
-    ]
-    assert (second.usage, second.more, second.text) == ("sum(...)", True, "")
+    assert (first.guarded, first.pausable) == (True, True)
+    assert (second.usage, second.text) == ("sum(...)", "")
 
 
 def test_properties_and_signals_are_found_in_docstrings_and_code():
@@ -169,45 +163,6 @@ def test_a_manual_can_be_printed():
         "out ports: power"
     )
     assert str(describe(Bare)) == "Bare\nmade with:\n  init()"
-
-
-def test_a_manual_is_a_term_for_agents():
-    assert text(manual_term(describe(Lamp)), quoted=True) == (
-        'manual("Lamp","A lamp.\n\nIt shines.",'
-        '[init([input(watts,"an integer"),optional(name,"a text")],""),'
-        'init([input(watts,"an integer"),input(name,"a text"),input(room,"a text")],"In a room.")],'
-        '[operation(setPower,[input(power,"a number"),output(old)],"Set the power.\n\nWaits until it is free."),'
-        'operation(sum,[more],""),linked(peek,[output(now)],"Tell the power.")],'
-        '[property(power,"power(Watts)","what it takes, in watts"),'
-        'property(colour,"colour(R, G, B)","both between 0 and 1, as in the docstring of its base."),'
-        'property(mode,"mode(M)","both between 0 and 1, as in the docstring of its base."),'
-        'property(name,"name(name)",""),'
-        'property(state,"state(watts, text, true or false, list, value, watts)",""),'
-        'property(row,"row(...)","")],'
-        '[signal(burnt,"burnt(Hours)","after so many hours."),signal(tick,"tick",""),'
-        'signal(told,"told(text, number)","")],[power])'
-    )
-
-
-def test_the_manual_of_one_artifact_shows_its_own_operations(play):
-    class Dynamic(Artifact):
-        def init(self):
-            self.define_operation("extra", self.extra)
-            self.define_property("of_" + "its_own", 1, 2)
-
-        def extra(self, x: int):
-            """Only here."""
-
-    async def scene(stage):
-        dynamic = await stage.make(Dynamic)
-        assert describe(Dynamic).operations == ()
-        (extra,) = describe(Dynamic, stage.main.interface(dynamic)).operations
-        assert (extra.usage, extra.text) == ("extra(x: an integer)", "Only here.")
-        manual = stage.main.manual(dynamic)
-        assert manual.operations == (extra,)
-        assert [each.usage for each in manual.properties] == ["of_its_own(_, _)"]
-
-    play(scene)
 
 
 class Meter(Artifact):

@@ -1,6 +1,5 @@
 """Operations with a time limit: after it they are cancelled, and fail with ``operation_timeout``."""
 
-
 import pytest
 
 from jacaros.artifacts import Artifact, Structure, link, operation

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.env.manual import Manual, describe, manual_term
+from jacaros.artifacts.env.manual import Manual, describe
 from jacaros.artifacts.mapping.artifact import MappedArtifact, mapped_type
 from jacaros.artifacts.mapping.file import SHIPPED, load_mapping, read_mapping, shipped_mappings
 
@@ -176,17 +176,6 @@ operations:
     assert "light(on: true or false, -message: text)" in usages
     assert "limit(v: number in centimetres)" in usages
     assert "other(v: any value)" in usages
-
-
-def test_agents_receive_the_same() -> None:
-    text = str(
-        manual_term(
-            manual(
-                "operations: {say: {parameters: [x], publish: t, type: std_msgs/msg/String, fields: {data: $x}}}\n"
-            )
-        )
-    )
-    assert 'input(x,"text")' in text
 
 
 def test_definitions_are_looked_up_on_demand(monkeypatch: pytest.MonkeyPatch) -> None:

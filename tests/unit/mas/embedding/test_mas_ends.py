@@ -173,7 +173,7 @@ def test_an_observer_notified_later_sees_the_change_before_the_end() -> None:
         )
         seen: list[object] = []
         second.on_change(lambda change: seen.append((change.before, change.now)))
-        first.on_change(lambda change: first.dispose_artifact(door) if change.now else None)
+        first.on_change(lambda change: first.begin("disposeArtifact", door) if change.now else None)
         await second.act("openIt")
         await mas.until_idle()
         assert seen == [((False,), (True,)), ((True,), None)]
@@ -187,7 +187,9 @@ def test_an_observer_notified_later_sees_the_change_before_the_end() -> None:
 def test_waiting_continues_if_an_artifact_is_disposed_as_soon_as_it_exists() -> None:
     async def test(mas: Mas) -> None:
         first, second = mas.session("first"), mas.session("second")
-        first.on_change(lambda change: first.dispose_artifact("door") if change.now and once else None)
+        first.on_change(
+            lambda change: first.begin("disposeArtifact", change.artifact) if change.now and once else None
+        )
         tasks = [asyncio.create_task(each.focus_when_available("door")) for each in (first, second)]
         goal = mas.add_agent("bob", '+!see <- focusWhenAvailable("door"); ?open(X).').achieve("see")
         await mas.sleep(1)

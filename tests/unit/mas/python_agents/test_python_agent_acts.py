@@ -43,9 +43,9 @@ class Painter(PythonAgent):
         self.print(self.value("count"), " ", self.session.joined)
         await self.until(lambda: self.value("count") == 11)
         await self.act("inc", 5)
-        async for signal in self.signals("tick"):
+    def on_signal(self, signal):
+        if signal.arguments == (17,):
             self.print(signal.name, signal.arguments, " ", signal.artifact.path)
-            break
 """,
         bob_asl="""!go.
             +!go <- .wait(100); inc(1); .wait({+count(16)}); .print("sixteen"); .wait(100); inc(1).

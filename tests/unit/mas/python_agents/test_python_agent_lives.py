@@ -39,7 +39,7 @@ class A(PythonAgent):
         for _ in range(3):
             await self.sleep(1)
             await self.act("inc")
-        await asyncio.gather(anext(self.signals()), self.receive())
+        await asyncio.gather(self.until(lambda: self.value("count") > 5), self.receive())
 """
     result = run(
         tmp_path,

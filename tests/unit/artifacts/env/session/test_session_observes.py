@@ -92,38 +92,6 @@ def test_observed_values_are_copies(play):
     play(scene)
 
 
-def test_signals_are_read_as_a_stream(play):
-    async def scene(stage):
-        session = session_in(stage)
-        counter = session.focus(await session.make_artifact("counter", Counter))
-        everything = session.signals()
-        got = []
-
-        async def read():
-            async for signal in session.signals("tick"):
-                got.append(signal)
-                if len(got) == 2:
-                    break
-
-        reading = asyncio.ensure_future(read())
-        await asyncio.sleep(0)
-        await session.act("inc", 3)
-        await session.act("report", "hello", artifact=counter)
-        await session.act("inc", 4)
-        await session.act("inc", 5)
-        await reading
-        assert got == [("tick", (3,), counter), ("tick", (7,), counter)]
-        everything.close()
-        assert [(s.name, s.arguments) async for s in everything] == [
-            ("tick", (3,)),
-            ("report", ("painter", "hello")),
-            ("tick", (7,)),
-            ("tick", (12,)),
-        ]
-
-    play(scene)
-
-
 def test_callbacks_see_what_was_published_together(play):
     async def scene(stage):
         session = session_in(stage)
@@ -218,31 +186,6 @@ def test_what_an_artifact_does_by_itself_is_observed(play):
             session.focus(await session.make_artifact("clock", Clock))
             await session.until(lambda: session.value("nticks") == 3)
             assert stage.elapsed == 3
-
-    play(scene)
-
-
-def test_streams_get_a_signal_in_the_order_of_creation_and_end_without_a_reader(play):
-    async def scene(stage):
-        session = session_in(stage)
-        session.focus(await session.make_artifact("counter", Counter))
-        woken = []
-
-        async def read(number):
-            async for _ in session.signals("tick"):
-                woken.append(number)
-                break
-
-        reading = [asyncio.ensure_future(read(number)) for number in range(50)]
-        await asyncio.sleep(0)
-        await session.act("inc")
-        await asyncio.gather(*reading)
-        assert woken == list(range(50))
-        del reading
-        kept = session.signals("tick")
-        await session.act("inc")
-        assert session._streams[-1]() is kept
-        assert len(session._streams) == 1
 
     play(scene)
 

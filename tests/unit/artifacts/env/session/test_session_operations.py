@@ -107,7 +107,7 @@ def test_a_disposed_artifact_fails_what_waits_and_its_properties_are_gone(play):
         operation = session.begin("moveForward", 1.0)
         await asyncio.sleep(0.05)
         changes.clear()
-        session.dispose_artifact(wheels)
+        stage.main.dispose_artifact(wheels)
         with pytest.raises(OperationFailed) as raised:
             await operation
         assert raised.value.reason == Structure("artifact_disposed", ("wheels",))

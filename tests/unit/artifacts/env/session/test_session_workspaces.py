@@ -11,7 +11,7 @@ from jacaros.artifacts import OperationFailed, Structure, UnknownWorkspace
 def test_workspaces_are_joined_and_left(play):
     async def scene(stage):
         session = session_in(stage)
-        assert session.create_workspace("/main/lab") == "/main/lab"
+        stage.environment.create_workspace("/main/lab")
         with pytest.raises(UnknownWorkspace, match="unknown workspace `/main/lob`; did you mean"):
             session.join("lob")
         assert session.join("lab") == "/main/lab"
@@ -45,7 +45,7 @@ def test_a_session_begins_in_its_home(play):
 def test_a_joined_workspace_is_also_meant_by_a_link_to_it(play):
     async def scene(stage):
         session = session_in(stage)
-        session.create_workspace("lab")
+        stage.environment.create_workspace("/main/lab")
         session.join("lab")
         await session.make_artifact("counter", Counter)
         session.join("/main")
@@ -85,7 +85,7 @@ def test_outside_all_workspaces_nothing_can_be_done_but_join(play):
 def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(play):
     async def scene(stage):
         session = session_in(stage)
-        session.create_workspace("lab")
+        stage.environment.create_workspace("/main/lab")
         await session.make_artifact("lab/counter", Counter)
         with pytest.raises(OperationFailed) as failure:
             await session.act("inc", artifact="lab/counter")
@@ -97,7 +97,7 @@ def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(p
 def test_waiting_for_an_artifact_fails_when_its_workspace_was_quit(play):
     async def scene(stage):
         session = session_in(stage)
-        session.create_workspace("lab")
+        stage.environment.create_workspace("/main/lab")
         session.join("lab")
         waiting = asyncio.ensure_future(session.focus_when_available("counter"))
         await asyncio.sleep(0)
