@@ -45,5 +45,5 @@ def check_needs(programs: Sequence[nodes.Program], types: "Iterable[type[Artifac
 def _used_by(types: "Iterable[type[Artifact]]") -> Iterator[str]:
     for each in types:
         for table in (each.interface.operations, each.interface.links):
-            yield from (use.name for declared in table for use in declared.uses)
-        yield from (use.name for use in read_uses(getattr(each, "further_uses", ())))
+            yield from (name for declared in table for name in declared.uses)
+        yield from read_uses(getattr(each, "further_uses", ()))

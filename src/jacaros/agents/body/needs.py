@@ -1,7 +1,7 @@
 """Resources that plans of an agent need: claimed, lost, regained and released."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
+from itertools import chain
 
 from jacaros.agents.mind.state.act import Act
 from jacaros.agents.terms.values import functor_of, list_items
@@ -9,7 +9,7 @@ from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.resources.arbiter import Arbiter
-from jacaros.artifacts.resources.claim import POLICIES, Claim, Policy, Use, local_name, read_uses, together
+from jacaros.artifacts.resources.claim import POLICIES, Claim, Policy, local_name, read_uses
 
 OnNeed = Callable[[OperationFailed | None], None]
 OnPreempted = Callable[[str | None], None]
@@ -62,7 +62,7 @@ class HeldNeed:
     def resume(self) -> None:
         """Claim the resources again; the intention continues when they are granted."""
         if not self._arbiter.enter(self.claim) and self._begun:
-            self._lose(self.claim.uses[0].name)
+            self._lose(self.claim.uses[0])
 
     def end(self) -> None:
         """Release the resources."""
@@ -122,9 +122,8 @@ class Needs:
             OperationFailed: ``wrong_resource(Name)`` or ``ambiguous_resource(Name)``.
         """
         names, policy, goal = act.arguments
-        uses = together(
-            self._resolved(use, focused, near) for use in _read(str(each) for each in list_items(names))
-        )
+        wanted = _read(str(each) for each in list_items(names))
+        uses = tuple(dict.fromkeys(self._resolved(name, focused, near) for name in wanted))
         need = HeldNeed(self._environment.arbiter, act.yields, on_done, on_preempted)
         self._held[act.id] = need
         who = f"[{self._agent}] {goal}"
@@ -143,33 +142,29 @@ class Needs:
         for number in reversed(tuple(self._held)):
             self.forget(number)
 
-    def _resolved(self, use: Use, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> Use:
+    def _resolved(self, name: str, focused: Iterable[ArtifactId], near: Iterable[ArtifactId]) -> str:
         """Resolve a resource: of a focused artifact, else of a near one, else of the run.
 
         For a robot without a namespace, ``wheels`` is the full name, whatever other robots there are.
         """
-        if "/" in use.name:
-            return use
+        if "/" in name:
+            return name
         for artifacts in (focused, near):
-            meant: dict[str, Use] = {}
-            for artifact in artifacts:
-                for each in self._environment.used_by(artifact):
-                    if local_name(each.name) == use.name:
-                        meant.setdefault(each.name, each)
-            if use.name in meant:
-                return replace(use, capacity=use.capacity or meant[use.name].capacity)
+            used = chain.from_iterable(map(self._environment.used_by, artifacts))
+            meant = dict.fromkeys(each for each in used if local_name(each) == name)
+            if name in meant:
+                return name
             if len(meant) > 1:
-                listed = ", ".join(meant)
                 raise OperationFailed(
-                    f"{use.name} is ambiguous: {listed}; write the full name as a string",
-                    Structure("ambiguous_resource", (Atom(use.name),)),
+                    f"{name} is ambiguous: {', '.join(meant)}; write the full name as a string",
+                    Structure("ambiguous_resource", (Atom(name),)),
                 )
-            for name, found in meant.items():
-                return replace(use, name=name, capacity=use.capacity or found.capacity)
-        return use
+            if meant:
+                return next(iter(meant))
+        return name
 
 
-def _read(names: Iterable[str]) -> tuple[Use, ...]:
+def _read(names: Iterable[str]) -> tuple[str, ...]:
     listed = tuple(names)
     try:
         return read_uses(listed)

@@ -7,7 +7,6 @@
 """
 
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Final
@@ -285,7 +284,9 @@ def wrong_needs(found: ByKind) -> Iterator[Diagnostic]:
     for items in _annotated(found):
         needs = [item for item in items if item.functor == "needs"]
         for need in needs:
-            yield from _never_met(need)
+            if None in map(_resource, need.arguments):
+                help = "write names, such as `wheels`"
+                yield problem("wrong-needs", "expected a resource", need.span, help)
         if needs:
             yield from _wrong_policies(items)
 
@@ -294,7 +295,7 @@ def needs_of(found: ByKind) -> Iterator[tuple[str, nodes.Literal]]:
     """Yield the names of resources that plans and goals need, each with its annotation."""
     for item in chain.from_iterable(_annotated(found)):
         for argument in item.arguments if item.functor == "needs" else ():
-            name, _ = _read(argument)
+            name = _resource(argument)
             if name is not None:
                 yield name, item
 
@@ -305,44 +306,13 @@ def _annotated(found: ByKind) -> Iterator[list[nodes.Literal]]:
     yield from (annotations_of(goal.goal) for goal in found.of(nodes.Achieve))
 
 
-def _never_met(need: nodes.Literal) -> Iterator[Diagnostic]:
-    units: Counter[str] = Counter()
-    capacities: dict[str, int] = {}
-    for argument in need.arguments:
-        name, capacity = _read(argument)
-        if name is None or (capacity is not None and capacity < 1):
-            help = "write a name, `lift(2)` for a resource that two may use, or `map(shared)`"
-            yield problem("wrong-needs", "expected a resource", need.span, help)
-            return
-        units[name] += 1
-        if capacity is not None:
-            capacities[name] = min(capacity, capacities.get(name, capacity))
-    for name, wanted in units.items():
-        there = capacities.get(name, 1)
-        if wanted > there:
-            are = "is 1" if there == 1 else f"are {there}"
-            yield problem(
-                "wrong-needs",
-                f"needs that can never be met: {wanted} units of `{name}`, of which there {are}",
-                need.span,
-                f"name `{name}` once, or give its capacity: `{name}({wanted})`",
-            )
-
-
-def _read(argument: nodes.Node) -> tuple[str | None, int | None]:
-    """Return the name and capacity of a resource; None for a name that is invalid or a capacity that is not given."""
+def _resource(argument: nodes.Node) -> str | None:
+    """Return the name of a resource; None if the argument is not one."""
     if isinstance(argument, nodes.String):
-        return (argument.value if _NAME.fullmatch(argument.value) else None), None
-    if not isinstance(argument, nodes.Literal) or argument.negated:
-        return None, None
-    if not argument.arguments:
-        return argument.functor, None
-    inner = argument.arguments[0]
-    if len(argument.arguments) == 1 and isinstance(inner, nodes.Number) and float(inner.value).is_integer():
-        return argument.functor, int(inner.value)
-    if len(argument.arguments) == 1 and isinstance(inner, nodes.Literal) and inner.functor == "shared":
-        return argument.functor, 1_000_000
-    return None, None
+        return argument.value if _NAME.fullmatch(argument.value) else None
+    if isinstance(argument, nodes.Literal) and not argument.negated and not argument.arguments:
+        return argument.functor
+    return None
 
 
 def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:

@@ -20,7 +20,6 @@ from jacaros.artifacts.env.values import Structure, equal, plain, text
 from jacaros.artifacts.env.workspace import Workspace
 from jacaros.artifacts.kernel.publication import Setting, log_to_stderr
 from jacaros.artifacts.kernel.registry import Registry
-from jacaros.artifacts.resources.claim import Use
 from jacaros.runtime.clock import Clock
 
 # The artifact ``workspace``: agents' operations on artifacts and workspaces.
@@ -367,7 +366,7 @@ class Environment(Setting, WorkspaceTree):
         WorkspaceTree.__init__(self, self._make)
         self.create_workspace("/main")
 
-    def used_by(self, artifact_id: ArtifactId) -> tuple[Use, ...]:
+    def used_by(self, artifact_id: ArtifactId) -> tuple[str, ...]:
         """Return the resources that the operations of an artifact use, with the name of its robot.
 
         Empty if it is gone or remote.

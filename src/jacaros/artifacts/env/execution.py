@@ -14,7 +14,7 @@ from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.artifacts.kernel.faults import AskedFor, is_interruption
 from jacaros.artifacts.resources.arbiter import Arbiter
-from jacaros.artifacts.resources.claim import Claim, State, Use, local_name
+from jacaros.artifacts.resources.claim import Claim, State, local_name
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 
@@ -36,7 +36,7 @@ class Turns(Protocol):
     def complain(self, what: str, error: BaseException) -> None:
         """Log an error of the artifact's code that does not fail an operation."""
 
-    def hold(self, execution: "OperationExecution", uses: tuple[Use, ...]) -> "Holding":
+    def hold(self, execution: "OperationExecution", uses: tuple[str, ...]) -> "Holding":
         """Return a claim of an operation, which the operation enters and leaves."""
 
 
@@ -145,7 +145,7 @@ class OperationExecution:
         """Whether its code has begun, or its task exists."""
         return self.begun or self.task is not None
 
-    def hold(self, uses: tuple[Use, ...]) -> "Holding":
+    def hold(self, uses: tuple[str, ...]) -> "Holding":
         """Return its claim. If it has declared none, return one of *uses*, which it enters and leaves itself."""
         if self.holding is None:
             self.holding = self.turns.hold(self, uses)
@@ -276,7 +276,7 @@ class Holding:
         self,
         operation: OperationExecution,
         arbiter: Arbiter,
-        uses: tuple[Use, ...],
+        uses: tuple[str, ...],
         when_preempted: WhenPreempted,
         stop: Stop,
     ) -> None:

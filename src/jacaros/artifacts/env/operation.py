@@ -7,15 +7,15 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.claim import Claim, Policy, Use
+from jacaros.artifacts.resources.claim import Claim, Policy
 from jacaros.runtime.trace import Cause
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 WhenPreempted = Literal["pause", "cancel", "finish"]
 """What an operation does when a more urgent claim takes away its resources."""
-Uses = str | Use | tuple[str | Use, ...]
-"""The resources of an operation, such as ``"wheels"``, ``("base", "arm")`` or ``"lift(2)"``."""
+Uses = str | tuple[str, ...]
+"""The resources of an operation, such as ``"wheels"`` or ``("base", "arm")``."""
 
 OPERATION = "operation"
 LINK = "linked operation"
@@ -159,9 +159,8 @@ def operation(function: F | None = None, /, **options: Unpack[OperationOptions])
                 different numbers of arguments.
             guard: name of a method with the same parameters. The operation waits until it returns true.
             pausable: whether the operation stops its work while paused (see `Artifact.pause_point`).
-            uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``; several names;
-                ``"lift(2)"`` for two units; ``"map(shared)"`` for shared (read) access. In an artifact with a
-                `robot_prefix` they belong to this robot, otherwise to the run.
+            uses: resources that no other operation may use meanwhile: a name, such as ``"wheels"``, or several. In an
+                artifact with a `robot_prefix` they belong to this robot, otherwise to the run.
             when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the
                 default if it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the
                 default otherwise).

@@ -14,7 +14,7 @@ from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import INIT, INTERNAL, LINK, OPERATION, Mark, WhenPreempted, marks_of
 from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.artifacts.kernel.acceptance import Accept, Unsuitable, kind_of, shown
-from jacaros.artifacts.resources.claim import Use, read_uses
+from jacaros.artifacts.resources.claim import read_uses
 from jacaros.files.texts import aside
 
 # The parameters of an operation: the number of arguments, their kinds, and the outputs.
@@ -244,7 +244,7 @@ class DeclaredOperation:
     coroutine: bool
     depth: int
     common: bool = False
-    uses: tuple[Use, ...] = ()
+    uses: tuple[str, ...] = ()
     when_preempted: WhenPreempted = "finish"
 
 
@@ -330,7 +330,7 @@ def _declare(
     )
 
 
-def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[Use, ...], WhenPreempted]:
+def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[str, ...], WhenPreempted]:
     """Return what an operation uses, and what it does when it is preempted."""
     try:
         uses = read_uses(mark.uses)

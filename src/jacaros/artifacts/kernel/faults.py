@@ -189,7 +189,6 @@ def without_resource(request: OperationRequest, reason: Structure | Atom) -> str
         "preempted": "a more urgent claim preempted it at {}",
         "resource_busy": "{} is in use",
         "deadlock": "its wait for {} is part of a deadlock",
-        "resource_exceeded": "it claims more units of {} than its capacity",
     }
     functor = reason.functor if isinstance(reason, Structure) else str(reason)
     name = reason.arguments[0] if isinstance(reason, Structure) else ""

@@ -28,7 +28,7 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, W
 from jacaros.artifacts.kernel.faults import forgotten, is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
-from jacaros.artifacts.resources.claim import Use, read_uses, scoped
+from jacaros.artifacts.resources.claim import read_uses, scoped
 from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause
@@ -340,18 +340,18 @@ class Steps:
 
     # ---- resources of operations
 
-    def used(self) -> tuple[Use, ...]:
+    def used(self) -> tuple[str, ...]:
         """Return the resources that the operations of the artifact use, with the name of its robot."""
         tables = (self.interface.operations, self.interface.links)
         declared = [use for table in tables for each in table for use in each.uses]
         declared += read_uses(getattr(self.artifact, "further_uses", ()))
         return self._of_robot(tuple(dict.fromkeys(declared)))
 
-    def _of_robot(self, uses: tuple[Use, ...]) -> tuple[Use, ...]:
+    def _of_robot(self, uses: tuple[str, ...]) -> tuple[str, ...]:
         scope = getattr(self.artifact, "robot_prefix", "")
         return scoped(uses, scope if isinstance(scope, str) else "")
 
-    def hold(self, execution: OperationExecution, uses: tuple[Use, ...]) -> Holding:
+    def hold(self, execution: OperationExecution, uses: tuple[str, ...]) -> Holding:
         """Return a claim that an operation enters and leaves itself."""
         mode = execution.declared.when_preempted
         stop = partial(self._lose, execution)

@@ -8,7 +8,6 @@ from typing import NamedTuple
 from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
-from jacaros.artifacts.resources.claim import Use
 from jacaros.artifacts.streams.pattern import OCCURRENCE, Spec
 from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.ros.parameter import Declaration
@@ -324,7 +323,7 @@ class OperationPart:
     node: str = ""
     properties: tuple[Written, ...] = ()
     description: str = ""
-    uses: tuple[Use, ...] = ()
+    uses: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.resources.claim import WHEELS, Use
+from jacaros.artifacts.resources.claim import WHEELS
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Publisher
@@ -143,11 +143,11 @@ class Publishing:
             text = f"the open-loop motion `{self._part.name}` was interrupted ({gap})"
             self._host.fail(text, "interrupted", round(covered, 3))
 
-    def _use(self, execution: OperationExecution) -> Use:
+    def _use(self, execution: OperationExecution) -> str:
         """Return the wheels, or a resource that makes two calls of the same operation exclude each other."""
         if self._drives:
-            return Use(WHEELS)
-        return Use(f"{execution.request.artifact.path}.{self._part.name}")
+            return WHEELS
+        return f"{execution.request.artifact.path}.{self._part.name}"
 
     def _warn_unmatched(self, message: str, help: str) -> None:
         """Log once that a topic has no subscribers: its name or type may be wrong."""

@@ -27,7 +27,7 @@ from jacaros.artifacts.mapping.read_fields import (
 )
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
-from jacaros.artifacts.resources.claim import Use, read_use
+from jacaros.artifacts.resources.claim import read_uses
 from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.files.yaml import Node, Problem
 
@@ -81,9 +81,9 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     return part
 
 
-def _uses(node: Node) -> tuple[Use, ...]:
+def _uses(node: Node) -> tuple[str, ...]:
     """Read the resources that an operation holds."""
-    found: dict[str, Use] = {}
+    found: list[str] = []
     for item in node.sequence() if isinstance(node.value, list) else (node,):
         if not isinstance(item.value, str):
             item.wrong(
@@ -91,14 +91,14 @@ def _uses(node: Node) -> tuple[Use, ...]:
             )
             continue
         try:
-            use = read_use(item.value)
+            (name,) = read_uses(item.value)
         except ValueError as wrong:
             item.wrong(str(wrong), "write uses: wheels, or uses: [base, arm]")
             continue
-        if use.name in found:
-            item.wrong(f"duplicate resource `{use.name}`", "leave one of them out")
-        found[use.name] = use
-    return tuple(found.values())
+        if name in found:
+            item.wrong(f"duplicate resource `{name}`", "leave one of them out")
+        found.append(name)
+    return tuple(found)
 
 
 def _forgotten(part: OperationPart) -> Iterator[Problem]:

@@ -2,9 +2,9 @@
 
 A claim is granted everything it asks for, or nothing. The rules:
 
-* A claim waits behind earlier claims in the queue that want one of its resources, and while others hold too much.
-* A more urgent claim preempts: less urgent holders are asked to yield, the least urgent and newest first, and only if that
-  is sufficient. A holder keeps its resources until it has yielded (a robot brakes). Then it waits again.
+* A claim waits behind earlier claims in the queue that want one of its resources, and while others hold one.
+* A more urgent claim preempts: less urgent holders are asked to yield, the least urgent and newest first, unless one of
+  them is as urgent. A holder keeps its resources until it has yielded (a robot brakes). Then it waits again.
 * A nested claim (an operation of a plan that holds the resource) is granted only while the outer claims are, and what they
   hold does not block it. It waits behind earlier claims only while holders yield to them.
 * A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends, and wait
@@ -15,10 +15,10 @@ gets,
   but takes nothing away from a holder.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.claim import Claim, State, Use, local_name
+from jacaros.artifacts.resources.claim import Claim, State, local_name
 from jacaros.runtime.clock import Clock, Timer
 
 # Deadlocks: claims that wait for each other in a cycle.
@@ -84,7 +84,6 @@ class Arbiter:
 
     def __init__(self, clock: Clock, warn: Callable[[str], None] = lambda text: None) -> None:
         self._clock, self._warn = clock, warn
-        self._capacities: dict[str, int] = {}
         self._waiting: list[Claim] = []
         self._holders: dict[str, list[Claim]] = {}
         self._arrivals = 0
@@ -92,18 +91,6 @@ class Arbiter:
         self._timer: Timer | None = None
 
     # ---- state
-
-    def declare(self, uses: Iterable[Use]) -> None:
-        """Register capacities. For several of one resource, the least one counts."""
-        for each in uses:
-            if each.capacity is not None:
-                self._capacities[each.name] = min(
-                    each.capacity, self._capacities.get(each.name, each.capacity)
-                )
-
-    def capacity(self, name: str) -> int:
-        """Return the number of units of a resource: 1 unless declared."""
-        return self._capacities.get(name, 1)
 
     def holders(self, name: str) -> tuple[Claim, ...]:
         """Return the claims that hold a resource."""
@@ -118,7 +105,6 @@ class Arbiter:
     def enter(self, claim: Claim) -> bool:
         """Make a claim. Return False if it is not granted immediately; its claimant is notified later."""
         if claim.state is State.OUT:
-            self.declare(claim.uses)
             self._arrivals += 1
             claim.order = self._arrivals
             self._wait(claim)
@@ -150,11 +136,11 @@ class Arbiter:
         self._waiting.append(claim)
 
     def _let_go(self, claim: Claim) -> None:
-        for use in claim.uses:
-            held = self._holders[use.name]
+        for name in claim.uses:
+            held = self._holders[name]
             held.remove(claim)
             if not held:
-                del self._holders[use.name]
+                del self._holders[name]
 
     # ---- the next claim
 
@@ -185,12 +171,8 @@ class Arbiter:
             if any(outer.state is not State.HELD for outer in claim.within):
                 continue
             blockers = self._blockers(claim)
-            wanted = {use.name for use in claim.uses}
+            wanted = set(claim.uses)
             ahead = bool(wanted & (coming if claim.within else reserved))
-            exceeded = self._exceeded(claim)
-            if exceeded is not None:
-                self._fail(claim, Structure("resource_exceeded", (Atom(local_name(exceeded)),)))
-                return True
             if not blockers and not ahead:
                 self._grant(claim)
                 return True
@@ -210,8 +192,8 @@ class Arbiter:
         self._waiting.remove(claim)
         claim.waited += self._clock.elapsed - claim.since
         claim.state, claim.fresh = State.HELD, False
-        for use in claim.uses:
-            self._holders.setdefault(use.name, []).append(claim)
+        for name in claim.uses:
+            self._holders.setdefault(name, []).append(claim)
         claim.claimant.granted(claim)
 
     def _preempt(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> bool:
@@ -227,23 +209,13 @@ class Arbiter:
         return False
 
     def _chosen(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> list[tuple[Claim, str]]:
-        """Return the holders that must yield to a claim. Empty if those that may be asked are not sufficient."""
-        chosen: list[tuple[Claim, str]] = []
-        going: set[Claim] = set()
-        for use in claim.uses:
-            mine = [each for each in blockers if each[1] == use.name]
-            # A holder that is yielding has been asked already.
-            mine.sort(key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order))
-            for holder, name in mine:
-                if self._lack(claim, use, going) <= 0:
-                    break
-                if holder.state is State.HELD and not self._outranks(claim, holder):
-                    return []
-                chosen.append((holder, name))
-                going.add(holder)
-            if self._lack(claim, use, going) > 0:
-                return []
-        return chosen
+        """Return the holders that must yield to a claim, the first to ask first. Empty if one of them may stay."""
+        if any(holder.state is State.HELD and not self._outranks(claim, holder) for holder, _ in blockers):
+            return []
+        # A holder that is yielding has been asked already.
+        return sorted(
+            blockers, key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order)
+        )
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
         if claim.blocks and claim.blocks == holder.plan_of:
@@ -257,7 +229,7 @@ class Arbiter:
             return False
         if not ahead and self._chosen(claim, blockers):
             return False
-        name = blockers[0][1] if blockers else claim.uses[0].name
+        name = blockers[0][1] if blockers else claim.uses[0]
         self._fail(claim, Structure("resource_busy", (Atom(local_name(name)),)))
         return True
 
@@ -279,39 +251,16 @@ class Arbiter:
     # ---- blocking claims
 
     def _blockers(self, claim: Claim) -> list[tuple[Claim, str]]:
-        """Return the holders, some of which must yield before a claim can be granted, each with the resource."""
+        """Return the holders that must yield before a claim can be granted, each with the resource."""
         return [
-            (holder, use.name)
-            for use in claim.uses
-            if self._lack(claim, use) > 0
-            for holder in self._others(claim, use)
+            (holder, name)
+            for name in claim.uses
+            for holder in self._holders.get(name, ())
+            if holder not in claim.within and claim not in holder.within
         ]
 
     def _waits_for(self, claim: Claim) -> Iterator[tuple[Claim, str]]:
         return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
-
-    def _others(self, claim: Claim, use: Use) -> list[Claim]:
-        """Return the holders that are not compatible with a use."""
-        return [
-            each
-            for each in self._holders.get(use.name, ())
-            if each not in claim.within
-            and claim not in each.within
-            and not (use.shared and _use_of(each, use.name).shared)
-        ]
-
-    def _lack(self, claim: Claim, use: Use, without: Collection[Claim] = ()) -> int:
-        """Return the units that others must release before a claim can have its use."""
-        others = [each for each in self._others(claim, use) if each not in without]
-        taken = _taken(use.name, others)
-        if use.shared or any(_use_of(holder, use.name).shared for holder in others):
-            return taken
-        return taken + use.units - self.capacity(use.name)
-
-    def _exceeded(self, claim: Claim) -> str | None:
-        """Return the resource of which a claim wants more than the capacity, or None."""
-        names = (u.name for u in claim.uses if not u.shared and u.units > self.capacity(u.name))
-        return next(names, None)
 
     # ---- urgency
 
@@ -371,7 +320,7 @@ class Arbiter:
             if not claim.warned and self._has_waited(claim) >= REPORTED - 1e-6:
                 claim.warned = True
                 holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
-                names = ", ".join(local_name(use.name) for use in claim.uses)
+                names = ", ".join(map(local_name, claim.uses))
                 held = f", held by {', '.join(holders)}" if holders else ""
                 self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
         self._settle()
@@ -385,17 +334,3 @@ def _takes(claim: Claim) -> bool:
 def _all_go(chosen: list[tuple[Claim, str]]) -> bool:
     """Return whether all are yielding, or will when asked."""
     return all(each.state is State.YIELDING or each.claimant.can_yield for each, _ in chosen)
-
-
-def _use_of(claim: Claim, name: str) -> Use:
-    return next(use for use in claim.uses if use.name == name)
-
-
-def _taken(name: str, holders: Sequence[Claim]) -> int:
-    """Return the units that holders have in total. Nested claims use the units of the outer claim first."""
-    total = 0
-    for holder in holders:
-        if not any(outer in holders for outer in holder.within):
-            within = _taken(name, [each for each in holders if holder in each.within])
-            total += max(_use_of(holder, name).units, within)
-    return total

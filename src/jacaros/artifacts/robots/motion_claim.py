@@ -9,7 +9,6 @@ from typing import Any, Protocol, Self
 from weakref import WeakKeyDictionary
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.claim import Use
 from jacaros.artifacts.robots.control import Velocity
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.ros.backend import Backend
@@ -155,7 +154,7 @@ class Driving:
         self,
         mover: Mover,
         motions: Motions,
-        use: Use,
+        use: str,
         stop: Callable[[], None],
         show: Callable[[str], None] = lambda state: None,
     ) -> None:

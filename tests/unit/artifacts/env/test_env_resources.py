@@ -55,12 +55,6 @@ class Robot(Artifact):
         finally:
             self.note(f"{name} is over")
 
-    @operation(uses="lift(2)")
-    async def ride(self, name: str, seconds: float) -> None:
-        """Ride in the lift, which takes two."""
-        self.note(f"{name} rides")
-        await self.sleep(seconds)
-
 
 class Lab:
     """A robot, and operations that are begun with an urgency."""
@@ -209,16 +203,6 @@ def test_the_end_of_an_agent_releases_what_it_held_and_waited_for() -> None:
     in_lab(body)
 
 
-def test_a_lift_has_two_units_and_a_time_limit_includes_waiting() -> None:
-    async def body(lab: Lab) -> None:
-        for name in ("a", "b", "c"):
-            lab.begin(name, 2, do="ride")
-        await lab.clock.sleep(3)
-        assert lab.lines == ["0 a rides", "0 b rides", "2 c rides"]
-
-    in_lab(body)
-
-
 def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
     async def body(lab: Lab) -> None:
         lab.begin("tour", 2)
@@ -235,7 +219,7 @@ def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
     ("arguments", "message"),
     [
         ({"uses": "two words"}, "invalid resource `two words`"),
-        ({"uses": "lift(0)"}, "the capacity must be at least 1"),
+        ({"uses": "lift(2)"}, "write a name, such as wheels"),
         ({"uses": "x", "when_preempted": "pause"}, "needs pausable=True"),
         ({"uses": "x", "when_preempted": "never"}, "expected pause, cancel or finish"),
     ],
@@ -276,15 +260,20 @@ def test_operations_of_a_session_have_an_urgency() -> None:
 
 
 class Clumsy(Artifact):
-    """Starts an operation that needs more of a resource than there is."""
+    """Starts an operation that uses its arm."""
 
     def init(self) -> None:
         self.carried = 0
 
-    @operation(uses=("arm", "arm"))
+    @operation(uses="arm")
     def carry(self) -> None:
-        """Carry something with two arms."""
+        """Carry something."""
         self.carried += 1
+
+    @operation(uses="arm")
+    async def rest(self) -> None:
+        """Keep the arm for a while."""
+        await self.sleep(1)
 
     @operation
     def ask_for_it(self) -> None:
@@ -293,13 +282,15 @@ class Clumsy(Artifact):
 
 
 def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources() -> None:
-    async def main() -> None:
-        logged: list[str] = []
-        environment = Environment(VirtualClock(), log=logged.append)
-        clumsy = await environment.workspace("/main").make_artifact("clumsy", Clumsy)
-        artifact: Any = environment.artifact(clumsy)
+    async def body(lab: Lab) -> None:
+        clumsy = await lab.environment.workspace("/main").make_artifact("clumsy", Clumsy)
+        artifact: Any = lab.environment.artifact(clumsy)
+        lab.environment.execute(OperationRequest(clumsy, "rest"))
         artifact.start("carry")
-        environment.execute(OperationRequest(clumsy, "ask_for_it"))
+        lab.environment.execute(OperationRequest(clumsy, "ask_for_it"))
+        await lab.clock.sleep(0.5)
         assert artifact.carried == 0
+        await lab.clock.sleep(1)
+        assert artifact.carried == 2
 
-    asyncio.run(main())
+    in_lab(body)

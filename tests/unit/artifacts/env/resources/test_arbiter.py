@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.artifacts.resources.arbiter import PATIENCE, REPORTED, Arbiter
-from jacaros.artifacts.resources.claim import Claim, Policy, State, Use, read_use, read_uses, scoped
+from jacaros.artifacts.resources.claim import Claim, Policy, State, read_uses, scoped
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -175,34 +175,6 @@ def test_take_takes_from_an_equal_once(table: Table) -> None:
     assert told(table.claim("wheels", policy="take", urgency=0)) == ["granted"]
 
 
-def test_a_counted_resource_has_several_holders(table: Table) -> None:
-    first, second = table.claim("lift(2)"), table.claim("lift")
-    third = table.claim("lift")
-    assert first.holds
-    assert second.holds
-    assert not third.holds
-    urgent = table.claim("lift", urgency=1)
-    assert urgent.holds
-    assert first.holds
-    assert told(second) == ["granted", "preempted(lift)"], "the newest gives way"
-    assert told(table.claim("lift", "lift", "lift")) == ["resource_exceeded(lift)"]
-
-
-def test_readers_share_and_a_writer_waits_for_all_of_them(table: Table) -> None:
-    a, b = table.claim("map(shared)"), table.claim("map(shared)")
-    writer = table.claim("map")
-    assert a.holds
-    assert b.holds
-    late = table.claim("map(shared)")
-    assert not late.holds, "or the writer would starve"
-    table.arbiter.leave(a)
-    assert not writer.holds
-    table.arbiter.leave(b)
-    assert writer.holds
-    table.arbiter.leave(writer)
-    assert late.holds
-
-
 def test_a_holder_that_cannot_yield_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
     atomic = table.claim("base", can_yield=False)
     middle = table.claim("arm", urgency=5)
@@ -258,19 +230,13 @@ def test_a_long_wait_is_reported_once_and_moves_a_claim_forward(table: Table) ->
     run(main, table.clock)
 
 
-def test_uses_are_parsed() -> None:
-    assert read_uses("wheels") == (Use("wheels"),)
-    assert read_uses(("base", "lift(2)", "map(shared)")) == (
-        Use("base"),
-        Use("lift", 2),
-        Use("map", None, True),
-    )
-    assert read_uses(("lift(2)", "lift")) == (Use("lift", 2, units=2),)
-    assert scoped(read_uses("wheels"), "/r1") == (Use("/r1/wheels"),)
-    assert [str(each) for each in read_uses(("a", "b(2)", "c(shared)"))] == ["a", "b(2)", "c(shared)"]
-    for wrong in ("", "two words", "lift(0)", "lift(many)"):
+def test_uses_are_checked() -> None:
+    assert read_uses("wheels") == ("wheels",)
+    assert read_uses(("base", "/r1/arm", "base")) == ("base", "/r1/arm")
+    assert scoped(read_uses("wheels"), "/r1") == ("/r1/wheels",)
+    for wrong in ("", "two words", "lift(2)"):
         with pytest.raises(ValueError, match="resource"):
-            read_use(wrong)
+            read_uses(wrong)
 
 
 # --- atomic plans ---------------------------------------------------------------------------------------------
@@ -333,9 +299,9 @@ def test_a_claim_nested_in_one_that_stays_is_not_asked_to_yield() -> None:
 
 def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for_more() -> None:
     table = Table()
-    plan = table.claim("lift(2)", urgency=1)
-    braking = table.claim("arm", "map(shared)", urgency=1, brakes=True)
-    step = table.claim("map(shared)", within=(plan,))
+    plan = table.claim("lift", urgency=1)
+    braking = table.claim("arm", urgency=1, brakes=True)
+    step = table.claim("map", within=(plan,))
     urgent = table.claim("arm", "map", urgency=5)
     assert (braking.state, step.state) == (State.YIELDING, State.WAITING)
     table.arbiter.gave_way(braking)
@@ -346,8 +312,8 @@ def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for
 
 def test_nothing_is_preempted_for_a_claim_that_waits_behind_others() -> None:
     table = Table()
-    plan = table.claim("map(shared)", urgency=1)
+    plan = table.claim("map", urgency=1)
     step = table.claim("base", within=(plan,))
     first = table.claim("map", urgency=1)
-    second = table.claim("base", "map(shared)", urgency=1)
+    second = table.claim("base", "map", urgency=1)
     assert (step.state, first.state, second.state) == (State.HELD, State.WAITING, State.WAITING)

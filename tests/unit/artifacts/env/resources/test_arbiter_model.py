@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.resources.arbiter import Arbiter
-from jacaros.artifacts.resources.claim import POLICIES, Claim, State, Use
+from jacaros.artifacts.resources.claim import POLICIES, Claim, State
 from jacaros.runtime.clock import VirtualClock, run
 
 NAMES = ("base", "arm", "lift", "map")
-CAPACITIES = {"lift": 2}
 SCHEDULES = 10_000
 Item = TypeVar("Item")
 
@@ -58,7 +57,7 @@ class Party:
 
     def preempted(self, claim: Claim, resource: str) -> None:
         assert self.told[-1] == "granted", "what holds nothing cannot give way"
-        assert resource in {use.name for use in claim.uses}
+        assert resource in claim.uses
         self.told.append("preempted")
         answer = self.choices.one_of(
             ("now", "now", "now", "now", "later", "later", "later", "later", "later", "end")
@@ -95,8 +94,7 @@ class Schedule:
 
     def _make(self, alive: list[Claim]) -> None:
         choices = self.choices
-        names = choices.some_of(NAMES, choices.one_of((1, 1, 1, 2, 3)))
-        uses = tuple(Use(n, CAPACITIES.get(n), n == "map" and not choices.rarely(3)) for n in names)
+        uses = tuple(choices.some_of(NAMES, choices.one_of((1, 1, 1, 2, 3))))
         held = [c for c in alive if c.state is State.HELD]
         within: tuple[Claim, ...] = ()
         if held and choices.rarely(3):
@@ -118,25 +116,17 @@ class Schedule:
                 self.arbiter.leave(each)
 
     def check(self) -> None:
-        """No unit is held twice, and no claim waits for a free resource."""
+        """No resource is held twice, and no claim waits for a free one."""
         holders = [c for c in self.claims if c.holds]
         for name in NAMES:
-            mine = [c for c in holders if any(u.name == name for u in c.uses)]
+            mine = [c for c in holders if name in c.uses]
             assert set(mine) == set(self.arbiter.holders(name)), "a death frees all, and nothing else does"
             for one in mine:
                 together = [c for c in mine if c not in one.within and one not in c.within]
-                assert self._go_together(name, together), (name, mine)
+                assert _go_together(together), (name, mine)
         for claim in self.claims:
             if claim.state is State.WAITING and all(o.state is State.HELD for o in claim.within):
                 assert self._must_wait(claim, holders), f"{claim} was forgotten"
-
-    def _go_together(self, name: str, claims: list[Claim]) -> bool:
-        """By counting alone: readers, or no more than the capacity; a claim counts with those within it."""
-        uses = [u for c in claims for u in c.uses if u.name == name]
-        if all(u.shared for u in uses):
-            return True
-        inner = [c for c in claims if not any(c in o.within for o in claims)]
-        return len(inner) <= CAPACITIES.get(name, 1) and not any(u.shared for u in uses)
 
     def _must_wait(self, claim: Claim, holders: list[Claim]) -> bool:
         if self._is_blocked(claim):
@@ -149,9 +139,9 @@ class Schedule:
         ]
         outermost = not claim.within or any(h.state is State.YIELDING for h in holders)
         return any(
-            not self._fits(use, claim, [h for h in holders if h not in claim.within])
-            or (outermost and any(u.name == use.name for c in before for u in c.uses))
-            for use in claim.uses
+            not self._fits(name, claim, [h for h in holders if h not in claim.within])
+            or (outermost and any(name in c.uses for c in before))
+            for name in claim.uses
         )
 
     def _is_blocked(self, claim: Claim) -> bool:
@@ -159,9 +149,13 @@ class Schedule:
         atomic = any(c.blocks for c in self.claims if c.state is not State.OUT)
         return atomic and bool(claim.plan_of) and not claim.blocks
 
-    def _fits(self, use: Use, claim: Claim, holders: list[Claim]) -> bool:
-        mine = [h for h in holders if any(u.name == use.name for u in h.uses)]
-        return self._go_together(use.name, [*mine, claim])
+    def _fits(self, name: str, claim: Claim, holders: list[Claim]) -> bool:
+        return _go_together([*(h for h in holders if name in h.uses), claim])
+
+
+def _go_together(claims: list[Claim]) -> bool:
+    """Return whether one resource serves them all: one claim, with those within it."""
+    return len([c for c in claims if not any(c in other.within for other in claims)]) <= 1
 
 
 def test_no_schedule_breaks_an_invariant() -> None:
