@@ -36,7 +36,6 @@ def is_apart(code: CodeType) -> bool:
         code.co_filename.startswith((f"{SOURCES}sim/", f"{SOURCES}runtime/clock.py"))
         or name in OTHERS
         or name.endswith("__missing__")
-        or name.startswith(("AskedFor", "step_boundary"))
     )
 
 

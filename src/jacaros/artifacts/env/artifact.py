@@ -20,7 +20,7 @@ from jacaros.artifacts.env.ports import UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, plain_annotations
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
 from jacaros.artifacts.kernel.declaration import Interface, declare_function, interface_of
-from jacaros.artifacts.kernel.faults import step_boundary, text_of, watch_operations
+from jacaros.artifacts.kernel.faults import text_of
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause
@@ -83,7 +83,6 @@ class Artifact:
                 f'expected a tuple of names as {cls.__qualname__}.ports, found {cls.ports!r}; write ports = ("out",)'
             )
         cls.interface = interface_of(cls)
-        watch_operations(cls)
 
     def __setattr__(self, name: str, value: object) -> None:
         if name in _RESERVED:
@@ -350,17 +349,14 @@ class Artifact:
         self._steps.current("a commit")
         self._steps.commit()
 
-    @step_boundary
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds. This is a step boundary: other operations may run meanwhile."""
         await self._steps.leave(self.clock.sleep(delay), "sleeping")
 
-    @step_boundary
     async def until(self, guard: Callable[[], bool]) -> None:
         """Wait until *guard* is true. This is a step boundary. The guard is evaluated after every step."""
         await self._steps.until(guard)
 
-    @step_boundary
     async def step(self, awaitable: Awaitable[T]) -> T:
         """Await anything else, such as a service call. This is a step boundary.
 
@@ -369,7 +365,6 @@ class Artifact:
         """
         return await self._steps.leave(awaitable, "waiting for something")
 
-    @step_boundary
     async def pause_point(self, on_pause: Callable[[], None] | None = None) -> float:
         """Wait here while the operation is paused. This is a step boundary only if it is paused.
 
@@ -412,7 +407,6 @@ class Artifact:
             return f"{wanted} is not an operation of artifact {self.name}: add @internal_operation above def {wanted}"
         return f"unknown internal operation `{wanted}/{count}` of artifact {self.name}"
 
-    @step_boundary
     async def call_linked(self, port: str | ArtifactId | None, operation: str, *arguments: object) -> None:
         """Call a linked operation of all artifacts that are linked to *port*, and wait for all of them. This is a step
         boundary.

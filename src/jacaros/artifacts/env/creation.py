@@ -18,7 +18,7 @@ from jacaros.artifacts.env.ports import Workspace
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, interface_of
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
-from jacaros.artifacts.kernel.publication import Setting, changed_copies
+from jacaros.artifacts.kernel.publication import Setting, mistakes_in
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.errors import InternalError
 from jacaros.files.texts import aside
@@ -92,11 +92,8 @@ def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, s
 
 def _log_mistakes(artifact_type: type[Artifact], setting: Setting) -> None:
     """Log mistakes that show in a class when its first artifact is created: its module is complete then."""
-    for call in changed_copies(artifact_type):
-        setting.log(
-            f"[{artifact_type.__name__}] in {call} changes only a copy of the value: keep it in a variable, change the "
-            "variable, and pass it to self.update_property"
-        )
+    for mistake in mistakes_in(artifact_type):
+        setting.log(f"[{artifact_type.__name__}] {mistake}")
     if not any(artifact_type.interface.unknown_annotations()):
         return
     artifact_type.interface = interface_of(artifact_type)

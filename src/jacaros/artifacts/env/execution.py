@@ -12,7 +12,7 @@ from jacaros.artifacts.env.ports import UnderWay
 from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation
-from jacaros.artifacts.kernel.faults import AskedFor, is_interruption
+from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.resources.arbiter import Arbiter
 from jacaros.artifacts.resources.claim import Claim, State, local_name
 from jacaros.runtime.clock import Clock, Timer
@@ -49,7 +49,6 @@ class OperationExecution:
         request: the request of the caller.
         declared: the operation that serves it.
         arguments: the converted arguments.
-        asked_for: step boundaries that may not have been awaited.
         cause: what led to it.
         begun: True once its code has run.
         cancelled: True if it was cancelled. Its outcome is not reported.
@@ -68,7 +67,6 @@ class OperationExecution:
     declared: DeclaredOperation = NOTHING
     arguments: tuple[object, ...] = ()
     cause: Cause | None = None
-    asked_for: Sequence[AskedFor] = field(default=(), init=False)
     begun: bool = field(default=False, init=False)
     cancelled: bool = field(default=False, init=False)
     verdict: OperationOutcome | None = field(default=None, init=False)

@@ -463,7 +463,7 @@ class Interface:
         if isinstance(operation, str):
             found = self.internals.find(operation, arity)
             return found if found is not None else self.operations.find(operation, arity)
-        function = _unwatched(getattr(operation, "__func__", operation))
+        function = getattr(operation, "__func__", operation)
         usual = self.internals.find(getattr(function, "__name__", ""), arity)
         if usual is not None and usual.function is function:
             return usual
@@ -501,16 +501,10 @@ def interface_of(artifact_type: type) -> Interface:
                 marks[attribute] = (depth, (*others, Mark(INIT)))
     interface = Interface()
     for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
-        function = _unwatched(getattr(artifact_type, attribute))
+        function = getattr(artifact_type, attribute)
         for mark in declared if callable(function) else ():
             interface.table(mark.kind).add(declare_method(mark, attribute, function, artifact_type, depth))
     return interface
-
-
-def _unwatched(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the user-defined function. See `jacaros.artifacts.kernel.faults.watch_operations`."""
-    plain: Callable[..., Any] = getattr(function, "plain", function)
-    return plain
 
 
 def _depth(item: tuple[str, tuple[int, Any]]) -> int:

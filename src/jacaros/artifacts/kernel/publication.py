@@ -28,7 +28,7 @@ from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause, Tracer
 
-# Find ``self.value("path").append(x)``, which changes only a copy, not the property.
+# Statements without effect: ``self.value("path").append(x)`` changes a copy, ``self.sleep(1)`` lacks its ``await``.
 
 
 _CHANGING: Final = frozenset(
@@ -40,17 +40,20 @@ _CHANGING: Final = frozenset(
 """Mutating methods of lists and dictionaries."""
 
 
-def changed_copies(artifact_type: type) -> Iterator[str]:
-    """Return the methods of a class that change the copy that ``self.value`` returned, with the call and its line."""
+def mistakes_in(artifact_type: type) -> Iterator[str]:
+    """Return the statements without effect in the methods of a user-defined class: place, call, and how to fix it."""
+    if artifact_type.__module__.startswith("jacaros."):
+        return
     for member in vars(artifact_type).values():
-        function = getattr(member, "plain", member)
-        code = getattr(function, "__code__", None)
+        code = getattr(member, "__code__", None)
         # Only methods that use such names have their source read.
-        if code is not None and "value" in code.co_names and not _CHANGING.isdisjoint(code.co_names):
-            yield from _in_method(function)
+        if code is not None and any(
+            name in _CHANGING or _is_coroutine(artifact_type, name) for name in code.co_names
+        ):
+            yield from _in_method(artifact_type, member)
 
 
-def _in_method(function: Callable[..., Any]) -> Iterator[str]:
+def _in_method(artifact_type: type, function: Callable[..., Any]) -> Iterator[str]:
     try:
         lines, first = inspect.getsourcelines(function)
         tree = ast.parse(textwrap.dedent("".join(lines)))
@@ -58,21 +61,27 @@ def _in_method(function: Callable[..., Any]) -> Iterator[str]:
         return
     for node in ast.walk(tree):
         # `last = self.value("path").pop()` uses the copy; a statement does not.
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _changes_copy(node.value.func):
-            yield f"{function.__qualname__} (line {first + node.lineno - 1}): {ast.unparse(node.value)}"
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+            wrong = _without_effect(artifact_type, node.value.func)
+            if wrong is not None:
+                place = f"{function.__qualname__} (line {first + node.lineno - 1})"
+                yield f"in {place}: {ast.unparse(node.value)} {wrong}"
 
 
-def _changes_copy(method: ast.expr) -> bool:
-    if not (isinstance(method, ast.Attribute) and method.attr in _CHANGING):
-        return False
-    owner = method.value
-    return (
-        isinstance(owner, ast.Call)
-        and isinstance(owner.func, ast.Attribute)
-        and owner.func.attr == "value"
-        and isinstance(owner.func.value, ast.Name)
-        and owner.func.value.id == "self"
-    )
+def _without_effect(artifact_type: type, method: ast.expr) -> str | None:
+    match method:
+        case ast.Attribute(ast.Name("self"), name) if _is_coroutine(artifact_type, name):
+            return f"has no effect without await: write `await self.{name}(...)` in an async def"
+        case ast.Attribute(ast.Call(ast.Attribute(ast.Name("self"), "value")), name) if name in _CHANGING:
+            return (
+                "changes only a copy of the value: keep it in a variable, change the variable, and pass it to "
+                "self.update_property"
+            )
+    return None
+
+
+def _is_coroutine(artifact_type: type, name: str) -> bool:
+    return inspect.iscoroutinefunction(getattr(artifact_type, name, None))
 
 
 # What all artifacts of an environment share: clock, log, and the handling of internal errors.

@@ -25,7 +25,7 @@ from jacaros.artifacts.env.property import Signal, check_name
 from jacaros.artifacts.env.values import Atom, Structure, plain
 from jacaros.artifacts.kernel import faults
 from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, WrongArguments
-from jacaros.artifacts.kernel.faults import forgotten, is_interruption
+from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
 from jacaros.artifacts.resources.claim import read_uses, scoped
@@ -463,10 +463,6 @@ class Steps:
 
     def end(self, execution: OperationExecution, error: BaseException | None) -> None:
         """End the operation, and with it its last step."""
-        if execution.asked_for:
-            mistake = forgotten(execution)
-            if error is None and not execution.stopped:
-                error = mistake
         if error is None:
             if self.publication.properties.changing or self._started:
                 self.commit()

@@ -1,8 +1,6 @@
 """Errors with ``await`` and ``return`` that Python itself does not report."""
 
-import pytest
-
-from jacaros.artifacts import Artifact, Structure, internal_operation, operation
+from jacaros.artifacts import Artifact, internal_operation, operation
 
 
 class Forgetful(Artifact):
@@ -58,52 +56,34 @@ class Forgetful(Artifact):
         self.sleep(1)
 
 
-@pytest.mark.parametrize(
-    ("name", "method"), [("sleeping", "sleep"), ("plainly", "sleep"), ("waiting", "until")]
-)
-def test_a_step_boundary_without_await_fails_the_operation(play, name, method):
+def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(play):
+    async def scene(stage):
+        for name in ("a", "b"):
+            await stage.make(Forgetful, name=name)
+
+    found = [line for line in play(scene).lines if "without await" in line]
+    assert [line.partition(" (line ")[0].rpartition(".")[2] for line in found] == [
+        "sleeping",
+        "plainly",
+        "waiting",
+        "failing",
+        "process",
+    ]
+    assert found[0].startswith("[Forgetful] in Forgetful.sleeping (line ")
+    assert found[0].endswith(
+        "): self.sleep(1) has no effect without await: write `await self.sleep(...)` in an async def"
+    )
+    assert "self.until(lambda: False) has no effect" in found[2]
+
+
+def test_a_coroutine_that_is_awaited_later_has_its_effect(play):
     async def scene(stage):
         it = await stage.make(Forgetful)
-        call = stage.call(it, name)
-        outcome = await call.wait()
-        assert outcome.reason == Structure("operation_error", (f"{name}/0",))
-        assert (
-            f"self.{method}(...) has no effect without await; write `await self.{method}(...)`"
-            in outcome.message
-        )
-        assert "test_env_unawaited.py:" in outcome.message
-        assert stage.property(it, "count") == ((1,) if name == "waiting" else (0,))
-
-    play(scene)
-
-
-def test_another_failure_of_the_operation_has_precedence(play):
-    async def scene(stage):
-        it = await stage.make(Forgetful)
-        assert (await stage.call(it, "failing").wait()).reason == "no"
-
-    play(scene)
-
-
-def test_an_operation_that_awaits_all_step_boundaries_succeeds(play):
-    async def scene(stage):
-        it = await stage.make(Forgetful)
-        call = stage.call(it, "thrice")
-        await stage.clock.sleep(1.5)
-        assert len(call.execution.asked_for) == 2
-        assert (await call.wait()).ok
+        assert (await stage.call(it, "thrice").wait()).ok
         assert stage.property(it, "count") == (5,)
         assert stage.elapsed == 3
 
     play(scene)
-
-
-def test_a_process_with_a_missing_await_is_reported(play):
-    async def scene(stage):
-        await stage.call(await stage.make(Forgetful), "begin").wait()
-        await stage.clock.sleep(1)
-
-    assert play(scene).logged("self.sleep(...) has no effect without await")
 
 
 def test_a_lost_return_value_is_reported_once(play):
