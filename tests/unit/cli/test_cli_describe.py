@@ -50,7 +50,7 @@ made with:
 properties:
   power(Watts)
       what it takes.
-  lit(true or false)
+  lit(_)
 signals:
   switched(on)
 operations:

@@ -6,7 +6,7 @@ arguments and failure reasons are the same here. All other actions on workspaces
 """
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from functools import cache
 from types import MappingProxyType
 from typing import Final
 
@@ -160,10 +160,9 @@ def _filter(presence: AgentPresence, call: Call) -> Filter | None:
     """Return the filter in the second argument; None without a second argument."""
     if len(call.arguments) == 1:
         return None
-    complain = partial(presence.environment.log_error, presence.name, "a filter failed; everything passes:")
-    found = filter_of(to_value(call.arguments[1]), complain)
+    found = filter_of(to_value(call.arguments[1]))
     if found is None:
-        what = "argument 2: expected a filter: patterns such as count(_), or a Python object with a method select"
+        what = "argument 2: expected a filter: a pattern such as count(_), or a list of patterns"
         raise _wrong(call, presence.focused.body_in(_base(presence, call)), what, 1)
     return found
 

@@ -17,15 +17,6 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Signature
 _DEFINES = {"define_property": 0, "signal": 0, "signal_to": 1}
 """The methods that make something observable, and the index of the argument that names it."""
 
-_WORDS: dict[type, str] = {
-    bool: "true or false",
-    int: "number",
-    float: "number",
-    str: "text",
-    list: "list",
-    dict: "map",
-}
-
 Usages = dict[str, str]
 """From a name to its usage with values, such as ``count(start)``."""
 
@@ -77,40 +68,19 @@ def _in_order(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _value(node: ast.expr) -> str:
-    """Return a word for a value, from the expression that computes it."""
-    if isinstance(node, ast.Starred):
-        return "..."
-    if isinstance(node, ast.Name):
-        return node.id
-    if isinstance(node, ast.Attribute):
-        return node.attr.lstrip("_")
-    if isinstance(node, ast.Constant):
-        return _WORDS.get(type(node.value), "value")
-    if isinstance(node, ast.List | ast.ListComp | ast.Tuple):
-        return "list"
-    if isinstance(node, ast.JoinedStr):
-        return "text"
-    if isinstance(node, ast.Call):
-        return _property_read(node) or (
-            _value(node.args[0])
-            if node.args and not isinstance(node.args[0], ast.Starred)
-            else _called(node.func)
-        )
-    return "value"
-
-
-def _property_read(call: ast.Call) -> str | None:
-    """Return the property that ``self.value("count")`` reads."""
-    match call:
-        case ast.Call(func=ast.Attribute(attr="value"), args=[ast.Constant(value=str(name)), *_]):
+    """Return a word for a value: the name of what is passed or read, ``_`` for an expression without one."""
+    match node:
+        case ast.Starred():
+            return "..."
+        case ast.Name(name):
             return name
-    return None
-
-
-def _called(function: ast.expr) -> str:
-    if isinstance(function, ast.Name):
-        return function.id.lower()
-    return function.attr.lstrip("_") if isinstance(function, ast.Attribute) else "value"
+        case ast.Attribute(_, name):
+            return name.lstrip("_")
+        case ast.Call(ast.Attribute(_, "value"), [ast.Constant(str(name)), *_]):
+            return name
+        case ast.Call(_, [first, *_]):
+            return _value(first)
+    return "_"
 
 
 def described(artifact_type: type, section: str) -> Entries:

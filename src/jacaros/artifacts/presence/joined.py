@@ -1,7 +1,7 @@
 """The joined workspaces, and the order in which they are searched."""
 
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple, Protocol
+from typing import Any
 
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, resolve_path
@@ -12,7 +12,6 @@ from jacaros.artifacts.env.property import (
     ObservableProperty,
     Observation,
     Observer,
-    Signal,
     SlowObserver,
 )
 from jacaros.artifacts.env.values import Atom, Out, Structure, equal
@@ -158,96 +157,38 @@ def not_joined(path: str) -> OperationFailed:
 # not variables must be equal
 # an atom, ``tick``             all properties and signals of that name, whatever their arguments
 # a list of these               what one of them lets pass
-# a Python object               what its method ``select`` (or the object itself, called) returns true for; it
-# takes ``kind`` ("property" or "signal"), ``name`` and ``values``
 # ============================  ==============================================================================
-#
-# A Python object filters changes and signals only, as in CArtAgO: all initial properties are perceived.
-# A pattern filters initial properties, too.
 
 
-PROPERTY, SIGNAL = "property", "signal"
-
-
-class Perception(NamedTuple):
-    """The argument of a filter.
-
-    Attributes:
-        kind: ``property`` or ``signal``.
-        name: name of the property or signal.
-        values: plain values.
-    """
-
-    kind: str
-    name: str
-    values: tuple[object, ...]
-
-
-class Filter(Protocol):
-    """Decides what passes."""
-
-    from_the_beginning: bool
-    """Whether it also filters the properties that exist when the focus begins."""
-
-    def passes(self, perception: Perception) -> bool:
-        """Return whether the agent perceives it."""
-
-
-class Patterns:
+class Filter:
     """Lets pass what matches a pattern.
 
     Args:
         patterns: atoms for any arguments, structures with `Out` objects for any value.
     """
 
-    from_the_beginning = True
-
     def __init__(self, patterns: list[Atom | Structure]) -> None:
         self._patterns = patterns
 
-    def passes(self, perception: Perception) -> bool:
-        """Return whether one of the patterns matches."""
-        return any(_fits(pattern, perception) for pattern in self._patterns)
+    def passes(self, name: str, values: tuple[object, ...]) -> bool:
+        """Return whether a property or signal matches one of the patterns."""
+        return any(_fits(pattern, name, values) for pattern in self._patterns)
 
 
-def _fits(pattern: Atom | Structure, perception: Perception) -> bool:
+def _fits(pattern: Atom | Structure, name: str, values: tuple[object, ...]) -> bool:
     if isinstance(pattern, Atom):
-        return perception.name == str.__str__(pattern)
-    if pattern.functor != perception.name or len(pattern.arguments) != len(perception.values):
+        return name == str.__str__(pattern)
+    if pattern.functor != name or len(pattern.arguments) != len(values):
         return False
-    pairs = zip(pattern.arguments, perception.values, strict=True)
+    pairs = zip(pattern.arguments, values, strict=True)
     return all(isinstance(wanted, Out) or equal(wanted, value) for wanted, value in pairs)
 
 
-class Selecting:
-    """Lets pass what a function of the user returns true for; if it raises an exception, everything passes.
-
-    Args:
-        select: the function.
-        complain: called with its exceptions.
-    """
-
-    from_the_beginning = False
-
-    def __init__(self, select: Callable[[Perception], object], complain: Callable[[Exception], None]) -> None:
-        self._select, self._complain = select, complain
-
-    def passes(self, perception: Perception) -> bool:
-        """Return the result of the function."""
-        try:
-            return bool(self._select(perception))
-        except Exception as error:
-            self._complain(error)
-            return True
-
-
-def filter_of(value: Any, complain: Callable[[Exception], None]) -> Filter | None:
+def filter_of(value: Any) -> Filter | None:
     """Convert a plain value to a filter; None if it is not one."""
     patterns = value if isinstance(value, list) else [value]
-    if patterns and all(isinstance(pattern, (Atom, Structure)) for pattern in patterns):
-        return Patterns(patterns)
-    select = getattr(value, "select", value)
-    return Selecting(select, complain) if callable(select) else None
+    is_filter = patterns and all(isinstance(pattern, (Atom, Structure)) for pattern in patterns)
+    return Filter(patterns) if is_filter else None
 
 
 class FilteredObserver:
@@ -260,7 +201,6 @@ class FilteredObserver:
         self._observer, self._filter = observer, wanted
         self._slow = observer if isinstance(observer, SlowObserver) else None
         self._shown: dict[int, ObservableProperty] = {}
-        self._begun = wanted.from_the_beginning
 
     @property
     def agent(self) -> str:
@@ -273,17 +213,16 @@ class FilteredObserver:
 
     def observe(self, observation: Observation) -> None:
         """Forward what passes."""
-        signals = tuple(each for each in observation.signals if self._passes_signal(each))
+        signals = tuple(each for each in observation.signals if self._filter.passes(*each))
         changed: list[Change] = []
         added: list[ObservableProperty] = []
         removed = [self._shown.pop(each.key) for each in observation.removed if each.key in self._shown]
         for _, new in observation.changed:
             self._change(new, changed, added, removed)
         for each in observation.added:
-            if not self._begun or self._passes(each):
+            if self._filter.passes(each.name, each.values):
                 added.append(each)
                 self._shown[each.key] = each
-        self._begun = True
         if signals or changed or added or removed:
             cause = observation.cause
             parts = (tuple(changed), tuple(added), tuple(removed))
@@ -297,20 +236,14 @@ class FilteredObserver:
         removed: list[ObservableProperty],
     ) -> None:
         old = self._shown.get(new.key)
-        if self._passes(new):
+        if self._filter.passes(new.name, new.values):
             self._shown[new.key] = new
             if old is None:
                 added.append(new)
             else:
                 changed.append((old, new))
-        elif old is not None and self._filter.from_the_beginning:
+        elif old is not None:
             removed.append(self._shown.pop(new.key))
-
-    def _passes(self, each: ObservableProperty) -> bool:
-        return self._filter.passes(Perception(PROPERTY, each.name, each.values))
-
-    def _passes_signal(self, each: Signal) -> bool:
-        return self._filter.passes(Perception(SIGNAL, each.name, each.arguments))
 
 
 # The focused artifacts, in the order of focusing.

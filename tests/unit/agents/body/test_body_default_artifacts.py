@@ -278,7 +278,7 @@ async def test_an_invalid_filter_is_a_wrong_argument(one: Robot, two: Robot, clo
     c = one.make("c", "Counter")
     for wrong in (3, "count", NIL, [3]):
         failure = one.do("focus", c, wrong)
-        assert "expected a filter: patterns such as count(_)" in message_of(failure)
+        assert "expected a filter: a pattern such as count(_)" in message_of(failure)
         assert reason_of(failure).startswith("wrong_op_arguments(")
     assert one.beliefs == []
 

@@ -110,13 +110,13 @@ def test_properties_and_signals_are_found_in_docstrings_and_code():
         ("colour", "colour(R, G, B)", "both between 0 and 1, as in the docstring of its base."),
         ("mode", "mode(M)", "both between 0 and 1, as in the docstring of its base."),
         ("name", "name(name)", ""),
-        ("state", "state(watts, text, true or false, list, value, watts)", ""),
+        ("state", "state(watts, _, _, _, _, watts)", ""),
         ("row", "row(...)", ""),
     ]
     assert [(each.name, each.usage, each.text) for each in manual.signals] == [
         ("burnt", "burnt(Hours)", "after so many hours."),
         ("tick", "tick", ""),
-        ("told", "told(text, number)", ""),
+        ("told", "told(_, _)", ""),
     ]
 
 
@@ -144,13 +144,13 @@ def test_a_manual_can_be_printed():
         "  mode(M)\n"
         "      both between 0 and 1, as in the docstring of its base.\n"
         "  name(name)\n"
-        "  state(watts, text, true or false, list, value, watts)\n"
+        "  state(watts, _, _, _, _, watts)\n"
         "  row(...)\n"
         "signals:\n"
         "  burnt(Hours)\n"
         "      after so many hours.\n"
         "  tick\n"
-        "  told(text, number)\n"
+        "  told(_, _)\n"
         "operations:\n"
         "  setPower(power: a number, -old)  [may wait, pausable]\n"
         "      Set the power.\n"
