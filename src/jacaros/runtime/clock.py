@@ -21,7 +21,8 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
 from functools import partial
 from types import FrameType
 from typing import Any, Protocol, TypeVar
@@ -569,74 +570,50 @@ def _is_of_run(handle: asyncio.Handle) -> bool:
     return context.get(_OF_RUN, False)
 
 
-def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
-    """Run *work* in a daemon thread; return a future with its result or exception.
+class _DaemonThreads(Executor):
+    """Runs each piece of work in a daemon thread.
 
     At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
     """
-    loop = asyncio.get_running_loop()
-    future: asyncio.Future[T] = loop.create_future()
 
-    def bring(deliver: Callable[[], None]) -> None:
-        if not future.done():
-            deliver()
-
-    def run_work() -> None:
-        deliver: Callable[[], None]
-        try:
-            deliver = partial(future.set_result, work())
-        except StopIteration as error:  # which a future does not accept
-            deliver = partial(future.set_exception, RuntimeError(f"the thread raised {error!r}"))
-        except BaseException as error:
-            deliver = partial(future.set_exception, error)
-        with suppress(RuntimeError):  # the loop has been closed
-            loop.call_soon_threadsafe(bring, deliver)
-
-    threading.Thread(target=run_work, name="jacaros work", daemon=True).start()
-    return future
+    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
+        """Call *fn* in a thread of its own."""
+        done: Future[T] = Future()
+        work = partial(fn, *args, **kwargs)
+        threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
+        return done
 
 
-class _DaemonThreads(asyncio.BaseEventLoop):
+def _work(work: Callable[[], T], done: Future[T]) -> None:
+    """Deliver what *work* returns or raises to its future, which may have been cancelled."""
+    if not done.set_running_or_notify_cancel():
+        return
+    try:
+        result = work()
+    except StopIteration as error:  # which a future of asyncio does not accept
+        done.set_exception(RuntimeError(f"the thread raised {error!r}"))
+    except BaseException as error:
+        done.set_exception(error)
+    else:
+        done.set_result(result)
+
+
+def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
+    """Run *work* in a daemon thread, during which a virtual clock goes on; return a future with its result."""
+    return asyncio.wrap_future(_DaemonThreads().submit(work))
+
+
+class _Loop(asyncio.BaseEventLoop):
     """The part of a loop that runs work of ``asyncio.to_thread`` in daemon threads."""
-
-    THREADS = 32
-    """Maximum number of concurrent threads, as in asyncio."""
-
-    def __init__(self, *arguments: Any) -> None:
-        super().__init__(*arguments)
-        self._threads = 0
-        self._queued: deque[tuple[asyncio.Future[Any], Callable[[], Any]]] = deque()
 
     def run_in_executor(  # type: ignore[override]  # the typed signature differs between Python versions
         self, executor: Any, func: Any, *args: Any
     ) -> Any:
         """Run *func* in a thread of *executor*, or in a daemon thread if that is None."""
-        if executor is not None:
-            return super().run_in_executor(executor, func, *args)
-        future = self.create_future()
-        self._queued.append((future, partial(func, *args)))
-        self._start_threads()
-        return future
-
-    def _start_threads(self) -> None:
-        while self._queued and self._threads < self.THREADS:
-            future, work = self._queued.popleft()
-            if not future.done():
-                self._threads += 1
-                start_thread(work).add_done_callback(partial(self._thread_done, future))
-
-    def _thread_done(self, future: asyncio.Future[Any], done: asyncio.Future[Any]) -> None:
-        self._threads -= 1
-        error = done.exception()
-        if not future.done():
-            if error is not None:
-                future.set_exception(error)
-            else:
-                future.set_result(done.result())
-        self._start_threads()
+        return super().run_in_executor(executor or _DaemonThreads(), func, *args)
 
 
-class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
+class VirtualEventLoop(_Loop, asyncio.SelectorEventLoop):
     """An asyncio loop that waits on a virtual clock: ``asyncio.sleep`` and timeouts take no real time."""
 
     def __init__(self, clock: VirtualClock) -> None:
@@ -682,10 +659,10 @@ class VirtualEventLoop(_DaemonThreads, asyncio.SelectorEventLoop):
         self.virtual_selector.foreign_work -= 1
 
 
-_Loop: Any = getattr(asyncio, "ProactorEventLoop", asyncio.SelectorEventLoop)  # the former on Windows
+_UsualLoop: Any = getattr(asyncio, "ProactorEventLoop", asyncio.SelectorEventLoop)  # the former on Windows
 
 
-class _RealEventLoop(_DaemonThreads, _Loop):  # type: ignore[misc]
+class _RealEventLoop(_Loop, _UsualLoop):  # type: ignore[misc]
     """The loop of asyncio, with daemon threads."""
 
 
