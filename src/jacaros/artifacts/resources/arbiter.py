@@ -10,16 +10,14 @@ A claim is granted everything it asks for, or nothing. The rules:
 * A claim of an atomic plan preempts other plans of its agent, however urgent: they make no step before it ends, and wait
   again until then.
 * A holder that cannot yield inherits the urgency of the claims it blocks.
-* The urgency of a waiting claim rises by 1 for each `PATIENCE`. That moves it forward in the queue and protects what it
-gets,
-  but takes nothing away from a holder.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.resources.claim import Claim, State, local_name
-from jacaros.runtime.clock import Clock, Timer
+from jacaros.runtime.clock import Clock
 
 # Deadlocks: claims that wait for each other in a cycle.
 
@@ -28,9 +26,7 @@ WaitsFor = Callable[[Claim], Iterable[tuple[Claim, str]]]
 """The holders that a waiting claim waits for, each with the resource."""
 
 
-def victim_of(
-    waiting: Sequence[Claim], waits_for: WaitsFor, rank: Callable[[Claim], int]
-) -> tuple[Claim, str] | None:
+def victim_of(waiting: Sequence[Claim], waits_for: WaitsFor) -> tuple[Claim, str] | None:
     """Return the claim that should fail to break a deadlock, and the resource it waits for; None without a deadlock.
 
     It is the least urgent one, among equals the newest. The outermost claim counts: a plan that holds one resource and
@@ -51,7 +47,7 @@ def victim_of(
         for other, claim, name in found
         if _reaches(edges, other, party)
     ]
-    return min(in_circle, key=lambda each: (rank(each[0]), -each[0].order), default=None)
+    return min(in_circle, key=lambda each: (each[0].base, -each[0].order), default=None)
 
 
 def _reaches(edges: dict[Claim, list[tuple[Claim, Claim, str]]], start: Claim, goal: Claim) -> bool:
@@ -68,8 +64,6 @@ def _reaches(edges: dict[Claim, list[tuple[Claim, Claim, str]]], start: Claim, g
     return False
 
 
-PATIENCE = 30.0
-"""Seconds of waiting after each of which the urgency of a claim rises."""
 REPORTED = 300.0
 """Seconds of waiting that cause a warning. Charging for a minute is not starvation."""
 
@@ -88,7 +82,6 @@ class Arbiter:
         self._holders: dict[str, list[Claim]] = {}
         self._arrivals = 0
         self._settling = self._again = False
-        self._timer: Timer | None = None
 
     # ---- state
 
@@ -123,17 +116,22 @@ class Arbiter:
         if claim.state is State.OUT:
             return
         if claim.state is State.WAITING:
-            self._waiting.remove(claim)
+            self._stop_waiting(claim)
         else:
             self._let_go(claim)
         claim.state = State.OUT
         claim.inherited = 0
-        claim.waited = 0.0
         self._settle()
 
     def _wait(self, claim: Claim) -> None:
-        claim.state, claim.since = State.WAITING, self._clock.elapsed
+        claim.state = State.WAITING
         self._waiting.append(claim)
+
+    def _stop_waiting(self, claim: Claim) -> None:
+        self._waiting.remove(claim)
+        if claim.report is not None:
+            claim.report.cancel()
+            claim.report = None
 
     def _let_go(self, claim: Claim) -> None:
         for name in claim.uses:
@@ -157,7 +155,9 @@ class Arbiter:
                     self._again = True
         finally:
             self._settling = False
-        self._set_timer()
+        for claim in self._waiting:
+            if claim.report is None:
+                claim.report = self._clock.call_later(REPORTED, partial(self._report, claim))
 
     def _change_one(self) -> bool:
         """Change the state of one claim. Return False if no claim needs a change."""
@@ -186,11 +186,10 @@ class Arbiter:
         return self._break_deadlock()
 
     def _in_order(self) -> list[Claim]:
-        return sorted(self._waiting, key=lambda each: (-self._rank(each), not _takes(each), each.order))
+        return sorted(self._waiting, key=lambda each: (-each.base, not _takes(each), each.order))
 
     def _grant(self, claim: Claim) -> None:
-        self._waiting.remove(claim)
-        claim.waited += self._clock.elapsed - claim.since
+        self._stop_waiting(claim)
         claim.state, claim.fresh = State.HELD, False
         for name in claim.uses:
             self._holders.setdefault(name, []).append(claim)
@@ -213,15 +212,12 @@ class Arbiter:
         if any(holder.state is State.HELD and not self._outranks(claim, holder) for holder, _ in blockers):
             return []
         # A holder that is yielding has been asked already.
-        return sorted(
-            blockers, key=lambda each: (each[0].state is State.HELD, self._rank(each[0]), -each[0].order)
-        )
+        return sorted(blockers, key=lambda each: (each[0].state is State.HELD, each[0].base, -each[0].order))
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
         if claim.blocks and claim.blocks == holder.plan_of:
             return True
-        rank = self._rank(holder)
-        return claim.base > rank or (_takes(claim) and claim.base == rank)
+        return claim.base > holder.base or (_takes(claim) and claim.base == holder.base)
 
     def _refuse(self, claim: Claim, blockers: list[tuple[Claim, str]], ahead: bool) -> bool:
         """Refuse a claim that must not wait, unless holders are yielding to it."""
@@ -235,7 +231,7 @@ class Arbiter:
 
     def _break_deadlock(self) -> bool:
         """Fail one claim of a deadlock. Return False without a deadlock."""
-        found = victim_of(self._waiting, self._waits_for, self._rank)
+        found = victim_of(self._waiting, self._waits_for)
         if found is None:
             return False
         claim, resource = found
@@ -244,7 +240,7 @@ class Arbiter:
         return True
 
     def _fail(self, claim: Claim, reason: Structure) -> None:
-        self._waiting.remove(claim)
+        self._stop_waiting(claim)
         claim.state = State.OUT
         claim.claimant.refused(claim, reason)
 
@@ -263,15 +259,6 @@ class Arbiter:
         return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
 
     # ---- urgency
-
-    def _rank(self, claim: Claim) -> int:
-        """Return the urgency that decides the place of a claim in the queue and its protection."""
-        return max(claim.base, claim.urgency + int(self._has_waited(claim) / PATIENCE))
-
-    def _has_waited(self, claim: Claim) -> float:
-        if claim.state is State.WAITING:
-            return claim.waited + self._clock.elapsed - claim.since
-        return claim.waited
 
     def _inherit(self) -> None:
         """Lend the urgency of waiting claims to holders that cannot yield to them."""
@@ -296,34 +283,12 @@ class Arbiter:
         held = (each for holders in self._holders.values() for each in holders)
         return list(dict.fromkeys((*held, *self._waiting)))
 
-    # ---- ageing
-
-    def _set_timer(self) -> None:
-        """Schedule a call when the next claim has waited too long, if that changes anything."""
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
-        if not self._waiting:
-            return
-        highest = max(map(self._rank, self._all()))
-        due = [
-            PATIENCE - self._has_waited(each) % PATIENCE
-            for each in self._waiting
-            if not each.warned or self._rank(each) < highest
-        ]
-        if due:
-            self._timer = self._clock.call_later(max(min(due), 1e-3), self._grow_old)
-
-    def _grow_old(self) -> None:
-        self._timer = None
-        for claim in self._in_order():
-            if not claim.warned and self._has_waited(claim) >= REPORTED - 1e-6:
-                claim.warned = True
-                holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
-                names = ", ".join(map(local_name, claim.uses))
-                held = f", held by {', '.join(holders)}" if holders else ""
-                self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
-        self._settle()
+    def _report(self, claim: Claim) -> None:
+        """Log a claim that has waited for long."""
+        holders = dict.fromkeys(holder.who for holder, _ in self._blockers(claim))
+        names = ", ".join(map(local_name, claim.uses))
+        held = f", held by {', '.join(holders)}" if holders else ""
+        self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
 
 
 def _takes(claim: Claim) -> bool:

@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import Literal, Protocol
 
 from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.runtime.clock import Timer
 
 # The names of resources: ``wheels``, or ``/robot_0/wheels`` with the name of its robot.
 
@@ -91,9 +92,7 @@ class Claim:
         fresh: whether it has not been granted yet.
         order: its place among claims of equal urgency. The earlier one goes first.
         inherited: urgency of the most urgent claim that it blocks and cannot yield to.
-        waited: seconds that it waited before the current wait.
-        since: begin of the current wait.
-        warned: whether its long wait has been logged.
+        report: logs a long wait, unless it ends before. None while it does not wait.
     """
 
     uses: tuple[str, ...]
@@ -108,9 +107,7 @@ class Claim:
     fresh: bool = field(default=True, init=False)
     order: int = field(default=0, init=False)
     inherited: int = field(default=0, init=False)
-    waited: float = field(default=0.0, init=False)
-    since: float = field(default=0.0, init=False)
-    warned: bool = field(default=False, init=False)
+    report: Timer | None = field(default=None, init=False)
 
     @property
     def root(self) -> "Claim":
