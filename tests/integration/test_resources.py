@@ -172,7 +172,7 @@ def test_policies_decide_what_happens_when_a_resource_is_taken(tmp_path: Path) -
         @one[needs(arm)] +!one <- .print(one); .wait(1000); .print("one done").
         @two[needs(arm), policy(refuse)] +!two <- .print(never).
         -!two[env_failure_reason(R)] <- .print(R).
-        @three[needs(arm), policy(take)] +!three <- .print(three); .wait(500); .print("three done").
+        @three[needs(arm), urgency(1)] +!three <- .print(three); .wait(500); .print("three done").
         """,
     )
     assert result.of("robot") == ["one", "resource_busy(arm)", "three", "three done", "one done"]

@@ -5,8 +5,8 @@ import re
 import stat
 from collections.abc import Iterable
 from heapq import nlargest
-from itertools import islice, takewhile
-from pathlib import Path, PurePath, PurePosixPath
+from itertools import islice
+from pathlib import Path
 from typing import Final
 
 LARGEST: Final = 64 * 2**20
@@ -112,16 +112,10 @@ def shown_from(folder: Path, file: Path) -> str:
 
     On Windows no relative path leads to another drive; then it is the whole path.
     """
-    return path_between(folder.resolve(), file.resolve())
-
-
-def path_between(folder: PurePath, file: PurePath) -> str:
-    """Return what `shown_from` returns, for absolute paths without symbolic links."""
-    pairs = zip(folder.parts, file.parts, strict=False)
-    common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-    if not common:
-        return file.as_posix()
-    return PurePosixPath(*[".."] * (len(folder.parts) - common), *file.parts[common:]).as_posix()
+    try:
+        return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return file.resolve().as_posix()
 
 
 def kept_files() -> Path | None:

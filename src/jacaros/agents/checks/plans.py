@@ -275,7 +275,7 @@ def _example(word: str) -> str:
 # Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies.
 
 
-_POLICIES = ("wait", "refuse", "take")
+_POLICIES = ("wait", "refuse")
 _NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
 
 

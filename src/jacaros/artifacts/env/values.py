@@ -105,8 +105,6 @@ SCALARS: frozenset[type] = frozenset({int, float, bool, str, Atom, type(None)})
 
 _DEPTH = 200
 """Maximum nesting depth of a value."""
-_NUMBERS = ("decimal", "fractions")
-"""Modules with further number types, which need not be imported to recognise them."""
 
 
 def plain(value: Any) -> object:
@@ -114,7 +112,7 @@ def plain(value: Any) -> object:
 
     Lists, tuples, ranges and deques become new lists; dictionaries are copied; sets become frozen sets. A dataclass or
     named tuple becomes a `Structure` with the class name, first letter in lower case. Numpy scalars and arrays
-    (recognised by their ``tolist``), decimals and fractions become numbers and lists. Members of an ``Enum`` become
+    (recognised by their ``tolist``) become numbers and lists. Members of an ``Enum`` become
     atoms (their names in lower case), those of ``StrEnum`` and ``IntEnum`` strings and numbers. Anything else is
     returned as it is: an opaque reference.
 
@@ -160,22 +158,14 @@ def _plain(value: Any, room: int) -> object:
         return Atom(str(value.name).lower())
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)), room)
-    return _plain_number_or_array(value, room)
+    if hasattr(kind, "tolist") and hasattr(kind, "dtype"):
+        return _plain(value.tolist(), room)
+    return value
 
 
 def _plain_text(value: str) -> str:
     text = str.__str__(value)
     return Atom(text) if isinstance(value, Atom) else text
-
-
-def _plain_number_or_array(value: Any, room: int) -> object:
-    kind = type(value)
-    if kind.__module__ in _NUMBERS and kind.__name__ in ("Decimal", "Fraction"):
-        whole = value == value and kind.__name__ == "Fraction" and value.denominator == 1
-        return int(value) if whole else float(value)
-    if hasattr(kind, "tolist") and hasattr(kind, "dtype"):
-        return _plain(value.tolist(), room)
-    return value
 
 
 def _plain_structure(value: Structure, room: int) -> Structure:

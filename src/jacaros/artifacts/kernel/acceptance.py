@@ -308,24 +308,6 @@ def _tuple(members: tuple[Any, ...]) -> Kind:
     return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
 
 
-def _mapping(members: tuple[Any, ...]) -> Kind:
-    keys, values = (kind_of(member) for member in members) if members else (None, None)
-
-    def accept(argument: object) -> object:
-        if not isinstance(argument, dict):
-            raise Unsuitable
-        if keys is None or values is None:
-            return argument
-        return {
-            accept_part(keys, key, "key"): accept_part(values, item, "the value of", key)
-            for key, item in argument.items()
-        }
-
-    if keys is None or values is None:
-        return Kind("a map", accept)
-    return Kind(f"a map from {keys.expected} to {values.expected}", accept)
-
-
 def _takes_none(argument: object) -> object:
     if argument is None:
         return argument
@@ -347,11 +329,12 @@ _SIMPLE: dict[Any, Kind] = {
 }
 
 _LIST = _list_like(lambda items: items)
+_MAP = instance_of(dict, "a map")
 _CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
     list: _LIST,
     tuple: _tuple,
-    dict: _mapping,
-    collections.abc.Mapping: _mapping,
+    dict: lambda members: _MAP,
+    collections.abc.Mapping: lambda members: _MAP,
     collections.abc.Sequence: _LIST,
     collections.abc.Iterable: _LIST,
 }

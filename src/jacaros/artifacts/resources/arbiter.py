@@ -186,7 +186,7 @@ class Arbiter:
         return self._break_deadlock()
 
     def _in_order(self) -> list[Claim]:
-        return sorted(self._waiting, key=lambda each: (-each.base, not _takes(each), each.order))
+        return sorted(self._waiting, key=lambda each: (-each.base, each.order))
 
     def _grant(self, claim: Claim) -> None:
         self._stop_waiting(claim)
@@ -215,9 +215,7 @@ class Arbiter:
         return sorted(blockers, key=lambda each: (each[0].state is State.HELD, each[0].base, -each[0].order))
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
-        if claim.blocks and claim.blocks == holder.plan_of:
-            return True
-        return claim.base > holder.base or (_takes(claim) and claim.base == holder.base)
+        return bool(claim.blocks and claim.blocks == holder.plan_of) or claim.base > holder.base
 
     def _refuse(self, claim: Claim, blockers: list[tuple[Claim, str]], ahead: bool) -> bool:
         """Refuse a claim that must not wait, unless holders are yielding to it."""
@@ -289,11 +287,6 @@ class Arbiter:
         names = ", ".join(map(local_name, claim.uses))
         held = f", held by {', '.join(holders)}" if holders else ""
         self._warn(f"{claim.who} has waited {REPORTED:g} s for {names}{held}")
-
-
-def _takes(claim: Claim) -> bool:
-    """Return whether a claim takes from an equal: only until its first grant, or two claims would take forever."""
-    return claim.policy == "take" and claim.fresh
 
 
 def _all_go(chosen: list[tuple[Claim, str]]) -> bool:

@@ -41,10 +41,10 @@ def local_name(name: str) -> str:
     return name.rpartition("/")[2]
 
 
-Policy = Literal["wait", "refuse", "take"]
-"""What a claim does if it is not granted immediately: wait, fail, or take the resource, also from an equal."""
+Policy = Literal["wait", "refuse"]
+"""What a claim does if it is not granted immediately: wait or fail."""
 
-POLICIES: tuple[Policy, ...] = ("wait", "refuse", "take")
+POLICIES: tuple[Policy, ...] = ("wait", "refuse")
 
 
 class State(StrEnum):

@@ -29,4 +29,4 @@ def test_needs_that_can_never_be_met_are_reported(needs: str, message: str, help
 
 def test_needs_that_can_be_met_are_not_reported() -> None:
     for needs in ("needs(arm,base)", 'needs("/r1/wheels")'):
-        assert not told(f"@a[{needs}, policy(take)] +!g <- b.")
+        assert not told(f"@a[{needs}, policy(refuse)] +!g <- b.")

@@ -33,8 +33,8 @@ class Wanted(NamedTuple):
     """What a plan or goal needs.
 
     Attributes:
-        names: of the resources, as written: ``wheels``, ``lift(2)``, ``map(shared)``.
-        policy: ``wait``, ``refuse`` or ``take``.
+        names: of the resources, such as ``wheels``.
+        policy: ``wait`` or ``refuse``.
     """
 
     names: tuple[str, ...]

@@ -162,19 +162,6 @@ def test_refuse_fails_immediately_but_waits_for_a_yielding_holder(table: Table) 
     assert urgent.holds
 
 
-def test_take_takes_from_an_equal_once(table: Table) -> None:
-    a, b = table.claim("wheels"), table.claim("wheels")
-    c = table.claim("wheels", policy="take")
-    assert c.holds
-    d = table.claim("wheels", policy="take")
-    assert d.holds
-    table.arbiter.leave(d)
-    assert a.holds
-    table.arbiter.leave(a)
-    assert b.holds
-    assert told(table.claim("wheels", policy="take", urgency=0)) == ["granted"]
-
-
 def test_a_holder_that_cannot_yield_inherits_the_urgency_of_what_it_blocks(table: Table) -> None:
     atomic = table.claim("base", can_yield=False)
     middle = table.claim("arm", urgency=5)
@@ -291,7 +278,7 @@ def test_a_claim_nested_in_one_that_stays_is_not_asked_to_yield() -> None:
     table = Table()
     plan = table.claim("base", urgency=1, can_yield=False)
     step = table.claim("base", within=(plan,))
-    taker = table.claim("base", urgency=1, policy="take")
+    taker = table.claim("base", urgency=2)
     assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
 
 
