@@ -31,8 +31,8 @@ _USES: Final = frozenset({"use_artifact", "create_artifact"})
 _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
 """Actions that add artifacts of other systems."""
 
-_FAKES: Final = frozenset({"fake_action", "fake_message", "fake_service", "fake_subscriber"})
-"""Goals by which a test simulates the environment."""
+_FAKE: Final = "fake_action"
+"""The goal by which a test simulates the environment."""
 
 _CLOSED: Final = "jacaros.artifacts."
 """Modules whose artifacts have only the operations that their classes declare."""
@@ -123,7 +123,7 @@ def _is_open(program: nodes.Program) -> bool:
     for node in walk(*clauses_of(program), *program.goals):
         if isinstance(node, nodes.InternalAction) and STANDARD.get(node.name, UNDECLARED).brings_in:
             return True
-        if isinstance(node, nodes.Literal) and node.functor in _FAKES:
+        if isinstance(node, nodes.Literal) and node.functor == _FAKE:
             return True
     return False
 

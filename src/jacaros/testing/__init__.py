@@ -9,7 +9,6 @@ from jacaros.exports import exported
 
 if TYPE_CHECKING:
     from jacaros.mas.embedding.running_agent import PursuedGoal
-    from jacaros.testing.fake_graph import FakeGraph
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.paths import Verdict, judge
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
@@ -31,7 +30,6 @@ __all__ = [
     "ActionFailed",
     "AgentHarness",
     "AgentTest",
-    "FakeGraph",
     "Outcome",
     "Problem",
     "PursuedGoal",
@@ -52,7 +50,6 @@ __all__ = [
 
 _MODULES = {
     "jacaros.mas.embedding.running_agent": "PursuedGoal",
-    "jacaros.testing.fake_graph": "FakeGraph",
     "jacaros.testing.harness": "AgentHarness",
     "jacaros.testing.paths": "Verdict judge",
     "jacaros.testing.recorded": "ActionFailed RecordedAct SentMessage",

@@ -6,7 +6,6 @@ so one test may report several failures. Actions that need a test raise `ActionE
 
 import operator
 from collections.abc import Callable, Iterable, Mapping
-from itertools import groupby
 from types import MappingProxyType
 from typing import Final
 
@@ -22,8 +21,6 @@ from jacaros.testing.recorded import matches
 
 _SHOWN = 8
 """Number of beliefs or lines shown for a failed assertion."""
-_SHOWN_MESSAGES = 5
-"""Number of different messages shown."""
 
 _Function = Callable[..., None]
 _declared: dict[str, tuple[_Function, tuple[object, ...], int | tuple[int, int]]] = {}
@@ -218,77 +215,6 @@ def assert_not_did(call: Asserting, action: Term) -> None:
     """``jacaros.assert_not_did(Action)``: the agent has started no matching external action."""
     acts = call.probe("assert_not_did").fakes.acts
     call.report(not _is_in(action, acts), f"no {text(action)}", f"it did {', '.join(map(text, acts))}")
-
-
-# ---- the rest of the ROS graph
-
-
-@_action("fake_message", (2, 3))
-def fake_message(call: Asserting, topic: Term, first: Term, second: Term = None) -> None:
-    """``jacaros.fake_message(Topic [,Type], Fields)``: publish a message from a fake node."""
-    type_name, fields = ("", first) if second is None else (display(first), second)
-    with call.others("fake_message") as others:
-        others.publish(display(topic), display(fields), type_name)
-
-
-@_action("fake_subscriber", 2)
-def fake_subscriber(call: Asserting, topic: Term, type_name: Term) -> None:
-    """``jacaros.fake_subscriber(Topic, Type)``: subscribe a fake node to a topic."""
-    with call.others("fake_subscriber") as others:
-        others.hear(display(topic), display(type_name))
-
-
-@_action("fake_service", 3)
-def fake_service(call: Asserting, service: Term, type_name: Term, fields: Term) -> None:
-    """``jacaros.fake_service(Name, Type, Fields)``: offer a service that returns this response."""
-    with call.others("fake_service") as others:
-        others.answer(display(service), display(type_name), display(fields))
-
-
-@_action("assert_published", (2, 3))
-def assert_published(call: Asserting, topic: Term, fields: Term, times: Term = None) -> None:
-    """``jacaros.assert_published(Topic, Fields [,Times])``: the run has published matching messages (*Times*)."""
-    with call.others("assert_published") as others:
-        _report_count(call, others.count_published, "a message on", topic, fields, times)
-
-
-@_action("assert_not_published", 1)
-def assert_not_published(call: Asserting, topic: Term) -> None:
-    """``jacaros.assert_not_published(Topic)``: the run has published nothing on the topic."""
-    with call.others("assert_not_published") as others:
-        count, found = others.count_published(display(topic), "")
-        call.report(not count, f"no message on {display(topic)}", f"found {_listed(found)}")
-
-
-@_action("assert_called", (2, 3))
-def assert_called(call: Asserting, service: Term, fields: Term, times: Term = None) -> None:
-    """``jacaros.assert_called(Service, Fields [,Times])``: a fake service has received matching requests (*Times*)."""
-    with call.others("assert_called") as others:
-        _report_count(call, others.count_asked, "a request to", service, fields, times)
-
-
-def _report_count(
-    call: Asserting,
-    counted: Callable[[str, str], tuple[int, list[str]]],
-    what: str,
-    name: Term,
-    fields: Term,
-    times: Term,
-) -> None:
-    count, found = counted(display(name), display(fields))
-    passed = count > 0 if times is None else float(count) == times
-    often = "" if times is None else f"{display(times)} times "
-    wanted = f" with {display(fields)}" if display(fields) else ""
-    actual = f"found {_listed(found)}" if found else "found none"
-    call.report(passed, f"{often}{what} {display(name)}{wanted}", actual)
-
-
-def _listed(found: list[str]) -> str:
-    """Return messages as text, oldest first; equal neighbours become one with their number."""
-    rows = [(text, len(list(alike))) for text, alike in groupby(found)]
-    shown = [text if count == 1 else f"{count} times {text}" for text, count in rows[-_SHOWN_MESSAGES:]]
-    more = f", and {len(rows) - _SHOWN_MESSAGES} before" if len(rows) > _SHOWN_MESSAGES else ""
-    return f"{', '.join(shown)}{more}"
 
 
 UNTESTED: Final = actions(MappingProxyType({}))

@@ -1,10 +1,8 @@
 """A test's view of one agent, and the path from assertions of the agent to the test."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.actions.internal_action import ActionError
@@ -12,9 +10,6 @@ from jacaros.agents.mind.explaining.failure_reason import place_of_call
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.state.intention import GOAL, PLAN
 from jacaros.testing.recorded import Fakes
-
-if TYPE_CHECKING:
-    from jacaros.testing.fake_graph import FakeGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +45,11 @@ class Probe:
 
     Attributes:
         prints: lines that the agent printed, oldest first.
-        others: the rest of the ROS graph, played by the test.
     """
 
     fakes: Fakes
     asserted: Callable[[Assertion], None]
     prints: Callable[[], Sequence[str]]
-    others: "Callable[[], FakeGraph]"
 
 
 class Asserting:
@@ -88,18 +81,6 @@ class Asserting:
         if self._probe is None:
             raise ActionError(f"{what} works only in tests; run them with `jacaros test`")
         return self._probe
-
-    @contextmanager
-    def others(self, what: str) -> "Iterator[FakeGraph]":
-        """Yield the rest of the ROS graph; report errors in the arguments at the place of the assertion.
-
-        Raises:
-            ActionError: the agent is not in a test.
-        """
-        try:
-            yield self.probe(what).others()
-        except ValueError as wrong:
-            self.report(False, "", str(wrong))
 
     def _goal(self) -> str:
         if self.ctx.intention is None:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from types import FrameType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Span
@@ -33,9 +33,6 @@ from jacaros.testing.assertions import actions
 from jacaros.testing.probe import Assertion, Probe
 from jacaros.testing.recorded import Fakes
 from jacaros.testing.run import AgentTest, Outcome, Problem, Suite, with_assertions
-
-if TYPE_CHECKING:
-    from jacaros.testing.fake_graph import FakeGraph
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
@@ -109,7 +106,6 @@ class Trial:
         clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
         clock.on_busy = self._busy
         self._clock: Clock = clock
-        self._others: FakeGraph | None = None
         self._mappings = tuple(dict.fromkeys((*options.mappings, *test.mappings)))
         self._mas = self._system(suite.deployment)
 
@@ -158,8 +154,6 @@ class Trial:
     def _start(self) -> None:
         """Post the goal of the test."""
         test = self._outcome.test
-        if self._mappings:
-            self._others_in_graph()
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
         self._clock.call_later(limit, lambda: self._timed_out(limit))
@@ -170,14 +164,6 @@ class Trial:
             )
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
-
-    def _others_in_graph(self) -> "FakeGraph":
-        """Return the rest of the ROS graph, created on first use."""
-        if self._others is None:
-            from jacaros.testing.fake_graph import FakeGraph  # here: most tests use no ROS graph
-
-            self._others = FakeGraph(self._mas.ros)
-        return self._others
 
     def _goal_ended(self) -> None:
         """Handle the end of the goal of the test."""
@@ -193,11 +179,6 @@ class Trial:
         """End the test, unless it has ended."""
         if self._done:
             return
-        if self._others is not None and not self._outcome.problems:
-            span = self._outcome.test.span
-            self._outcome.problems += [
-                Problem(each, (), span) for each in self._others.services_without_clients()
-            ]
         self._note_times()
         self._done = True
         self._mas.end(0)
@@ -286,7 +267,7 @@ class Trial:
         if isinstance(mind, Mind):
             fakes = Fakes(mind.complete, host.set_timer)
             printed = partial(self._printed_by, host.name)
-            self._probes[host.name] = Probe(fakes, self._asserted, printed, self._others_in_graph)
+            self._probes[host.name] = Probe(fakes, self._asserted, printed)
             mind.observers.lost = partial(self._lost, host.name)
             host.intercept = fakes.begin
             host.intercept_stop = fakes.stop

@@ -72,7 +72,7 @@ def test_a_goal_without_a_plan_is_reported_once_with_a_suggestion():
 
 
 def test_tests_need_no_plans_for_the_goals_that_all_tests_have():
-    assert messages("@t[test] +!t <- !assert_true(p); !fake_message(odom, text); !assert_tru(q).") == [
+    assert messages("@t[test] +!t <- !assert_true(p); !fake_action(go, done); !assert_tru(q).") == [
         "no plan for `!assert_tru/1`"
     ]
     assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for `!assert_true/1`"]

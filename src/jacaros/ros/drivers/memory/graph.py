@@ -224,7 +224,6 @@ class MemoryGraph:
         self._nodes: dict[str, GraphNode] = {}
         self._awaited: dict[str, list[asyncio.Future[None]]] = {}
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
-        self._publisher_watchers: list[Callable[[GraphPublisher], None]] = []
         self._parameter_listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
 
     # Nodes
@@ -262,18 +261,6 @@ class MemoryGraph:
     def topic(self, name: str) -> Topic:
         """Return the topic *name*."""
         return self._topics.setdefault(name, Topic())
-
-    def watch_publishers(self, watcher: Callable[[GraphPublisher], None]) -> None:
-        """Call *watcher* with each present publisher, and with each new one before it publishes."""
-        self._publisher_watchers.append(watcher)
-        for topic in list(self._topics.values()):
-            for publisher in list(topic.publishers):
-                watcher(publisher)
-
-    def published_by(self, publisher: GraphPublisher) -> None:
-        """Report a new publisher to the watchers."""
-        for watcher in self._publisher_watchers:
-            watcher(publisher)
 
     def topics(self) -> dict[str, str]:
         """Names of all topics in use with their types."""

@@ -28,7 +28,6 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
         self._shared.publishers.append(self)
         for subscription in self._shared.subscriptions:
             subscription.meet(self)
-        node.graph.published_by(self)
 
     @property
     def subscription_count(self) -> int:
