@@ -143,9 +143,7 @@ def parts() -> list[Part]:
         Part("scenarios", (*PYTEST, "tests/scenarios", "-m", "not ros1 and not ros2"), budget=165),
         Part("experiment", (PYTHON, "experiment/run.py", "--quick"), budget=150, quiet_minutes=30),
         Part("faults", (*PYTEST, "tests/faults"), budget=10),
-        Part(
-            "examples", (f"{BIN}/jacaros", "test", "examples", "--junit", "runs/test/examples.xml"), budget=5
-        ),
+        Part("examples", (f"{BIN}/jacaros", "test", "examples"), budget=5),
         Part("fuzz", (PYTHON, "tools/fuzz.py", "--minutes", "1"), budget=620, repeats=True),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
         Part(

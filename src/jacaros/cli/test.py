@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from jacaros.cli.graph_options import noise_option
-from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import visible
 from jacaros.runtime.output import beneath
@@ -34,7 +33,6 @@ MOST_NAMES = 8
     epilog=examples(
         "jacaros test",
         "jacaros test tests/test_patrol.asl -k charging -v",
-        "jacaros test --junit results.xml",
     ),
 )
 @click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
@@ -91,12 +89,6 @@ MOST_NAMES = 8
     help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
 )
 @click.option(
-    "--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write the results to FILE as JUnit XML."
-)
-@click.option(
-    "--slowest", "slow", type=int, default=3, metavar="N", help="Number of slow tests to list (default: 3)."
-)
-@click.option(
     "--color",
     type=click.Choice(["auto", "always", "never"]),
     default="auto",
@@ -114,8 +106,6 @@ def command(
     pattern: str | None,
     first: bool,
     clock: str,
-    junit: Path | None,
-    slow: int,
     color: str,
     verbose: bool,
     **given: Any,
@@ -126,27 +116,15 @@ def command(
     with such plans, and all projects whose names begin with `test_` or end in `_test`. The exit code is 1 if a test fails.
     """  # fmt: skip
     # Imported here: it imports all that runs a system.
-    from jacaros.testing.run import collect, failures, slowest, summary, write_junit
+    from jacaros.testing.run import collect, failures, summary
     from jacaros.testing.trial import TrialOptions
 
-    if junit is not None:
-        check_output(junit, "JUnit report", make_folder=True)
     paint = _Paint(color)
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
     options = TrialOptions(fast=clock == "fast", **given)
     outcomes = _Progress(options, paint, pattern, first, verbose).run(suites)
-    for line in (
-        *failures(outcomes, paint),
-        *slowest(outcomes, slow),
-        "",
-        summary(outcomes, options.seed, paint),
-    ):
+    for line in (*failures(outcomes, paint), "", summary(outcomes, options.seed, paint)):
         paint.echo(line)
-    if junit is not None:
-        try:
-            write_junit(junit, outcomes)
-        except OSError as error:
-            raise usage_error(f"cannot write `{junit}`: {error}") from error
     return 0 if all(outcome.passed for outcome in outcomes) else 1
 
 

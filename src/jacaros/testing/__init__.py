@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         collect,
         run_project,
         suite_of,
-        write_junit,
     )
     from jacaros.testing.trial import TrialOptions, run_suite
 
@@ -45,7 +44,6 @@ __all__ = [
     "run_project",
     "run_suite",
     "suite_of",
-    "write_junit",
 ]
 
 _MODULES = {
@@ -54,7 +52,7 @@ _MODULES = {
     "jacaros.testing.paths": "Verdict judge",
     "jacaros.testing.recorded": "ActionFailed RecordedAct SentMessage",
     "jacaros.testing.run": "AgentTest Outcome Problem RunResult Suite SuiteOutcome "
-    "collect run_project suite_of write_junit",
+    "collect run_project suite_of",
     "jacaros.testing.trial": "TrialOptions run_suite",
 }
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
-from xml.etree import ElementTree
 
 from jacaros.agents.checks.formulas import labelled
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, Span, excerpt
-from jacaros.agents.language.loader import load_program, parse_literals
+from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import rebuilt
 from jacaros.errors import JacarosError, UsageError
@@ -272,25 +271,7 @@ def _of_file(path: Path) -> Iterator[Suite]:
         )
     if not is_file(path):
         raise UsageError(f"error: file not found: `{path}`")
-    suite = suite_of(path)
-    folders = list(_folders_of_the_manager(suite))
-    if suite.tests or suite.error or not folders:
-        yield suite
-    for folder in folders:
-        yield from _in_folder(folder)
-
-
-def _folders_of_the_manager(suite: Suite) -> Iterator[Path]:
-    """Yield the folders that a test project of Jason names in the goal of its agent test_manager."""
-    if suite.deployment is None:
-        return
-    for spec in suite.deployment.agents:
-        for goal in parse_literals(spec.goals) if spec.goals.strip() else ():
-            if goal.functor == "create_tester_agents" and isinstance(goal.arguments[0], nodes.String):
-                written = goal.arguments[0].value
-                # Jason searches the folder in which it is started.
-                folders = (suite.deployment.base_path / written, Path(written))
-                yield from [folder for folder in folders if folder.is_dir()][:1]
+    yield suite_of(path)
 
 
 def _without_repetitions(suites: list[Suite]) -> None:
@@ -397,14 +378,11 @@ def _signature(goal: nodes.Literal) -> str:
 _ANY: Final = nodes.Variable("_")
 
 
-# Outcomes of tests: as data, as text and as JUnit XML.
+# Outcomes of tests: as data and as text.
 
 
 Paint = Callable[[str, str], str]
 """``paint(text, kind)``: returns *text* in the colour of *kind*: ``passed``, ``failed``, ``place`` or ``quiet``."""
-
-_WORTH_TELLING = 0.5
-"""Seconds: faster tests are not listed as slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -507,18 +485,6 @@ def failures(suites: Sequence[SuiteOutcome], paint: Paint) -> Iterator[str]:
                 yield from (f"  {line}" for line in outcome.lines())
 
 
-def slowest(suites: Sequence[SuiteOutcome], number: int) -> Iterator[str]:
-    """Yield the lines about the slowest tests."""
-    outcomes = [(outcome, suite) for suite in suites for outcome in suite.outcomes]
-    outcomes.sort(key=lambda pair: -pair[0].seconds)
-    slow = [pair for pair in outcomes[:number] if pair[0].seconds >= _WORTH_TELLING]
-    if slow:
-        yield from ("", "slowest:")
-    for outcome, suite in slow:
-        simulated = f" ({outcome.simulated:.1f} s simulated)" if outcome.simulated >= 1.0 else ""
-        yield f"  {outcome.seconds:6.2f} s  {suite.path}::{outcome.test.name}{simulated}"
-
-
 def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> str:
     """Return the last line, with the counts."""
     outcomes = [outcome for suite in suites for outcome in suite.outcomes]
@@ -532,71 +498,3 @@ def summary(suites: Sequence[SuiteOutcome], seed: int | None, paint: Paint) -> s
     assertions = sum(outcome.assertions for outcome in outcomes)
     text = f"{', '.join(counts)}; {assertions} assertions, seed {seed}"
     return paint(text, "failed" if failed or errors else "passed")
-
-
-_UNFIT = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that XML does not allow."""
-
-
-def write_junit(path: Path, suites: Sequence[SuiteOutcome]) -> None:
-    """Write outcomes as JUnit XML to *path*, creating its folder.
-
-    A file that could not be run becomes one test case with an error.
-
-    Raises:
-        OSError: the file cannot be written.
-    """
-    root = ElementTree.Element("testsuites", _counts(suites), name="jacaros")
-    for suite in suites:
-        counts = _counts([suite])
-        element = ElementTree.SubElement(root, "testsuite", counts, name=str(suite.path))
-        if suite.suite.error is not None:
-            case = _case(element, suite, "the file", 0.0)
-            _text(ElementTree.SubElement(case, "error", message="cannot run the file"), suite.suite.error)
-        for outcome in suite.outcomes:
-            _add(element, suite, outcome)
-    ElementTree.indent(root)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-
-
-def _counts(suites: Sequence[SuiteOutcome]) -> dict[str, str]:
-    outcomes = [outcome for suite in suites for outcome in suite.outcomes]
-    errors = sum(suite.suite.error is not None for suite in suites)
-    return {
-        "tests": str(len(outcomes) + errors),
-        "failures": str(sum(not outcome.passed for outcome in outcomes)),
-        "errors": str(errors),
-        "skipped": "0",
-        "time": f"{sum(outcome.seconds for outcome in outcomes):.3f}",
-    }
-
-
-def _add(element: ElementTree.Element, suite: SuiteOutcome, outcome: Outcome) -> None:
-    case = _case(element, suite, outcome.test.name, outcome.seconds)
-    case.set("assertions", str(outcome.assertions))
-    if outcome.test.span is not None:
-        case.set("file", outcome.test.span.file.name)
-        case.set("line", str(outcome.test.span.line))
-    if outcome.problems:
-        failure = ElementTree.SubElement(case, "failure", message=_fit(outcome.problems[0].message))
-        _text(failure, "\n".join(line for problem in outcome.problems for line in problem.lines()))
-    if outcome.output:
-        _text(ElementTree.SubElement(case, "system-out"), "\n".join(outcome.output))
-
-
-def _case(
-    element: ElementTree.Element, suite: SuiteOutcome, name: str, seconds: float
-) -> ElementTree.Element:
-    group = ".".join(part for part in suite.path.with_suffix("").parts if part not in ("/", "..", "."))
-    return ElementTree.SubElement(
-        element, "testcase", classname=group, name=name, time=f"{seconds:.3f}", file=str(suite.path)
-    )
-
-
-def _text(element: ElementTree.Element, text: str) -> None:
-    element.text = _fit(text)
-
-
-def _fit(text: str) -> str:
-    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)

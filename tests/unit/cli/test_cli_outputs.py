@@ -65,13 +65,6 @@ def test_recordings_and_pages_are_overwritten(folder: Path) -> None:
         assert call(["run", "agent.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]) == 0
 
 
-def test_a_report_of_tests_does_not_overwrite_a_program(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert call(["test", "agent.asl", "--junit", "agent.asl"]) == 2
-    assert "error: `agent.asl` exists and is not a JUnit report" in capsys.readouterr().err
-
-
 def test_the_older_part_of_a_recording_overwrites_no_other_file(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

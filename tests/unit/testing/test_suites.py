@@ -145,16 +145,3 @@ def test_programs_of_the_project_are_found_from_a_folder_of_tests(write: Write) 
     write("build.gradle", "")
     write("src/asl/bob.asl", "sum(X, Y, X + Y).")
     assert names(write("src/test/jason/asl/test_bob.asl", '{ include("bob.asl") } @a[test] +!g.')) == ["a"]
-
-
-def test_a_test_project_of_jason_leads_to_its_tests(write: Write) -> None:
-    write("src/test/jason/asl/test_bob.asl")
-    write("src/test/jason/inc/shared.asl", "p.")
-    project = write(
-        "unit_tests.mas2j",
-        """MAS tests {
-             agents: test_manager [goals="create_tester_agents(\\"./src/test/jason\\", \\".*.asl\\")"];
-             aslSourcePath: "src/test/jason/inc"; "$jasonJar/test/jason/inc";
-           }""",
-    )
-    assert [suite.path.name for suite in collect([project])] == ["test_bob.asl"]

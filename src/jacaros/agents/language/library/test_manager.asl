@@ -1,5 +1,5 @@
-// The agent that manages the tests of a Jason project.  `jacaros test PROJECT` reads the folder of the tests from its goal
-// create_tester_agents(Folder, Pattern) and runs them.  In any other run, the goal only prints a line.
+// The agent that manages the tests of a Jason project.  `jacaros test FOLDER` runs the tests instead: its goal only prints a
+// line.
 
 @test__create_tester_agents
 +!create_tester_agents(_, _)
