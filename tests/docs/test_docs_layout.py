@@ -3,7 +3,6 @@
 from pages import ROOT, blocks
 
 from jacaros.agents.language.formatting import format_program
-from jacaros.agents.language.layout import WIDTH
 
 PAGE = ROOT / "docs" / "reference" / "layout.md"
 
@@ -11,7 +10,3 @@ PAGE = ROOT / "docs" / "reference" / "layout.md"
 def test_the_example_is_laid_out_as_the_page_says() -> None:
     (example,) = [block for block in blocks(PAGE) if block.purpose == "formatted"]
     assert format_program("example", example.text) == example.text
-
-
-def test_the_page_states_the_right_width() -> None:
-    assert f"at most {WIDTH} characters" in PAGE.read_text(encoding="utf-8")

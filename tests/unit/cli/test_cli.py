@@ -205,7 +205,7 @@ NOT_FOR_A_LONE_PROGRAM = (
     # ours: what other commands, projects and robots need
     *(
         "jacaros.artifacts",
-        "jacaros.agents.language.layout",
+        "jacaros.agents.language.formatting",
         "jacaros.agents.body",
         "jacaros.artifacts",
         "jacaros.agents.python",

@@ -1,275 +1,346 @@
-"""Format programs in the project's one style (`jacaros format`).
+"""Format programs in the project's one style (`jacaros fmt`): blanks and indentation; most line breaks are the author's.
 
->>> print(format_program("robot.asl", "+!go:near<-move;!stop."), end="")
-+!go : near <- move; !stop.
+>>> print(format_program("robot.asl", "+!go:near<-move;\\n!stop."), end="")
++!go : near
+  <- move;
+     !stop.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import groupby
 from typing import Final
 
 from jacaros.agents.language import nodes
+from jacaros.agents.language.cursor import CLOSERS
 from jacaros.agents.language.diagnostics import AslError, SourceFile, problem
-from jacaros.agents.language.layout import (
-    HARD,
-    NOTHING,
-    Break,
-    Document,
-    ExpressionLayout,
-    Group,
-    Nest,
-    OwnLine,
-    Row,
-    pieces_of,
-    render,
-    row,
-)
 from jacaros.agents.language.lexer import Comment, tokenize
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.nodes import Declaration
+from jacaros.agents.terms.operators import BINARY
 from jacaros.errors import InternalError
 
-# Lay out whole programs: clauses, plans and directives, and plan bodies with one step per line.
+_ALIGNED: Final = 60
+"""Comments of consecutive lines are aligned in one column, unless the code of a line is longer than this."""
+_COMMENT: Final = "comment"
+_BETWEEN: Final = frozenset(BINARY) | {":-", ":", "<-", "<:", "|&|", "|||"}
+_OPERANDS: Final = frozenset({"atom", "variable", "number", "string", "true", "false"})
+_CONTROL: Final = frozenset({"if", "elif", "else", "while", "for"})
+_WORDS: Final = _CONTROL | {"not"}
+_CLOSING: Final = frozenset(CLOSERS.values())
+_NEVER_FIRST: Final = frozenset({";", ",", ".", ")", "]", "else", "elif"})
+"""Tokens that begin a line only after a comment."""
+_NEVER_LAST: Final = frozenset({"<-", ":", "<:"})
+_TIGHT: Final = frozenset({",", ";", ".", ")", "]"})
+_SPACED_BEHIND: Final = _WORDS | {",", ";", ".", "{", "<-"}
+_COLUMN_BEHIND: Final = frozenset({":", "<:", ":-", "<-"})
+"""Tokens after which further lines are aligned with what follows."""
+_PLAN_STARTS: Final = frozenset({"@", "+", "-", "^"})
+_LABEL_PARTS: Final = frozenset({"atom", "variable", "::"})
+_BODY, _CONDITION, _BLOCK = 2, 4, 3
+"""Columns by which bodies, conditions and blocks are indented."""
 
 
-_CONTROL = frozenset({"if", "while", "for"})
-_FORKS = ("|&|", "|||")
-_BLOCK_INDENT = 3
+@dataclass(slots=True)
+class _Item:
+    """A token or a comment.
+
+    Attributes:
+        until: the line on which it ends: for a bracket, that of the closing one; for a clause, that of its dot.
+        following: the next token.
+        trailing: it is a comment at the end of a line of code.
+    """
+
+    kind: str
+    text: str
+    line: int
+    until: int
+    following: "_Item | None" = None
+    trailing: bool = False
+
+    @property
+    def end(self) -> int:
+        """The line on which its text ends."""
+        return self.line + self.text.count("\n")
 
 
-class StepLayout(ExpressionLayout):
-    """Lays out bodies and terms in braces."""
+def _items(text: str) -> list[_Item]:
+    comments: list[Comment] = []
+    tokens = tokenize(SourceFile("", text), lambda _: None, comments)[:-2]
+    made = [_Item(token.kind, token.text, token.line, token.line) for token in tokens]
+    _find_ends(made)
+    items: list[_Item] = []
+    behind = [*comments[::-1]]
+    for index, following in enumerate([*made, None]):
+        while behind and behind[-1].next_token <= index:
+            items.append(_comment(behind.pop(), items[-1] if items else None, following))
+        if following is not None:
+            following.following = made[index + 1] if index + 1 < len(made) else None
+            items.append(following)
+    return items
 
-    def steps(self, begin: int, end: int, hard: bool) -> Document:
-        """Lay out the steps; *hard*: each on its own line, even if all fit on one."""
-        parts: list[Document | str] = []
-        at = begin
-        while at < end:
-            if at > begin:
-                blank = self.pieces[at].blank
-                parts.append(Break(None if hard or blank else " ", blank))
-            remarks = self.hoisted(at)
-            step, at = self._step(at, end, hard)
-            parts += [remarks, step]
-        return row(*parts)
 
-    def group(self, begin: int, end: int) -> Document:
-        """Lay out steps in round brackets."""
-        return Group(Nest(None, self.steps(begin, end, not self.on_one_line(begin, end))))
+def _comment(comment: Comment, before: _Item | None, following: _Item | None) -> _Item:
+    text = "\n".join(line.rstrip() for line in comment.text.split("\n"))
+    made = _Item(_COMMENT, text, comment.line, comment.line, following)
+    alone = following is None or following.line > made.end
+    made.trailing = alone and before is not None and before.end == comment.line
+    return made
 
-    def _step(self, begin: int, end: int, hard: bool) -> tuple[Document, int]:
-        """Lay out a step with the ``;`` after it; return also the index after that."""
-        parts: list[Document | str] = []
-        at = begin
-        while True:
-            if self.pieces[at].kind in _CONTROL:
-                statement, at = self._statement(at, end)
-                parts.append(statement)
+
+def _find_ends(tokens: list[_Item]) -> None:
+    """Set where brackets and clauses end."""
+    openers: list[_Item] = []
+    starts: list[_Item | None] = [None]
+    for token in tokens:
+        if token.kind in _CLOSING:
+            starts.pop()
+            opener = openers.pop()
+            opener.until = token.line
+            if starts[-1] is opener and opener.kind == "{":
+                starts[-1] = None
+            continue
+        start = starts[-1] = starts[-1] or token
+        if token.kind in CLOSERS:
+            openers.append(token)
+            starts.append(None)
+        elif token.kind == ".":
+            start.until = token.line
+            starts[-1] = None
+
+
+@dataclass(slots=True)
+class _Frame:
+    """A bracket that is open, or the whole program.
+
+    Attributes:
+        opener: its kind; empty for the program.
+        base: column of its clauses or steps.
+        column: column of the next line; None for that of the next token.
+        closer: column of the closing bracket, if it begins a line.
+        spans_lines: whether it begins and ends on different lines.
+        holds_clauses: whether a ``.`` in it ends a clause.
+        ends: what its end is that of: ``step``, ``clause`` or neither.
+        broken: whether the steps of the clause have lines of their own.
+        at_start: whether a clause begins.
+        in_label: whether the label of a plan has begun.
+    """
+
+    opener: str = ""
+    base: int = 0
+    column: int | None = 0
+    closer: int = 0
+    spans_lines: bool = False
+    holds_clauses: bool = False
+    ends: str = ""
+    broken: bool = False
+    at_start: bool = True
+    in_label: bool = False
+
+    def begin_clause(self) -> None:
+        """Expect a clause."""
+        self.at_start, self.column, self.broken = True, self.base, self.spans_lines
+
+
+class _Layout:
+    """Lays out the items of a program, one after the other."""
+
+    def __init__(self) -> None:
+        self._frames = [_Frame(holds_clauses=True)]
+        self._lines: list[tuple[str, str]] = []
+        self._line = ""
+        self._comments: list[str] = []
+        self._last: _Item | None = None
+        # What the last token says about the next one: a new line, a blank; a comment requires a new line.
+        self._wants_line = self._needs_line = self._wants_blank = self._after_operand = False
+
+    def run(self, items: list[_Item]) -> str:
+        """Return the program as text."""
+        for item in items:
+            if item.kind == _COMMENT:
+                self._put_comment(item)
             else:
-                stops = self.split(at, end, ";", *_FORKS)
-                stop = stops[0] if stops else end
-                parts.append(self.formula(at, stop))
-                at = stop
-            if at < end and self.pieces[at].kind in _FORKS:
-                parts += [" ", self.piece(at), Break()]
-                at += 1
-                continue
-            break
-        if at < end and self.pieces[at].kind == ";":
-            parts.append(self.piece(at))
-            at += 1
-        return Group(Nest(None, row(*parts))), at
+                self._put_token(item)
+            self._last = item
+        self._end_line()
+        return _text(self._lines)
 
-    def _statement(self, begin: int, end: int) -> tuple[Document, int]:
-        """Lay out ``if (c) { a } elif (c) { b } else { c }`` and similar statements."""
-        blocks: list[tuple[int, int | None, int]] = []
-        at = begin
-        while True:
-            condition = at + 1 if self.pieces[at].kind != "else" else None
-            block = at + 1 if condition is None else self.closer[condition] + 1
-            blocks.append((at, condition, block))
-            behind = self.closer[block] + 1
-            if behind >= end or self.pieces[behind].kind not in ("elif", "else"):
-                break
-            at = behind
-        hard = not self.on_one_line(begin, behind)
-        parts: list[Document | str] = []
-        for word, condition, block in blocks:
-            parts += [" ", self.piece(word)] if parts else [self.piece(word)]
-            if condition is not None:
-                parts += [" ", self.plain(condition, self.closer[condition] + 1)]
-            parts += [" ", self.block(block, hard)]
-        # One group: either all blocks of a statement are on one line, or none is.
-        return Group(row(*parts)), behind
-
-    def block(self, opener: int, hard: bool) -> Document:
-        """Lay out steps in braces."""
-        hard = hard or not self.on_one_line(opener, self.closer[opener] + 1)
-        edge = HARD if hard else Break()
-        return self._braced(opener, edge, _BLOCK_INDENT, lambda begin, end: self.steps(begin, end, hard))
-
-    def _braced(
-        self, opener: int, edge: Break, indent: int, lay_out: Callable[[int, int], Document]
-    ) -> Document:
-        """Lay out braces with contents between two edges, and with the comments at their end."""
-        closer = self.closer[opener]
-        remarks = self.pieces[closer].before
-        if closer == opener + 1 and not remarks:
-            return row(self.piece(opener), " ", self.piece(closer))
-        inner = row(edge, lay_out(opener + 1, closer)) if closer > opener + 1 else NOTHING
-        last = Row(tuple(row(HARD, OwnLine(remark.text)) for remark in remarks))
-        return row(self.piece(opener), Nest(indent, row(inner, last)), edge, "}", self.line_end(closer))
-
-
-_TRIGGERS = frozenset({"+", "-", "^"})
-_BODY_INDENT = 2
-_CONDITION_INDENT = 4
-
-
-class ProgramLayout(StepLayout):
-    """Lays out a program."""
-
-    def program(self) -> Document:
-        """Lay out all clauses, and the comments at the end."""
-        end = len(self.pieces) - 1
-        last = self.pieces[end]
-        content = self.clauses(0, end)
-        if not last.before:
-            return row(content, HARD)
-        between = Break(None, last.before[0].blank) if end else NOTHING
-        return row(content, between, self.remarks(end))
-
-    def clauses(self, begin: int, end: int) -> Document:
-        """Lay out clauses, each on a new line, with at most one blank line between two."""
-        parts: list[Document] = []
-        at = begin
-        while at < end:
-            if at > begin:
-                parts.append(Break(None, self.pieces[at].blank))
-            remarks = self.hoisted(at)
-            clause, at = self._clause(at, end)
-            parts += [remarks, clause]
-        return Row(tuple(parts))
-
-    def _clause(self, begin: int, end: int) -> tuple[Document, int]:
-        kind = self.pieces[begin].kind
-        if kind == "{":
-            return self._directive(begin), self.closer[begin] + 1
-        stop = self.find(begin, end, ".")
-        if kind in _TRIGGERS or kind == "@":
-            return self._plan_clause(begin, stop, end)
-        arrows = self.split(begin, stop, ":-")
-        content = self._rule(begin, arrows[0], stop) if arrows else self.plain(begin, stop)
-        return row(content, self.piece(stop)), stop + 1
-
-    def _directive(self, opener: int) -> Document:
-        closer = self.closer[opener]
-        name = opener + 1
-        inner: Document = self.plain(name, closer)
-        if self.pieces[name].text == "begin" and closer > name + 1:
-            inner = row(self.piece(name), " ", self.plain(name + 1, closer))
-        return row(self.piece(opener), " ", inner, " ", self.piece(closer))
-
-    def _rule(self, begin: int, arrow: int, end: int) -> Document:
-        body = row(Break(), self.formula(arrow + 1, end))
-        return Group(row(self.plain(begin, arrow), " ", self.piece(arrow), Nest(_CONDITION_INDENT, body)))
-
-    # plans
-
-    def _plan_clause(self, begin: int, stop: int, end: int) -> tuple[Document, int]:
-        """Lay out a plan with its final dot and its sub-plans, which may replace the dot."""
-        inner = next((at for at in self.split(begin, stop, "{") if self._holds_plans(at)), None)
-        if inner is not None and self._is_last_of_plan(begin, inner):
-            behind = self.closer[inner] + 1
-            dot = self.piece(behind) if behind < end and self.pieces[behind].kind == "." else NOTHING
-            plan = row(
-                self.plan(begin, inner), " ", self._braced(inner, HARD, _BODY_INDENT, self.clauses), dot
-            )
-            return plan, behind + (dot is not NOTHING)
-        plan = row(self.plan(begin, stop), self.piece(stop))
-        if stop + 1 < end and self.pieces[stop + 1].kind == "{" and self._holds_plans(stop + 1):
-            return row(plan, " ", self._braced(stop + 1, HARD, _BODY_INDENT, self.clauses)), self.closer[
-                stop + 1
-            ] + 1
-        return plan, stop + 1
-
-    def _holds_plans(self, opener: int) -> bool:
-        following = self.pieces[opener + 1].kind
-        return following in _TRIGGERS or following in ("@", "}")
-
-    def _is_last_of_plan(self, begin: int, opener: int) -> bool:
-        """Return whether the braces at *opener* are where the plan may end, and not where a term is expected."""
-        before = self.pieces[opener - 1].kind
-        if before == ")":
-            return self.pieces[self.opener[opener - 1] - 1].kind not in ("if", "while", "for", "elif")
-        return opener > begin and before in ("atom", "variable", "number", "string", "]", "}", "true")
-
-    def plan(self, begin: int, end: int) -> Document:
-        """Lay out a plan without its final dot: on one line if it is written so and fits."""
-        hard = not self.on_one_line(begin, end)
-        trigger = self._behind_label(begin)
-        arrows = self.split(begin, end, "<-")
-        arrow = arrows[0] if arrows else end
-        head = self._head(trigger, arrow)
-        parts: list[Document | str] = []
-        if trigger > begin:
-            parts += [self.plain(begin, trigger), HARD if hard else Break()]
-        parts.append(head)
-        if arrow < end:
-            before = self.remarks(arrow)
-            introduction = self._introduction(arrow)
-            steps = Nest(None, row(introduction, self.steps(arrow + 1, end, hard)))
-            parts.append(Nest(_BODY_INDENT, row(HARD if hard else Break(), before, "<- ", steps)))
-        return Group(row(*parts))
-
-    def _introduction(self, arrow: int) -> Document:
-        """Lay out the comments between ``<-`` and the first step, one per line."""
-        first = self.pieces[arrow + 1]
-        comments = [*self.pieces[arrow].behind, *(remark.text for remark in first.before if remark.own_line)]
-        first.before = [remark for remark in first.before if not remark.own_line]
-        return Row(tuple(row(comment, HARD) for comment in comments))
-
-    def _behind_label(self, begin: int) -> int:
-        """Return the index of the trigger of the plan that begins at *begin*."""
-        if self.pieces[begin].kind != "@":
-            return begin
-        at = begin + 1
-        while self.pieces[at].kind in ("atom", "variable", "::", "(", "["):
-            at = self.closer.get(at, at) + 1
-        return at
-
-    def _head(self, begin: int, end: int) -> Document:
-        """Lay out trigger, context and goal condition."""
-        signs = self.split(begin, end, ":", "<:")
-        parts: list[Document | str] = [self.plain(begin, signs[0] if signs else end)]
-        for sign, stop in zip(signs, [*signs[1:], end], strict=False):
-            condition = row(Break(), self.piece(sign), " ", self.formula(sign + 1, stop))
-            parts.append(Nest(_CONDITION_INDENT, condition))
-        return Group(row(*parts))
-
-    # terms in braces
-
-    def braces(self, opener: int) -> Document:
-        """Lay out a plan, trigger, rule or body as a term."""
-        closer = self.closer[opener]
-        begin = opener + 1
-        if begin == closer:
-            return row(self.piece(opener), " ", self.piece(closer))
-        arrows = self.split(begin, closer, ":-")
-        plan = self.split(begin, closer, "<-", ":", "<:") or self.pieces[begin].kind == "@"
-        content: Document
-        if arrows:
-            content = self._rule(begin, arrows[0], closer)
-        elif plan:
-            content = self._inline_plan(begin, closer)
+    def _put_comment(self, item: _Item) -> None:
+        last = self._last
+        introduces = last is not None and last.kind == "<-"
+        if item.trailing and not introduces:
+            self._comments.append(item.text)
         else:
-            content = self.steps(begin, closer, hard=False)
-        return Group(row(self.piece(opener), " ", Nest(None, content), " ", self.piece(closer)))
+            breaks = last is None or self._needs_line or self._wants_line or item.line > last.end
+            if breaks and not introduces:
+                self._begin_line(item, self._indent(item.following, comment=True))
+            self._write(item.text, blank=True)
+            self._wants_line = False
+        alone = item.following is None or item.following.line > item.end
+        self._needs_line = self._needs_line or alone or "\n" in item.text
+        self._wants_blank = True
 
-    def _inline_plan(self, begin: int, end: int) -> Document:
-        dots = self.split(begin, end, ".")
-        stop = dots[0] if dots else end
-        plan = self.plan(begin, stop)
-        return plan if stop == end else row(plan, self.piece(stop))
+    def _put_token(self, item: _Item) -> None:
+        frame = self._frames[-1]
+        if frame.at_start and frame.holds_clauses:
+            frame.broken = item.until > item.line
+        if frame.in_label and not self._continues_label(item):
+            self._end_label(frame)
+        if self._breaks(item, frame):
+            self._begin_line(item, self._indent(item))
+        self._needs_line = self._wants_line = False
+        self._write(item.text, self._is_spaced(item, frame))
+        self._follow(item, frame)
+
+    # lines
+
+    def _breaks(self, item: _Item, frame: _Frame) -> bool:
+        """Return whether a token begins a line."""
+        last = self._last
+        if last is None or self._needs_line:
+            return True
+        if item.kind == "<-" and frame.broken:
+            return True
+        if item.kind in _NEVER_FIRST or last.kind in _NEVER_LAST or (last.kind, item.kind) == ("{", "}"):
+            return False
+        return (item.kind == "}" and frame.spans_lines) or self._wants_line or item.line > last.end
+
+    def _indent(self, item: _Item | None, comment: bool = False) -> int:
+        """Return the column of a line that begins with *item*, or with a comment before it."""
+        frame = self._frames[-1]
+        kind = "" if item is None else item.kind
+        if kind in _CLOSING and not comment:
+            return frame.closer
+        if kind == "<-":
+            return frame.base + _BODY
+        if kind in (":", "<:") or frame.column is None:
+            return frame.base + _CONDITION
+        return frame.column
+
+    def _begin_line(self, item: _Item, column: int) -> None:
+        self._end_line()
+        if self._last is not None and item.line > self._last.end + 1:
+            self._lines.append(("", ""))
+        self._line = " " * column
+
+    def _end_line(self) -> None:
+        if self._line.strip() or self._comments:
+            self._lines.append((self._line.rstrip(), _joined(self._comments)))
+        self._line, self._comments = "", []
+
+    def _write(self, text: str, blank: bool) -> None:
+        if blank and self._line.strip():
+            self._line += " "
+        frame = self._frames[-1]
+        if frame.column is None:
+            frame.column = len(self._line)
+        *whole, last = text.split("\n")
+        if whole:
+            self._lines.append((self._line + "\n".join(whole), ""))
+            self._line = ""
+        self._line += last
+
+    # tokens
+
+    def _is_spaced(self, item: _Item, frame: _Frame) -> bool:
+        """Return whether a blank separates a token from the one before it."""
+        kind = item.kind
+        if kind in _TIGHT or (kind == "|" and frame.opener == "["):
+            return False
+        if kind in _OPERANDS or kind in _WORDS or kind == "{":
+            return self._wants_blank or self._after_operand
+        return self._wants_blank or kind == "}" or self._is_between(kind, frame)
+
+    def _is_between(self, kind: str, frame: _Frame) -> bool:
+        """Return whether a token is an operator between two operands."""
+        tail = kind == "|" and frame.opener == "["
+        return kind in _BETWEEN and self._after_operand and not tail
+
+    def _follow(self, item: _Item, frame: _Frame) -> None:
+        """Note what a token means for those after it."""
+        kind = item.kind
+        self._wants_blank = kind in _SPACED_BEHIND or self._is_between(kind, frame)
+        self._after_operand = kind in _OPERANDS or kind in _CLOSING
+        starts, frame.at_start = frame.at_start, False
+        if starts and frame.holds_clauses:
+            frame.column = frame.base + _CONDITION
+        if kind in CLOSERS:
+            self._open(item, frame, starts and frame.holds_clauses)
+        elif kind in _CLOSING:
+            self._close(frame)
+        elif kind in _COLUMN_BEHIND:
+            frame.column = None
+        elif kind == ";":
+            self._wants_line = frame.broken
+        elif kind == "@":
+            frame.in_label = True
+        elif kind == "." and frame.holds_clauses:
+            frame.begin_clause()
+            self._wants_line = not _holds_plans(item.following)
+
+    def _open(self, item: _Item, frame: _Frame, starts: bool) -> None:
+        spans_lines = item.until > item.line
+        behind, step = len(self._line), frame.column or 0
+        if item.kind != "{":
+            inner = _Frame(item.kind, behind, behind, behind - 1, spans_lines)
+        elif starts:
+            base = frame.base + _BODY
+            inner = _Frame("{", base, base, frame.base, spans_lines, _holds_plans(item), "clause")
+        else:
+            control = self._last is not None and self._last.kind in (")", "else")
+            base = step + _BLOCK
+            inner = _Frame("{", base, base, step, spans_lines, ends="step" if control else "")
+        inner.broken = spans_lines
+        self._wants_line = spans_lines and item.kind == "{"
+        self._frames.append(inner)
+
+    def _close(self, frame: _Frame) -> None:
+        self._frames.pop()
+        if frame.ends:
+            self._wants_blank, self._after_operand = True, False
+        if frame.ends == "clause":
+            self._frames[-1].begin_clause()
+            self._wants_line = True
+
+    def _continues_label(self, item: _Item) -> bool:
+        bracket = item.kind == "[" or (item.kind == "(" and self._last is not None and self._last.kind != "@")
+        return bracket or item.kind in _LABEL_PARTS
+
+    def _end_label(self, frame: _Frame) -> None:
+        frame.in_label, frame.at_start, frame.column = False, True, frame.base
+        self._wants_blank, self._after_operand = True, False
+        self._wants_line = frame.broken
+
+
+def _holds_plans(opener: _Item | None) -> bool:
+    """Return whether a token opens the braces of sub-plans."""
+    following = opener.following if opener is not None and opener.kind == "{" else None
+    return following is not None and following.kind in _PLAN_STARTS
+
+
+def _text(lines: list[tuple[str, str]]) -> str:
+    """Join lines of code with the comments at their ends."""
+    written: list[str] = []
+    for aligned, group in groupby(lines, _is_aligned):
+        rows = list(group)
+        column = max(len(code) for code, _ in rows) if aligned else 0
+        for code, comment in rows:
+            written.append(f"{code.ljust(column)}  {comment}" if code and comment else code or comment)
+    return "\n".join(written) + "\n" if written else ""
+
+
+def _joined(comments: list[str]) -> str:
+    """Join comments for the end of one line; a block comment cannot follow a line comment."""
+    text = ""
+    for comment in comments:
+        swallowed = "\n" in comment and "//" in text.rpartition("\n")[2]
+        text += ("\n" if swallowed else "  " if text else "") + comment
+    return text
+
+
+def _is_aligned(line: tuple[str, str]) -> bool:
+    code, comment = line
+    return 0 < len(code) <= _ALIGNED and bool(comment) and "\n" not in comment
 
 
 _MOST_ROUNDS: Final = 4
@@ -307,7 +378,7 @@ def format_program(name: str, text: str, actions: Mapping[str, Declaration] | No
 
 
 def _laid_out(text: str) -> str:
-    return render(ProgramLayout(pieces_of(SourceFile("", text))).program())
+    return _Layout().run(_items(text))
 
 
 def _meaning(name: str, text: str, actions: Mapping[str, Declaration] | None) -> nodes.Program:
