@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pages import ROOT, Block, blocks
 
-from jacaros.agents.language.diagnostics import KINDS
+from jacaros.agents.language.diagnostics import LEVELS as LEVEL_OF
 from jacaros.cli.main import call
 
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
@@ -37,13 +37,13 @@ def test_every_code_has_its_section_under_its_level() -> None:
         level = LEVELS.get(line.removeprefix("## "), level) if line.startswith("## ") else level
         if line.startswith("### "):
             described[line.removeprefix("### ")] = level
-    assert described == {code: kind.level for code, kind in KINDS.items() if code not in OF_FILES}
+    assert described == {code: kind for code, kind in LEVEL_OF.items() if code not in OF_FILES}
     assert all(f"`{code}`" in PAGE.read_text(encoding="utf-8") for code in OF_FILES)
 
 
 def test_every_code_has_examples() -> None:
     purposes = {block.purpose for block in EXAMPLES}
-    for code in set(KINDS) - OF_FILES:
+    for code in set(LEVEL_OF) - OF_FILES:
         assert f"right {code}" in purposes
         assert f"wrong {code}" in purposes or code in TOO_LONG
 
@@ -56,7 +56,7 @@ def test_an_example_gives_its_code_and_nothing_else(
     Path("other.asl").write_text("sum(X, Y, X + Y).\n", encoding="utf-8")
     Path("example.asl").write_text(block.text, encoding="utf-8")
     kind, _, code = block.purpose.partition(" ")
-    assert told(capsys) == ([(code, KINDS[code].level)] if kind == "wrong" else [])
+    assert told(capsys) == ([(code, LEVEL_OF[code])] if kind == "wrong" else [])
 
 
 def test_nesting_has_a_limit(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.agents.language.diagnostics import KINDS, Diagnostic, Severity, bounded
+from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, Severity, bounded
 from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.cli.usage import examples, usage_error
@@ -78,11 +78,11 @@ def command(
 
     Python code of the project is read, not run, unless you give --import. The exit code is 1 if there is an error.
     """  # fmt: skip
-    unknown = [code for code in ignore if code not in KINDS]
+    unknown = [code for code in ignore if code not in LEVELS]
     if unknown:
         raise usage_error(
             f"unknown code: `{unknown[0]}`",
-            suggestion(unknown[0], KINDS, 'the reference page "Diagnostics" lists the codes'),
+            suggestion(unknown[0], LEVELS, 'the reference page "Diagnostics" lists the codes'),
         )
     supported = _supported(files)
     findings = check_files([existing(file, _KINDS) for file in supported], mappings, imports)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from jacaros.agents.language.diagnostics import KINDS, Diagnostic, Span
+from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, Span
 from jacaros.cli.version import version_of
 from jacaros.files.texts import printable
 from jacaros.mas.checking import Findings
@@ -57,11 +57,10 @@ def as_sarif(findings: Findings) -> str:
 
 
 def _rule(code: str) -> Object:
-    kind = KINDS[code]
     return {
         "id": code,
-        "shortDescription": {"text": kind.meaning},
-        "defaultConfiguration": {"level": kind.level},
+        "shortDescription": {"text": code.replace("-", " ")},
+        "defaultConfiguration": {"level": LEVELS[code]},
     }
 
 

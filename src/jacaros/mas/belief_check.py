@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from jacaros.agents.checks.beliefs import Beliefs, beliefs_of, is_fact_of, is_misspelt, source_of
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import Slips, is_slip_of
+from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import parts_of
@@ -76,11 +76,8 @@ def _misspelt(
                 asked.setdefault(name, []).extend(filter(_is_own, literals))
     if asked:
         made |= _observables(types() or ()) or set()
-    near = Slips(made)
     slips = {
-        name: sorted(each for each in near.of(name) if is_misspelt(name, each))
-        for name in asked
-        if name not in made
+        name: sorted(each for each in made if is_misspelt(name, each)) for name in asked if name not in made
     }
     for name in slips:
         slips[name] = slips[name] or _forms(name, asked[name], found)

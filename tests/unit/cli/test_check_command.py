@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from jacaros.agents.language.diagnostics import KINDS
 from jacaros.cli.main import call
 
 ROOT = Path(__file__).parents[3]
@@ -237,13 +236,6 @@ def test_conformance_cases_have_only_the_expected_problems(capsys: pytest.Captur
         if path.parts[0] != "syntax_errors":
             told.setdefault("/".join((path.parts[0], Path(path.parts[1]).stem)), set()).add(each["code"])
     assert told == MEANT
-
-
-def test_every_code_has_a_level_and_a_meaning() -> None:
-    for code, kind in KINDS.items():
-        assert code == code.lower()
-        assert kind.level in ("error", "warning", "note")
-        assert kind.meaning
 
 
 def test_a_program_is_checked_against_its_mapping_files(

@@ -31,7 +31,7 @@ from jacaros.agents.checks.plans import (
     wrong_supervision,
 )
 from jacaros.agents.language import nodes
-from jacaros.agents.language.diagnostics import KINDS, Diagnostic, SourceFile, Span, problem
+from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
 from jacaros.agents.language.nodes import ByKind
 
@@ -66,7 +66,7 @@ class Suppressions:
         if order is None:
             return
         codes = frozenset(_CODE.findall(order["codes"]))
-        for code in sorted(codes - KINDS.keys()):
+        for code in sorted(codes - LEVELS.keys()):
             span = Span(file, comment.line, comment.column, comment.line, comment.column + len(comment.text))
             self.unknown.append(problem("unknown-code", f"unknown code `{code}`", span))
         if order["file"]:

@@ -2,11 +2,9 @@
 
 >>> is_slip_of("improt", "import"), is_slip_of("export", "import")
 (True, False)
->>> Slips(["battery", "bumper"]).of("batery")
-['battery']
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple, NoReturn
 
@@ -212,31 +210,6 @@ def _opening(tokens: Sequence[Token], index: int) -> int:
 
 MOST_ASKED: Final = 25
 """Mistakes of one kind for which a similar word is searched: comparing words is slow."""
-
-
-class Slips:
-    """An index of words that finds those one slip away, without comparing every pair of words."""
-
-    def __init__(self, words: Iterable[str]) -> None:
-        self._words: dict[str, list[str]] = {}
-        for word in words:
-            for part in _shortened(word):
-                self._words.setdefault(part, []).append(word)
-
-    def of(self, written: str) -> list[str]:
-        """Return the words of which *written* may be a slip (see `is_slip_of`), each once."""
-        return list(dict.fromkeys(word for part in _shortened(written) for word in self._words.get(part, ())))
-
-
-def _shortened(word: str) -> Iterator[str]:
-    """Yield a word and its forms without one letter; words that differ by a slip share one of these."""
-    yield word
-    for place in range(min(len(word), _LONGEST)):
-        yield word[:place] + word[place + 1 :]
-
-
-_LONGEST: Final = 60
-"""Words longer than this number of letters are not checked for slips."""
 
 
 def is_slip_of(written: str, meant: str) -> bool:

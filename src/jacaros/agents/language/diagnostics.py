@@ -121,7 +121,7 @@ def bounded(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
         files.setdefault("" if each.span is None else each.span.file.name, []).append(each)
     kept: list[Diagnostic] = []
     for name, found in files.items():
-        important = sorted(found, key=lambda each: _LEVELS.index(each.severity))  # stable
+        important = sorted(found, key=lambda each: _ORDER.index(each.severity))  # stable
         first = set(map(id, important[:MOST]))
         kept += [each for each in found if id(each) in first]
         if important[MOST:]:
@@ -129,11 +129,8 @@ def bounded(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
     return kept
 
 
-_LEVELS = ("error", "warning", "note")
-
-
 def _others(name: str, others: Sequence[Diagnostic]) -> Diagnostic:
-    counts = [(level, sum(each.severity == level for each in others)) for level in _LEVELS]
+    counts = [(level, sum(each.severity == level for each in others)) for level in _ORDER]
     rest = " and ".join(f"{count} more {level}{'s'[: count > 1]}" for level, count in counts if count)
     where = f" in {name}" if name else ""
     severity = others[0].severity
@@ -153,114 +150,41 @@ class AslError(JacarosError):
         super().__init__(render_all(self.diagnostics))
 
 
-class Kind(NamedTuple):
-    """The level and meaning of a diagnostic code."""
-
-    level: Severity
-    meaning: str
-
-
-KINDS: Final[dict[str, Kind]] = {
-    "acting-condition": Kind("warning", "an internal action that acts or waits is used as a condition"),
-    "action-in-context": Kind("error", "an internal action that acts or waits is in a context"),
-    "annotated-action": Kind("error", "an internal action has annotations"),
-    "capital-constant": Kind("warning", "`True`, `False` or `None`, which are variables here"),
-    "chained-relation": Kind("error", "chained relations, such as `1 < X < 5`"),
-    "changed-variable": Kind("warning", "an assignment to a variable that already has a value"),
-    "comparison-without-value": Kind("warning", "a comparison with a variable that has no value"),
-    "condition-as-step": Kind("warning", "a condition where an action is expected"),
-    "context-never-true": Kind("warning", "a context that contradicts itself"),
-    "duplicate-label": Kind("error", "two different plans with the same label"),
-    "else-if": Kind("error", "`else if` instead of `elif`"),
-    "else-without-if": Kind("error", "`else` or `elif` without `if`"),
-    "empty-brackets": Kind("error", "empty round brackets"),
-    "empty-clause": Kind("error", "`.` or `;` with nothing before it"),
-    "empty-step": Kind("error", "a missing step"),
-    "end-without-begin": Kind("error", "`{ end }` without `{ begin ... }`"),
-    "event-never-happens": Kind("warning", "a plan for a belief event that nothing causes"),
-    "foreign-word": Kind("error", "a keyword of another language"),
-    "formula-in-list": Kind("error", "a relation or another formula as an element of a list"),
-    "include-circle": Kind("error", "files that include each other"),
-    "include-not-found": Kind("error", "an included file that does not exist"),
-    "java-function": Kind("warning", "a function written in Java"),
-    "mismatched-bracket": Kind("error", "a bracket closed by another kind of bracket"),
-    "misplaced-action": Kind("error", "an internal action outside a plan"),
-    "missing-blank": Kind("error", "a final `.` that is read as part of the next word"),
-    "missing-block": Kind("error", "a statement without its braces"),
-    "missing-body": Kind("error", "no steps after `<-`"),
-    "missing-condition": Kind("error", "a statement without its condition"),
-    "missing-context": Kind("error", "no condition after `:`"),
-    "missing-dot": Kind("error", "a clause without its final `.`"),
-    "missing-semicolon": Kind("error", "two steps without `;` between them"),
-    "missing-trigger": Kind("error", "a plan without its trigger"),
-    "misspelt-annotation": Kind("warning", "a label annotation that looks like a misspelt one"),
-    "misspelt-belief": Kind("warning", "a belief that nothing adds, with a name close to one that is added"),
-    "misspelt-word": Kind("error", "a misspelt reserved word"),
-    "narrow-handler": Kind("note", "failure plans that all have contexts"),
-    "nested-too-deeply": Kind("error", "brackets nested too deeply"),
-    "no-effect": Kind("warning", "something in a project file that has no effect"),
-    "non-ascii-name": Kind("error", "a name with letters other than a to z"),
-    "not-imported": Kind("note", "names that only running the project's Python code can reveal"),
-    "ordered-atom": Kind("warning", "an atom compared with a number"),
-    "not-a-belief": Kind("error", "a clause that is not a belief, rule, goal or plan"),
-    "not-a-number": Kind("error", "arithmetic with something that is not a number"),
-    "not-a-step": Kind("error", "a term where a step is expected"),
-    "organisation-library": Kind("warning", "a library for organisations, which are not supported"),
-    "plan-never-selected": Kind("warning", "an unreachable plan: an earlier one is always selected"),
-    "plan-too-large": Kind("warning", "a plan that is too large for Python to compile"),
-    "prefixed-action": Kind("error", "an internal action with `~` or a namespace"),
-    "reserved-word": Kind("error", "a reserved word used as a name"),
-    "second-body": Kind("error", "a plan with two `<-`"),
-    "second-context": Kind("error", "a plan with two contexts"),
-    "singleton-variable": Kind("warning", "a variable that occurs only once"),
-    "tested-action": Kind("error", "an internal action after `?`"),
-    "trigger-in-body": Kind("error", "`+!`, `-!` or `+?` as a step"),
-    "too-many": Kind("warning", "the number of further problems; only the first 100 per file are printed"),
-    "unclosed-block": Kind("error", "a { begin ... } without { end }"),
-    "unclosed-bracket": Kind("error", "a bracket that is not closed"),
-    "unclosed-comment": Kind("error", "a comment that is not closed"),
-    "unclosed-string": Kind("error", "a string or quoted atom that is not closed"),
-    "unexpected-end": Kind("error", "an unexpected end of the file"),
-    "unexpected-token": Kind("error", "an unexpected token"),
-    "unknown-artifact-type": Kind("warning", "an unknown artifact type"),
-    "unknown-character": Kind("error", "a character that is not part of the language"),
-    "unknown-code": Kind("warning", "a comment that ignores an unknown code"),
-    "unknown-directive": Kind("error", "an unknown directive"),
-    "unknown-goal": Kind("warning", "a goal without a plan"),
-    "unknown-internal-action": Kind("warning", "an unknown internal action"),
-    "unknown-library": Kind("warning", "an unknown library of another system"),
-    "unknown-message-type": Kind("warning", "a message type that only the robot's middleware may know"),
-    "unknown-operation": Kind("warning", "an action that no artifact of the project provides"),
-    "unknown-performative": Kind("warning", "a misspelt performative"),
-    "unknown-resource": Kind("warning", "a resource that no artifact of the project uses"),
-    "unopened-bracket": Kind("error", "a closing bracket without an opening one"),
-    "unreadable-file": Kind("error", "a file that does not exist or is not text"),
-    "upper-case-functor": Kind("error", "a name with arguments that begins with an upper-case letter"),
-    "wrong-arguments": Kind("warning", "an internal action with too few or too many arguments"),
-    "wrong-belief-change": Kind("error", "an operator that does not change beliefs, or no belief after it"),
-    "wrong-directive": Kind("error", "a directive with invalid arguments"),
-    "short-wait": Kind("note", "a wait of less than 10 ms"),
-    "quoted-atom": Kind("note", "a quoted atom that is printed"),
-    "wrong-escape": Kind("error", "an invalid escape in a string"),
-    "wrong-goal": Kind("error", "something that cannot be a goal"),
-    "wrong-label": Kind("error", "something that cannot be a label"),
-    "wrong-mapping": Kind("error", "an error in a mapping file"),
-    "wrong-world": Kind("error", "an error in a world file or a fault file"),
-    "wrong-operator": Kind("error", "an operator of another language"),
-    "wrong-project": Kind("error", "an error in a project file"),
-    "wrong-separator": Kind("error", "`,` where another separator is expected"),
-    "wrong-supervision": Kind("warning", "an invalid or misplaced annotation such as `within` or `retry`"),
-    "wrong-tail": Kind("error", "a tail of a list or of annotations that is not a variable"),
-    "wrong-trigger": Kind("error", "something that cannot be a trigger"),
-    "wrong-needs": Kind("warning", "needs of a plan or goal that can never be met"),
-    "wrong-urgency": Kind("warning", "an urgency that is not a non-negative integer"),
+_CODES: Final[dict[Severity, str]] = {
+    "error": """
+        action-in-context annotated-action chained-relation duplicate-label else-if else-without-if
+        empty-brackets empty-clause empty-step end-without-begin foreign-word formula-in-list
+        include-circle include-not-found mismatched-bracket misplaced-action missing-blank
+        missing-block missing-body missing-condition missing-context missing-dot missing-semicolon
+        missing-trigger misspelt-word nested-too-deeply non-ascii-name not-a-belief not-a-number
+        not-a-step prefixed-action reserved-word second-body second-context tested-action
+        trigger-in-body unclosed-block unclosed-bracket unclosed-comment unclosed-string
+        unexpected-end unexpected-token unknown-character unknown-directive unopened-bracket
+        unreadable-file upper-case-functor wrong-belief-change wrong-directive wrong-escape
+        wrong-goal wrong-label wrong-mapping wrong-operator wrong-project wrong-separator wrong-tail
+        wrong-trigger wrong-world
+    """,
+    "warning": """
+        acting-condition capital-constant changed-variable comparison-without-value
+        condition-as-step context-never-true event-never-happens java-function misspelt-annotation
+        misspelt-belief no-effect ordered-atom organisation-library plan-never-selected
+        plan-too-large singleton-variable too-many unknown-artifact-type unknown-code unknown-goal
+        unknown-internal-action unknown-library unknown-message-type unknown-operation
+        unknown-performative unknown-resource wrong-arguments wrong-needs wrong-supervision
+        wrong-urgency
+    """,
+    "note": """
+        narrow-handler not-imported quoted-atom short-wait
+    """,
 }
-"""All diagnostic codes. docs/reference/diagnostics.md shows an example of each.
-
-The level is the usual one: what the thesis prints and Jason rejects is only a warning in programs of the thesis.
+"""The codes of diagnostics, by their usual level: what the thesis prints and Jason rejects is only a warning in programs of
+the thesis. docs/reference/diagnostics.md says what each means, with an example.
 """
+_ORDER: Final = tuple(_CODES)
+LEVELS: Final = {code: level for level, codes in _CODES.items() for code in codes.split()}
+"""The usual level of each code."""
 
 
 def problem(code: str, message: str, span: Span | None, help: str | None = None) -> Diagnostic:
     """Return a diagnostic of a kind, at its usual level."""
-    return Diagnostic(KINDS[code].level, message, span, help, code)
+    return Diagnostic(LEVELS[code], message, span, help, code)

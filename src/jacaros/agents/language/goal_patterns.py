@@ -20,9 +20,11 @@ from typing import Any, Final, NamedTuple
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import Names
 from jacaros.agents.language.diagnostics import SourceFile, Span
+from jacaros.agents.language.lowering import fresh_names, lower
 from jacaros.agents.language.nodes import is_ground, rebuilt
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.program_parser import WrongDirective
+from jacaros.agents.terms.unifier import Trail, unify
 
 # Shared parts of goal patterns: their arguments, and the plans they add.
 #
@@ -115,24 +117,10 @@ def achieves(plan: nodes.Plan, goal: nodes.Literal) -> bool:
     return plan.trigger.operator == "+" and is_about(plan, goal)
 
 
-def _may_unify(left: nodes.Term, right: nodes.Term) -> bool:
-    """Return whether two terms may unify, without following variables."""
-    if isinstance(left, nodes.Variable) or isinstance(right, nodes.Variable):
-        return True
-    if isinstance(left, nodes.Literal) and isinstance(right, nodes.Literal):
-        return (
-            left.functor == right.functor
-            and len(left.arguments) == len(right.arguments)
-            and left.negated == right.negated
-            and (left.namespace == right.namespace or isinstance(left.namespace, nodes.Variable))
-            and all(map(_may_unify, left.arguments, right.arguments))
-        )
-    if isinstance(left, nodes.Number) and isinstance(right, nodes.Number):
-        return left.value == right.value
-    if isinstance(left, nodes.String) and isinstance(right, nodes.String):
-        return left.value == right.value
-    # Lists and expressions may turn out to be equal; a list and a number do not.
-    return type(left) is type(right) or not isinstance(left, nodes.Number | nodes.String | nodes.Literal)
+def _may_unify(left: nodes.Literal, right: nodes.Literal) -> bool:
+    """Return whether two literals unify, whatever their annotations."""
+    one, other = (lower(nodes.replace(each, annotations=None), fresh_names()) for each in (left, right))
+    return unify(one, other, Trail())
 
 
 def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
