@@ -131,7 +131,7 @@ from jacaros import PythonAgent, arithmetic_function, internal_action
 def twice(text: str) -> str:
     return text * 2
 
-@arithmetic_function("my.half", arity=1)
+@arithmetic_function("my.half")
 def half(x):
     return x / 2
 """

@@ -28,7 +28,7 @@ def test_warnings_go_to_the_log_of_the_system_whose_agent_they_concern() -> None
 FUNCTION = """
 from jacaros import arithmetic_function
 
-@arithmetic_function("my.own", arity=1)
+@arithmetic_function("my.own")
 def own(x):
     return {number}
 """

@@ -217,7 +217,7 @@ def _message(refused: ActionError) -> tuple[Term, ...]:
 
 
 def function_of(
-    name: str, function: Callable[..., object], arity: int | tuple[int, int | None] | None
+    name: str, function: Callable[..., object]
 ) -> tuple[Callable[..., Term], tuple[int, int | None]]:
     """Return the evaluator for a function, and its minimum and maximum number of arguments.
 
@@ -229,13 +229,8 @@ def function_of(
     signature = _signature(function, False)
     if any(parameter.output for parameter in signature.parameters):
         raise Undeclarable("an arithmetic function returns its number and cannot have Out parameters")
-    if arity is None:
-        limits = (signature.fewest, None if signature.rest is not None else len(signature.parameters))
-    else:
-        limits = (arity, arity) if isinstance(arity, int) else arity
-        if not signature.takes(limits[0]) or (limits[1] is not None and not signature.takes(limits[1])):
-            raise Undeclarable(f"it cannot be called with the numbers of arguments of arity={arity!r}")
-    return _evaluator(name, function, signature), limits
+    most = None if signature.rest is not None else len(signature.parameters)
+    return _evaluator(name, function, signature), (signature.fewest, most)
 
 
 def _evaluator(

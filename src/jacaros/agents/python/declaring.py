@@ -25,14 +25,12 @@ class Declared:
         kind: ``internal action`` or ``arithmetic function``.
         function: the function itself.
         name: as programs write it; None for the default, module and function.
-        arity: number of arguments, or their minimum and maximum; None to use the parameters.
         pure: whether questions about an agent may call it.
     """
 
     kind: str
     function: Callable[..., object]
     name: str | None
-    arity: int | tuple[int, int | None] | None = None
     pure: bool = False
 
 
@@ -74,7 +72,7 @@ def internal_action(name: str | Function | None = None, /, *, pure: bool = False
         def norm(x: float, y: float) -> float:
             return math.hypot(x, y)
     """
-    return _declare(ACTION, name, None, pure)
+    return _declare(ACTION, name, pure)
 
 
 @overload
@@ -82,14 +80,10 @@ def arithmetic_function(name: Function, /) -> Function: ...
 
 
 @overload
-def arithmetic_function(
-    name: str | None = None, /, *, arity: int | tuple[int, int | None] | None = None
-) -> Callable[[Function], Function]: ...
+def arithmetic_function(name: str | None = None, /) -> Callable[[Function], Function]: ...
 
 
-def arithmetic_function(
-    name: str | Function | None = None, /, *, arity: int | tuple[int, int | None] | None = None
-) -> object:
+def arithmetic_function(name: str | Function | None = None, /) -> object:
     """Make a function an arithmetic function of the project's programs: ``X = my.sq(3) + 1``.
 
     It is called with Python values once all arguments are known, and returns a number. An exception fails the step with
@@ -97,27 +91,23 @@ def arithmetic_function(
 
     Args:
         name: as programs write it, with dots; by default the module and the function.
-        arity: number of arguments, or their minimum and maximum (None: any number); by default those of the parameters.
 
     Examples:
         @arithmetic_function("my.sq")
         def sq(x: float) -> float:
             return x * x
     """
-    return _declare(FUNCTION, name, arity)
+    return _declare(FUNCTION, name)
 
 
 def _declare(
-    kind: str,
-    name: str | Function | None,
-    arity: int | tuple[int, int | None] | None,
-    pure: bool = False,
+    kind: str, name: str | Function | None, pure: bool = False
 ) -> Function | Callable[[Function], Function]:
     if callable(name):
-        return _mark(name, Declared(kind, name, None, arity))
+        return _mark(name, Declared(kind, name, None))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
         raise ValueError(f"the name of an {kind} must begin with the module, as in 'my.norm', not {name!r}")
-    return lambda function: _mark(function, Declared(kind, function, name, arity, pure))
+    return lambda function: _mark(function, Declared(kind, function, name, pure))
 
 
 def _mark(function: Function, declared: Declared) -> Function:
@@ -191,9 +181,7 @@ class Additions:
             if declared.kind == ACTION:
                 self.actions[name] = action_of(name, declared.function, declared.pure)
             else:
-                self.functions[name], self.arities[name] = function_of(
-                    name, declared.function, declared.arity
-                )
+                self.functions[name], self.arities[name] = function_of(name, declared.function)
         except Undeclarable as wrong:
             raise ModuleUnreadable(f"{place}: {name}: {wrong}") from wrong
 

@@ -130,35 +130,12 @@ def double_text(value: float) -> str:
     magnitude = abs(value)
     if 1e-3 <= magnitude < 1e7 or magnitude == 0.0:
         return repr(value)
-    mantissa, _, exponent = f"{_shortest(value)}e".partition("e")
-    if not exponent.rstrip("e"):
-        digits, power = _scientific(value)
-        return f"{digits}E{power}"
-    if "." not in mantissa:
-        mantissa += ".0"
-    return f"{mantissa}E{int(exponent.rstrip('e'))}"
-
-
-def _shortest(value: float) -> str:
-    """Return the shortest digits that identify the number, at least two as in Java."""
-    shortest = repr(value)
-    if "e" in shortest and "." not in shortest:
-        nearest = f"{value:.1e}"
-        return nearest if float(nearest) == value else shortest
-    return shortest
-
-
-def _scientific(value: float) -> tuple[str, int]:
-    """Return digits with one place before the point, and the power of ten, of a number that repr writes without
-    exponent.
-    """
-    whole, _, fraction = repr(abs(value)).partition(".")
-    if whole != "0":
-        digits, power = (whole + fraction).rstrip("0"), len(whole) - 1
-    else:
-        digits = fraction.lstrip("0")
-        power = len(digits) - len(fraction) - 1
-    return f"{'-' if value < 0 else ''}{digits[0]}.{digits[1:] or '0'}", power
+    for places in range(1, 17):
+        written = f"{value:.{places}e}"
+        if float(written) == value:
+            break
+    mantissa, _, exponent = written.partition("e")
+    return f"{mantissa}E{int(exponent)}"
 
 
 def quoted(text: str) -> str:

@@ -10,7 +10,7 @@ from jacaros.testing import AgentHarness
 SQ = """
 from jacaros import arithmetic_function
 
-@arithmetic_function("my.sq", arity=1)
+@arithmetic_function("my.sq")
 def sq(x):
     return x * x
 
