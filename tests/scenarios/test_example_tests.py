@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.testing import collect, run_suite
-from jacaros.testing.run import Suite
+from jacaros.testing.run import Suite, collect
+from jacaros.testing.trial import run_suite
 
 FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "tests").is_dir())
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.testing import RunResult, collect, run_project, run_suite
+from jacaros.testing import RunResult, run_project
+from jacaros.testing.run import collect
+from jacaros.testing.trial import run_suite
 
 TESTS = Path(__file__).parent / "navigation_library"
 TINY = """

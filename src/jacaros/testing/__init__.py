@@ -12,38 +12,18 @@ if TYPE_CHECKING:
     from jacaros.testing.harness import AgentHarness
     from jacaros.testing.paths import Verdict, judge
     from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
-    from jacaros.testing.run import (
-        AgentTest,
-        Outcome,
-        Problem,
-        RunResult,
-        Suite,
-        SuiteOutcome,
-        collect,
-        run_project,
-        suite_of,
-    )
-    from jacaros.testing.trial import TrialOptions, run_suite
+    from jacaros.testing.run import RunResult, run_project
 
 __all__ = [
     "ActionFailed",
     "AgentHarness",
-    "AgentTest",
-    "Outcome",
-    "Problem",
     "PursuedGoal",
     "RecordedAct",
     "RunResult",
     "SentMessage",
-    "Suite",
-    "SuiteOutcome",
-    "TrialOptions",
     "Verdict",
-    "collect",
     "judge",
     "run_project",
-    "run_suite",
-    "suite_of",
 ]
 
 _MODULES = {
@@ -51,9 +31,7 @@ _MODULES = {
     "jacaros.testing.harness": "AgentHarness",
     "jacaros.testing.paths": "Verdict judge",
     "jacaros.testing.recorded": "ActionFailed RecordedAct SentMessage",
-    "jacaros.testing.run": "AgentTest Outcome Problem RunResult Suite SuiteOutcome "
-    "collect run_project suite_of",
-    "jacaros.testing.trial": "TrialOptions run_suite",
+    "jacaros.testing.run": "RunResult run_project",
 }
 
 __getattr__ = exported(__name__, _MODULES)

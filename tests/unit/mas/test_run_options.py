@@ -9,7 +9,8 @@ from jacaros import Mas
 from jacaros.cli.run import command
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
-from jacaros.testing import TrialOptions, run_project
+from jacaros.testing import run_project
+from jacaros.testing.trial import TrialOptions
 
 
 def test_the_default_options_are_valid() -> None:
