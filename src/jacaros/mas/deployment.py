@@ -13,9 +13,6 @@ CARTAGO_ENVIRONMENTS = frozenset(
 )
 """Class names in `.mas2j` files for an artifact environment."""
 
-CARTAGO_2 = "c4jason.CartagoEnvironment"
-"""The class name of CArtAgO 2, whose annotations percepts also get."""
-
 
 def has_own_artifacts(folder: Path) -> bool:
     """Return whether a project in *folder* has artifacts: a file ``artifacts.py`` or a folder ``artifacts``."""

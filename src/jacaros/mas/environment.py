@@ -24,7 +24,6 @@ from jacaros.files.texts import close_matches
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
-    CARTAGO_2,
     AgentSpec,
     ArtifactSpec,
     Deployment,
@@ -130,8 +129,7 @@ class RunEnvironment:
         self._console = console
         self._activity = activity
         references = References()
-        older = deployment.environment == CARTAGO_2
-        self._writer = PerceptWriter(references, self.environment.workspace, older)
+        self._writer = PerceptWriter(references, self.environment.workspace)
         # A run may create and dispose millions of artifacts.
         self.environment.when_disposed(references.forget)
         self.environment.when_disposed(self._writer.forget)

@@ -33,17 +33,13 @@ class PerceptWriter:
     Args:
         references: shared by all agents of a run.
         workspace: returns the object of a workspace, given its full path.
-        cartago_2: whether percepts also have the annotations of CArtAgO 2.0.
 
     Attributes:
         newest, namespace, written: the last observation, its namespace and its percepts; the next request usually
             comes from another observer of the same observation.
     """
 
-    def __init__(
-        self, references: References, workspace: Callable[[str], object], cartago_2: bool = False
-    ) -> None:
-        self._cartago_2 = cartago_2
+    def __init__(self, references: References, workspace: Callable[[str], object]) -> None:
         self.references = references
         self._workspace = workspace
         self.newest: Observation | None = None
@@ -127,29 +123,12 @@ class PerceptWriter:
             identity = (_ARTIFACT_ID, self.references.of(artifact))
             name = (_ARTIFACT_NAME, atom_of(artifact.name))
             place = (_WORKSPACE, String(artifact.workspace), workspace)
-            if self._cartago_2:
-                self._annotations[artifact] = self._with_older(artifact, (identity, name, SOURCE_PERCEPT))
-                return self._annotations[artifact]
             # In the canonical order of annotations: this code runs for every agent.
             known = self._annotations[artifact] = (
                 (identity, name, _OBSERVABLE_PROPERTY, SOURCE_PERCEPT, place),
                 (identity, name, _OBSERVABLE_EVENT, SOURCE_PERCEPT, place),
             )
         return known
-
-    def _with_older(self, artifact: ArtifactId, shared: Annotations) -> tuple[Annotations, Annotations]:
-        """Return the annotations together with those of CArtAgO 2.0, whose ``workspace/2`` replaces ours."""
-        identity, workspace = self.references.of(artifact), self._workspace(artifact.workspace)
-        older = (
-            (functor("artifact_name", 2), identity, String(artifact.name)),
-            (functor("artifact_type", 2), identity, String(artifact.type_name)),
-            (_WORKSPACE, self.references.of(workspace), String(artifact.workspace.rpartition("/")[2])),
-        )
-        made = [
-            annotation_set((*shared, *older, kind, (_PERCEPT_TYPE, String(kind[1].name))))
-            for kind in (_OBSERVABLE_PROPERTY, _OBSERVABLE_EVENT)
-        ]
-        return made[0], made[1]
 
     def _literal(self, name: str, values: tuple[object, ...], namespace: str | None) -> Term:
         symbol = symbol_of(f"{namespace}::{name}" if namespace else name, len(values))
