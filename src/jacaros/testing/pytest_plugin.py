@@ -19,21 +19,6 @@ if TYPE_CHECKING:
 _SUFFIXES = (".asl", ".jcm", ".mas2j")
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the options of ``jacaros test`` that apply to pytest."""
-    group = parser.getgroup("jacaros", "agent programs")
-    group.addoption(
-        "--asl-timeout",
-        type=float,
-        default=60.0,
-        metavar="S",
-        help="time limit of each agent test, in seconds of virtual time",
-    )
-    group.addoption(
-        "--asl-seed", type=int, default=0, metavar="N", help="seed for random numbers of agent tests"
-    )
-
-
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "AgentFile | None":
     """Collect test programs and test projects."""
     if file_path.suffix not in _SUFFIXES:
@@ -80,9 +65,7 @@ class AgentItem(pytest.Item):
         """
         from jacaros.testing.trial import TrialOptions, run_suite
 
-        given = self.config.option
-        options = TrialOptions(timeout=given.asl_timeout, seed=given.asl_seed)
-        for outcome in run_suite(self._suite, options, lambda test: test is self._test):
+        for outcome in run_suite(self._suite, TrialOptions(), lambda test: test is self._test):
             if not outcome.passed:
                 raise AgentTestFailed("\n".join(outcome.lines()))
             for line in outcome.output:

@@ -73,10 +73,11 @@ def test_a_program_that_cannot_be_read_is_an_error(folder: Path) -> None:
     assert "test_wrong.asl:1:15: error: " in output
 
 
-def test_time_limits_can_be_set(folder: Path) -> None:
+def test_a_label_sets_the_time_limit(folder: Path) -> None:
     (folder / "test_sums.asl").write_text("@a[test] +!a <- .wait(3000).", encoding="utf-8")
     assert outcome(folder)[0] == 0
-    code, output = outcome(folder, "--asl-timeout", "2")
+    (folder / "test_sums.asl").write_text("@a[test, timeout(2000)] +!a <- .wait(3000).", encoding="utf-8")
+    code, output = outcome(folder)
     assert code == 1
     assert "did not end within 2 s of the run's clock" in output
 

@@ -26,43 +26,17 @@ _ROOTS: Final = frozenset(
     {"$jacamo", "$jacamoJar", "$jason", "$jasonJar", "$moise", "$moiseJar", "$cartago", "$cartagoJar"}
 )
 _KNOWN: Final = frozenset(
-    {
-        "common.asl",
-        "dynamic-focus.asl",
-        "kqmlPlans.asl",
-        "tester_agent.asl",
-        "test_assert.asl",
-        "test_manager.asl",
-    }
+    {"common.asl", "dynamic-focus.asl", "kqmlPlans.asl"}
+    | {"tester_agent.asl", "test_assert.asl", "test_manager.asl"}
 )
-
-
+"""Files of them that programs here do not need."""
 _ORGANISATIONS: Final = frozenset({"common-moise.asl", "org-obedient.asl", "org-rules.asl", "sai-rules.asl"})
 _OURS: Final = {"common-cartago.asl": "common_cartago.asl", "wsp-rules.asl": "common_cartago.asl"}
-
-
-def counterpart(path: str) -> SourceFile | None:
-    """Return the file of our own library that replaces a library file, or None."""
-    name = _OURS.get(path.rpartition("/")[2]) if is_library(path) else None
-    if name is None:
-        return None
-    file = Path(__file__).parent / "library" / name
-    return SourceFile(f"$jacaros/{name}", file.read_text(encoding="utf-8"))
-
-
-def is_of_organisations(path: str) -> bool:
-    """Return whether *path* is a library file for agents in organisations."""
-    return is_library(path) and path.rpartition("/")[2] in _ORGANISATIONS
 
 
 def is_library(path: str) -> bool:
     """Return whether *path* names a file of one of these systems, as in ``$jacamo/templates/common-cartago.asl``."""
     return path.partition("/")[0] in _ROOTS
-
-
-def is_known_library(path: str) -> bool:
-    """Return whether *path* is a library file that programs here do not need."""
-    return is_library(path) and path.rpartition("/")[2] in _KNOWN
 
 
 # Run the directives of a program: includes, namespaces, functions and goal patterns.
@@ -189,13 +163,16 @@ class DirectiveProcessor:
         except (OSError, UnicodeError) as error:
             message = f"cannot read the included file `{path}`: {error}"
             raise WrongDirective(message, code="include-not-found") from error
-        ours = counterpart(path)
-        if is_of_organisations(path):
+        name = path.rpartition("/")[2]
+        if name in _OURS:
+            file = Path(__file__).parent / "library" / _OURS[name]
+            return SourceFile(f"$jacaros/{file.name}", file.read_text(encoding="utf-8"))
+        if name in _ORGANISATIONS:
             self._warn_of_organisations(parser, path, directive)
-        elif ours is None and not is_known_library(path):
+        elif name not in _KNOWN:
             message = f"unknown library `{path}`: nothing is included"
             parser.warn("unknown-library", message, _place(directive))
-        return ours
+        return None
 
     def _warn_of_organisations(self, parser: ProgramParser, path: str, directive: nodes.Literal) -> None:
         """Warn once per program that organisations are not supported: their libraries are included together."""

@@ -202,8 +202,8 @@ class Message:
 
     @property
     def content(self) -> Any:
-        """The content: a `Literal`, or another Python value."""
-        return _value_of(resolve(self.raw.content))
+        """The content: a `Literal`, another Python value, or a list of them; variables are `Out` objects."""
+        return heard(self.raw.content)
 
     def __str__(self) -> str:
         return f"{self.performative} from {self.sender}: {text(resolve(self.raw.content))}"
@@ -220,11 +220,6 @@ class ReceivedMessage(Message):
         super().__init__(raw)
         self._answer = answer
         self.answered = False
-
-    @property
-    def content(self) -> Any:
-        """The content: a `Literal`, another Python value, or a list of them; variables are `Out` objects."""
-        return heard(self.raw.content)
 
     @property
     def is_question(self) -> bool:
@@ -279,15 +274,7 @@ def heard(content: Term) -> object:
     if is_list(content):
         return [heard(item) for item in list_items(content)]
     symbol = functor_of(content)
-    return _value_of(content) if symbol is not None and symbol.kind == PLAIN else to_value(content)
-
-
-def _value_of(term: Term) -> object:
-    """Convert a term to a Python value; atoms and structures become `Literal` with their annotations."""
-    try:
-        return literal_of(term)
-    except ValueError:
-        return to_value(term)
+    return literal_of(content) if symbol is not None and symbol.kind == PLAIN else to_value(content)
 
 
 class Agent:
