@@ -18,10 +18,11 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
-from jacaros.sim.ground_truth import GroundTruth, Sample
+from jacaros.sim.description import Pose
+from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 
 
 @dataclass(slots=True)
@@ -84,20 +85,8 @@ def judge(check: Callable[[GroundTruth], Verdict], arguments: Sequence[str]) -> 
     return 0 if verdict.passed else 1
 
 
-class Placed(Protocol):
-    """An object with a pose: a sample, an event or a pose."""
-
-    @property
-    def x(self) -> float:
-        """X coordinate in metres."""
-
-    @property
-    def y(self) -> float:
-        """Y coordinate in metres."""
-
-    @property
-    def yaw(self) -> float:
-        """Heading in radians."""
+Placed = Sample | Event | Pose
+"""What has a position, `x` and `y` in metres, and a heading `yaw` in radians."""
 
 
 class Turn(NamedTuple):
