@@ -181,7 +181,9 @@ _CODES: Final[dict[Severity, str]] = {
 the thesis. docs/reference/diagnostics.md says what each means, with an example.
 """
 _ORDER: Final = tuple(_CODES)
-LEVELS: Final = {code: level for level, codes in _CODES.items() for code in codes.split()}
+LEVELS: Final[dict[str, Severity]] = {
+    code: level for level, codes in _CODES.items() for code in codes.split()
+}
 """The usual level of each code."""
 
 

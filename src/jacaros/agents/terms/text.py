@@ -130,11 +130,8 @@ def double_text(value: float) -> str:
     magnitude = abs(value)
     if 1e-3 <= magnitude < 1e7 or magnitude == 0.0:
         return repr(value)
-    for places in range(1, 17):
-        written = f"{value:.{places}e}"
-        if float(written) == value:
-            break
-    mantissa, _, exponent = written.partition("e")
+    places = next(n for n in range(1, 17) if n == 16 or float(f"{value:.{n}e}") == value)
+    mantissa, _, exponent = f"{value:.{places}e}".partition("e")
     return f"{mantissa}E{int(exponent)}"
 
 
