@@ -143,7 +143,7 @@ class _Frame:
 
 
 class _Layout:
-    """Lays out the items of a program, one after the other."""
+    """Lays out the items of a program in turn."""
 
     def __init__(self) -> None:
         self._frames = [_Frame(holds_clauses=True)]

@@ -24,9 +24,9 @@ from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.plans import TWINS
 from jacaros.agents.terms.substitution import ATOMIC, HOLDERS, free_variables, replace_variable, with_tail
 from jacaros.agents.terms.values import (
+    CONS,
     MOST_CELLS,
     NEGATED,
-    NIL,
     NO_KEY,
     TOO_LONG,
     Annotated,
@@ -34,7 +34,6 @@ from jacaros.agents.terms.values import (
     Term,
     Var,
     deref,
-    is_list,
     make_list,
     parts_of_list,
 )
@@ -101,29 +100,36 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
             return _bind_checked(left, right, trail)
         if right.__class__ is Var:
             return _bind_checked(right, left, trail)
-        if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
-            return _unify_negated(left, right, trail)
-        if kind is tuple and right.__class__ is tuple:
+        other = right.__class__
+        if kind is other is tuple and left[0] is not NEGATED and right[0] is not NEGATED:
             if left[0] is not right[0] and TWINS.get(left[0]) is not right[0]:
                 return False
             for i in range(1, len(left) - 1):
                 if not unify(left[i], right[i], trail):
                     return False
             left, right = left[-1], right[-1]
-        elif kind is Annotated or right.__class__ is Annotated:
-            return _unify_annotated(left, right, trail)
-        elif kind is List and right.__class__ is List:
-            return _unify_lists(left, right, trail)
-        elif kind is List or right.__class__ is List:
-            if not (is_list(left) and is_list(right)) or left is NIL or right is NIL:
-                return False
+        elif (kind is List and other is tuple and right[0] is CONS) or (
+            kind is tuple and other is List and left[0] is CONS
+        ):
             first, left = parts_of_list(left)
-            other, right = parts_of_list(right)
-            if not unify(first, other, trail):
+            second, right = parts_of_list(right)
+            if not unify(first, second, trail):
                 return False
         else:
-            return kind is right.__class__ and bool(left == right)
+            return _unify_others(left, right, trail)
     raise RecursionError(TOO_LONG)
+
+
+def _unify_others(left: Term, right: Term, trail: Trail) -> bool:
+    """Unify two settled values that are no variables, no two ordinary structures and no parts of an open list."""
+    kind = left.__class__
+    if kind is right.__class__ is List:
+        return _unify_lists(left, right, trail)
+    if (kind is tuple and left[0] is NEGATED) or (right.__class__ is tuple and right[0] is NEGATED):
+        return _unify_negated(left, right, trail)
+    if kind is Annotated or right.__class__ is Annotated:
+        return _unify_annotated(left, right, trail)
+    return kind is right.__class__ and bool(left == right)
 
 
 def _unify_lists(left: List, right: List, trail: Trail) -> bool:
