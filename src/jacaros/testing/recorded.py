@@ -52,7 +52,9 @@ class RecordedAct:
     Attributes:
         name: name of the action.
         arguments: plain values (numbers, strings, `jacaros.artifacts.env.values.Atom`, `Structure`, lists); None for an
-        output. pending: whether the action has not ended yet.
+            output.
+        pending: whether the action has not ended yet.
+        term: the action as a term.
         cancelled: whether its intention was dropped.
         paused: whether its intention is suspended.
     """
@@ -60,18 +62,13 @@ class RecordedAct:
     def __init__(self, act: Act, complete: Complete) -> None:
         self._act = act
         self._complete = complete
-        self._term: Term = (act.functor, *act.arguments) if act.arguments else act.functor
-        self._outputs = free_variables(self._term)
+        self.term: Term = (act.functor, *act.arguments) if act.arguments else act.functor
+        self._outputs = free_variables(self.term)
         self.name = act.functor.name
         self.arguments = tuple(None if a.__class__ is Var else to_value(a) for a in act.arguments)
         self.pending = True
         self.cancelled = False
         self.paused = False
-
-    @property
-    def term(self) -> Term:
-        """The action as a term."""
-        return self._term
 
     def complete(self, *outputs: object) -> None:
         """Let the action succeed; *outputs* are the values of its unbound variables, in order.
@@ -129,7 +126,7 @@ class RecordedAct:
             self.complete(*(result if isinstance(result, tuple) else (result,)))
 
     def __str__(self) -> str:
-        return text(self._term)
+        return text(self.term)
 
     def __repr__(self) -> str:
         return f"<act {self}{' pending' if self.pending else ''}>"

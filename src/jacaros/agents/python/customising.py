@@ -3,7 +3,7 @@
 The mind does not know of this: its selection functions are replaced by ones that call the methods.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import ModuleType
 from typing import Generic, NamedTuple, TypeVar, cast
 
@@ -79,7 +79,9 @@ def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | N
         UnknownClass: the class of that name is not a *kind*, or the module has others that are; the text lists them.
     """
     path, _, last = name.rpartition(".")
-    found = list(_modules_of(modules, path or last))
+    # The module of ``my.inner.Careful``, or all of the package ``my``.
+    whole = "." in path and modules.place(path) is not None
+    found = modules.load(path if whole else name.partition(".")[0])
     if not found:
         return None
     for module in found:
@@ -99,14 +101,6 @@ def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | N
 
 def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
     return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
-
-
-def _modules_of(modules: ProjectModules, path: str) -> Iterator[ModuleType]:
-    """Yield the module of that path, then those of its package: ``my.Careful`` may be in ``my/careful.py``."""
-    loaded = list(modules.load(path.partition(".")[0]))
-    if "." in path and modules.place(path) is not None:
-        loaded = list(modules.load(path))
-    yield from loaded
 
 
 Result = TypeVar("Result")
