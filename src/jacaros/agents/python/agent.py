@@ -55,20 +55,6 @@ class Literal:
     negated: bool = False
     namespace: str | None = None
 
-    @classmethod
-    def parse(cls, written: str) -> "Literal":
-        """Parse a literal; its variables become unset `Out` objects.
-
-        Raises:
-            AslError: the text is not a literal.
-        """
-        return literal_of(resolve(lower(parse_literal(written), fresh_names())))
-
-    @property
-    def arity(self) -> int:
-        """The number of arguments."""
-        return len(self.arguments)
-
     @property
     def sources(self) -> tuple[str, ...]:
         """Its sources: ``self``, ``percept`` and names of agents."""
@@ -338,7 +324,7 @@ class Agent:
         """
         for term in list(self._mind.beliefs.literals()):
             belief = literal_of(term)
-            if functor in (None, belief.functor) and arity in (None, belief.arity):
+            if functor in (None, belief.functor) and arity in (None, len(belief.arguments)):
                 yield belief
 
     def ask(self, query: str) -> Iterator[dict[str, Any]]:
