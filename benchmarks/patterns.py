@@ -1,4 +1,4 @@
-"""The share of a core used by 60 patterns at 1,000 percepts per second, compared with reactivex and a hand-written filter.
+"""The share of a core used by 60 patterns at 1,000 events per second, compared with reactivex and a hand-written filter.
 
     patterns.py [--seconds S] [--turns N]
 
@@ -6,16 +6,11 @@ Twenty properties change fifty times a second each, and three patterns look at e
 and a condition that has held for a while. Times are simulated; what is measured is the processor's time, as a
 share of the simulated time. All systems run in turns within one run, and the medians are printed. reactivex
 (``pip install reactivex``) is left out if it is not installed.
-
-``agent`` is a whole mind that takes the percepts in, with declarations (``derive``); ``percepts alone`` is the same mind
-without them; ``patterns`` are the operators alone.
 """
 
 import argparse
 import gc
-import heapq
 import importlib.util
-import itertools
 import random
 import time
 from collections import deque
@@ -24,7 +19,7 @@ from typing import Any
 
 PROPERTIES = 20
 RATE = 1000
-"""Percepts per second, over all properties."""
+"""Events per second, over all properties."""
 WITHIN, ENOUGH, ON, OFF, LASTING = 1.0, 40, 7.0, 3.0, 0.2
 
 Sample = tuple[float, int, float]
@@ -42,8 +37,6 @@ def main() -> None:
     arguments = parser.parse_args()
     samples = made(arguments.seconds)
     systems: dict[str, Callable[[list[Sample]], Go]] = {
-        "agent": lambda given: agent(given, True),
-        "percepts alone": lambda given: agent(given, False),
         "patterns": patterns,
         "by hand": by_hand,
     }
@@ -55,15 +48,14 @@ def main() -> None:
     outputs = {}
     for _ in range(arguments.turns):
         for name, run in systems.items():
-            go = run(samples)  # to begin with: loading programs, making patterns
+            go = run(samples)  # making patterns
             gc.collect()
             began = time.process_time()
             outputs[name] = go()
             found[name].append((time.process_time() - began) / arguments.seconds)
-    print(f"{3 * PROPERTIES} patterns, {RATE} percepts a second, median of {arguments.turns} turns:")
+    print(f"{3 * PROPERTIES} patterns, {RATE} events a second, median of {arguments.turns} turns:")
     for name, shares in found.items():
-        told = f"{outputs[name]} {'states hold at the end' if name in ('agent', 'percepts alone') else 'outputs'}"
-        print(f"  {name:<15} {100 * median(shares):5.1f} % of a core  ({told})")
+        print(f"  {name:<15} {100 * median(shares):5.1f} % of a core  ({outputs[name]} outputs)")
 
 
 def median(figures: list[float]) -> float:
@@ -84,89 +76,6 @@ def made(seconds: float) -> list[Sample]:
 
 
 # --- ours ------------------------------------------------------------------------------------------------------
-
-
-def declarations() -> str:
-    """The directives of the agent."""
-    told = []
-    for which in range(PROPERTIES):
-        p = f"p{which}(X)"
-        told += [
-            f"{{ derive(count{which}, count(p{which}(_), within({WITHIN * 1000}), at_least({ENOUGH}))) }}",
-            f"{{ derive(hyst{which}, hysteresis({p}, on_above({ON}), off_below({OFF}))) }}",
-            f"{{ derive(held{which}, held({p}, above({ON}), lasting({LASTING * 1000}))) }}",
-        ]
-    return "\n".join(told)
-
-
-class Port:
-    """The parts of an agent's host that a mind needs here: a clock, and timers that fire when time advances."""
-
-    def __init__(self) -> None:
-        self.time, self.timers, self.numbers = 0.0, list[Any](), itertools.count()
-
-    def now(self) -> float:
-        return 1e9 + self.time
-
-    def ready(self) -> None:
-        pass
-
-    def set_timer(self, delay: float, callback: Callable[[], None]) -> "Port.Timer":
-        timer = Port.Timer(self.time + delay, callback)
-        heapq.heappush(self.timers, (timer.due, next(self.numbers), timer))
-        return timer
-
-    def pass_until(self, at: float, run: Callable[[int], bool]) -> None:
-        """Fire timers up to a time."""
-        while self.timers and self.timers[0][0] <= at:
-            self.time, _, timer = heapq.heappop(self.timers)
-            if not timer.cancelled:
-                timer.callback()
-                run(10)
-        self.time = at
-
-    class Timer:
-        """A pending call."""
-
-        def __init__(self, due: float, callback: Callable[[], None]) -> None:
-            self.due, self.callback, self.cancelled = due, callback, False
-
-        def cancel(self) -> None:
-            self.cancelled = True
-
-
-def agent(samples: list[Sample], derives: bool) -> Go:
-    """Run a mind on the percepts; return the number of derived beliefs at the end."""
-    from jacaros.agents.language.loader import load_program
-    from jacaros.agents.mind.mind import Mind
-    from jacaros.agents.mind.state.act import Percept
-    from jacaros.agents.terms.values import SOURCE_PERCEPT, functor
-
-    port = Port()
-    program, _ = load_program("patterns.asl", declarations() if derives else "")
-    mind = Mind("robot", program, port)  # type: ignore[arg-type]
-    mind.start()
-    mind.run(100)
-    symbols = [functor(f"p{which}", 1) for which in range(PROPERTIES)]
-    about = (SOURCE_PERCEPT,)
-    old: list[Any] = [None] * PROPERTIES
-
-    def go() -> int:
-        for at, which, value in samples:
-            port.pass_until(at, mind.run)
-            new = (symbols[which], value)
-            percepts = [Percept("add", new, about, None)]
-            if old[which] is not None:
-                percepts.insert(0, Percept("remove", old[which], about, None))
-            old[which] = new
-            mind.perceive(percepts)
-            mind.run(10)
-        derived = [
-            name for each in ("count", "hyst", "held") for name in (f"{each}{n}" for n in range(PROPERTIES))
-        ]
-        return sum(len(mind.beliefs[functor(name, 0)]) for name in derived)
-
-    return go
 
 
 def patterns(samples: list[Sample]) -> Go:

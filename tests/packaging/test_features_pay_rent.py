@@ -48,7 +48,7 @@ def test_a_goal_pattern_is_used(name: str) -> None:
 
 @pytest.mark.parametrize("name", OPERATORS)
 def test_an_operator_is_used(name: str) -> None:
-    assert re.search(rf"derive\(\w+, *{name}\(", USED)
+    assert re.search(rf"\{{{name}: ", USED)
 
 
 PROGRAM = """

@@ -14,7 +14,7 @@ def identifiers_of(clause: nodes.Node, is_goal: bool = False) -> frozenset[str]:
     """Names of goals, events and operations in a clause of a program.
 
     Args:
-        clause: a plan, rule, belief, initial goal or declaration.
+        clause: a plan, rule, belief or initial goal.
         is_goal: the clause is an initial goal.
     """
     return frozenset(_goals_events_operations(clause, is_goal))
@@ -38,8 +38,6 @@ def _goals_events_operations(clause: nodes.Node, is_goal: bool) -> Iterator[str]
             yield from _functor(node.formula)
         elif isinstance(node, nodes.ExternalAction):
             yield from _functor(node.action)
-        elif isinstance(node, nodes.Derivation):
-            yield node.name
 
 
 def _other_names(clause: nodes.Node) -> Iterator[str]:
@@ -57,9 +55,6 @@ def _other_names(clause: nodes.Node) -> Iterator[str]:
             yield from _functor(node.head)
         elif isinstance(node, nodes.Plan) and node.label is not None:
             yield from _functor(node.label)
-        elif isinstance(node, nodes.Derivation):
-            for stream in node.streams:
-                yield from _functor(stream)
 
 
 def _functor(node: object) -> Iterator[str]:
@@ -70,7 +65,7 @@ def _functor(node: object) -> Iterator[str]:
 
 def clauses_of(program: nodes.Program) -> Iterator[tuple[nodes.Node, bool]]:
     """Yield all clauses of a program, each with whether it is an initial goal."""
-    for clause in (*program.beliefs, *program.plans, *program.derived):
+    for clause in (*program.beliefs, *program.plans):
         yield clause, False
     for goal in program.goals:
         yield goal, True

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.checking import check_files
 from jacaros.testing import RunResult, run_project
 
 
@@ -87,28 +86,6 @@ def test_a_saved_agent_can_be_run(tmp_path: Path) -> None:
     text = (tmp_path / "b.asl").read_text(encoding="utf-8")
     assert "p(1)[source(bob)]." in text
     assert "p(3).\np(1)" in text
-
-
-def test_an_agent_is_saved_with_its_derived_events(tmp_path: Path) -> None:
-    first = run(
-        tmp_path,
-        a_asl="""{ derive(low, hysteresis(battery(X), on_below(20), off_above(30))) }
-            { begin namespace(arm) } { derive(busy, sequence([goal(_), low], within(333.3))) } { end }
-            +low <- .print(low). -low <- .print(charged).
-            +!go <- .wait(300); -+battery(25); -+battery(35); .wait(100); ?seen; .print(seen).
-            !begin. +!begin <- .include("more.asl"); -+battery(15); .wait(50); .save_agent("b.asl", [go]).""",
-        more_asl="""{ derive(missed, absent(reply(_), lasting(100))) }
-            +missed <- .print(missed); +seen.""",
-    )
-    assert first.errors == []
-    assert first.lines == ["[a] low", "[a] missed"]
-    text = (tmp_path / "b.asl").read_text(encoding="utf-8")
-    assert "{ derive(low, hysteresis(battery(X), on_below(20), off_above(30))) }" in text
-    assert "low[source(derived)]" not in text
-    again = run_project(tmp_path / "b.asl", until_idle=True)
-    assert again.errors == []
-    assert again.lines == ["[b] low", "[b] missed", "[b] charged", "[b] seen"]
-    assert [each.message for each in check_files([tmp_path / "b.asl"]).diagnostics] == []
 
 
 def test_a_program_is_included_at_run_time(tmp_path: Path) -> None:

@@ -69,17 +69,6 @@ def test_beliefs_rules_labels_and_variables_count_as_names(folder: Path) -> None
     assert program.counts(Group.AGENTS).names == 16
 
 
-def test_declared_events_are_identifiers(folder: Path) -> None:
-    program = measured(
-        folder,
-        guard__asl="{ derive(bumped_often, count(bump(_), within(5000), at_least(3))) }\n"
-        "+bumped_often <- stop.\n",
-    )
-    (file,) = program.files[Group.AGENTS]
-    assert file.identifiers == {"bumped_often", "stop"}
-    assert file.names == {"bumped_often", "stop", "bump"}
-
-
 def test_the_names_of_an_included_file_belong_to_it(folder: Path) -> None:
     program = measured(
         folder,

@@ -38,7 +38,7 @@ class Beliefs:
 
     Attributes:
         asked: beliefs that plans react to and conditions ask for, by name.
-        made_as: beliefs that the program gives itself and others; derived ones with -1 arguments.
+        made_as: beliefs that the program gives itself and others.
         mentioned: all other names in it, and words of strings: they may become beliefs in ways that are not visible.
         is_open: beliefs, plans or agents come from elsewhere at run time.
         events: events that plans and ``.wait`` react to, sign and belief; default namespace only, without strong negation.
@@ -82,7 +82,6 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.facts.setdefault(_name(belief), []).append(belief)
             _note(belief, found)
     asked: set[int] = set()
-    _derive(program, asked, found)
     for clause in clauses(program):
         for node, is_asked in in_order(clause):
             if isinstance(node, nodes.InternalAction):
@@ -108,16 +107,6 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             if id(node) not in printed:
                 found.said.update(words)
     return found
-
-
-def _derive(program: nodes.Program, asked: set[int], found: Beliefs) -> None:
-    """Note the derived beliefs and events, whatever their arguments, and their streams."""
-    for derived in program.derived:
-        if derived.namespace is None:
-            found.made_as.add((derived.name, -1))
-            found.said.add(derived.name)
-        for stream in derived.streams:
-            _ask(stream, asked, found)
 
 
 def _react(plan: nodes.Plan, found: Beliefs) -> None:

@@ -46,7 +46,7 @@ Read = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
 whose text says where it was searched."""
 
-_SIMPLE: Final = ("derive", "include", "namespace", "register_function")
+_SIMPLE: Final = ("include", "namespace", "register_function")
 _DEEPEST: Final = 40
 """Maximum depth of includes, so that parsing them does not exhaust Python's stack."""
 _MOST_INCLUDES: Final = 10_000
@@ -64,7 +64,6 @@ class DirectiveProcessor:
         self._pattern_numbers = count(1)
         self._warned_of_organisations = False
         self._included = 0
-        self._derived: list[nodes.Derivation] = []
 
     def read_file(
         self, file: SourceFile, namespaces: Namespaces | None = None, last_dot_optional: bool = False
@@ -85,11 +84,13 @@ class DirectiveProcessor:
             "include": self._include,
             "namespace": self._declare_namespace,
             "register_function": self._register,
-            "derive": self._derive,
         }.get(name)
         try:
             if run is not None:
                 run(parser, directive, section)
+            elif name == "derive":
+                message = "programs do not declare derived events"
+                raise WrongDirective(message, "declare them in a mapping file, below `derived:`")
             elif name in PATTERNS:
                 raise WrongDirective(f"`{name}` expects a block", f"{{ begin {name}(...) }} plans {{ end }}")
             else:
@@ -235,21 +236,6 @@ class DirectiveProcessor:
             case _:
                 message = "`register_function` expects a name, a number of arguments and a rule"
                 raise WrongDirective(message, '{ register_function("my.sum", 2, "sum") }')
-
-    def _derive(self, parser: ProgramParser, directive: nodes.Literal, section: nodes.Section) -> None:
-        from jacaros.agents.language.derive import circle, read_derivation  # here: few programs use `derive`
-
-        made, mistakes = read_derivation(
-            directive, parser.namespaces.current, lambda term: self._placed(parser.namespaces, term)
-        )
-        if made is not None and not mistakes and circle([*self._derived, made]):
-            message = f"`{made.name}` is derived from itself"
-            mistakes.append(WrongDirective(message, "derive it from other beliefs"))
-        for mistake in mistakes:
-            _report(parser, directive, mistake)
-        if made is not None and not mistakes:
-            self._derived.append(made)
-            section.derived.append(made)
 
     # patterns
 

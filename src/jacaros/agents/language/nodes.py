@@ -369,19 +369,6 @@ class RegisteredFunction(Node):
     implementation: str
 
 
-class Derivation(Node):
-    """``{ derive(name, operator(streams, options)) }``: a belief or event composed of changes of beliefs.
-
-    ``options`` are pairs of a name and a number, times in seconds.
-    """
-
-    name: str
-    namespace: str | None
-    operator: str
-    streams: tuple[Literal, ...]
-    options: tuple[tuple[str, Any], ...]
-
-
 @dataclass(frozen=True, slots=True)
 class Program:
     """An agent program with its includes resolved, in source order per kind."""
@@ -390,7 +377,6 @@ class Program:
     goals: tuple[Literal, ...] = ()
     plans: tuple[Plan, ...] = ()
     functions: tuple[RegisteredFunction, ...] = ()
-    derived: tuple[Derivation, ...] = ()
 
 
 @dataclass
@@ -401,7 +387,6 @@ class Section:
     goals: list[Literal] = field(default_factory=list)
     plans: list[Plan] = field(default_factory=list)
     functions: list[RegisteredFunction] = field(default_factory=list)
-    derived: list[Derivation] = field(default_factory=list)
 
     def extend(self, other: Section) -> None:
         """Append the clauses of *other*."""

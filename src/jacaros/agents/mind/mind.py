@@ -132,16 +132,8 @@ class Mind(Circumstance):
     def start(self) -> None:
         """Adopt the initial beliefs and goals."""
         self.engine.begin(self)
-        self._declare(self.program)
         with functions.evaluating(self):
             self.take_up(self.program)
-
-    def _declare(self, program: nodes.Program) -> None:
-        """Start the derived events of a program."""
-        if program.derived:
-            from jacaros.agents.mind.rules import deriving  # imported here: most programs do not need it
-
-            deriving.declare(self, program)
 
     def take_up(self, program: nodes.Program) -> None:
         """Adopt the beliefs and goals of a program."""
@@ -185,7 +177,6 @@ class Mind(Circumstance):
             path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
-        self._declare(program)
         plan_changes.include_plans(self, program.plans)
         self.take_up(program)
 

@@ -522,15 +522,12 @@ def stored(mind: Mind) -> dict[str, Any]:
     Raises:
         NotStorable: the mind holds a live object.
     """
-    from jacaros.agents.mind.rules import deriving  # imported here and below: few minds are stored or copied
-
     now(mind)  # the latest time is stored
     held = knowledge(mind)
     held |= {name: getattr(mind, name) for name in _FIELDS}
     held["held_percepts"], held["blamed"] = mind.beliefs.held_percepts, mind.library.blamed
     held |= {name: list(getattr(mind, name)) for name in _QUEUES}
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
-    held["derived"] = deriving.stored(mind, mind.program)
     held["serial"] = mind.trail.serial
     writer = Writer(mind)
     version, state, gauss = mind.architecture.random.getstate()
@@ -564,8 +561,6 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
         raise ValueError(
             f"the stored mind has format {data.get('format')!r}; this version reads format {FORMAT}"
         )
-    from jacaros.agents.mind.rules import deriving
-
     mind.engine.begin(mind)
     held = Reader(mind, data["objects"]).read(data["held"])
     _learn(mind, held)
@@ -586,7 +581,6 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
         start_alarm(mind, alarm, max(0.0, alarm.due - now(mind)))
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
-    deriving.resume(mind, mind.program, held.get("derived"))
     mind.trail.serial = held["serial"]
     version, state, gauss = data["random"]
     mind.architecture.random.setstate((version, tuple(state), gauss))
@@ -651,8 +645,6 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     The running intention is not copied, nor are waiting and suspended intentions and branches of forks: what they wait
     for belongs to the original.
     """
-    from jacaros.agents.mind.rules import deriving
-
     part = knowledge(original)
     part["events"] = [
         event
@@ -660,7 +652,6 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         if (intention := event[EVENT_INTENTION]) is None or _can_be_copied(original, intention)
     ]
     part["intentions"] = [each for each in original.intentions if _can_be_copied(original, each)]
-    part["derived"] = deriving.stored(original, original.program)
     writer = Writer(original, shared=True)
     entry = writer.write(part)
     held = Reader(clone, writer.table).read(entry)
@@ -673,7 +664,6 @@ def copy_mind(original: Mind, clone: Mind) -> None:
         intention.id = clone.counts.intentions
         clone.alive[intention.id] = intention
         clone.note_plans(intention)
-    deriving.resume(clone, clone.program, held["derived"])
     clone.architecture.ready()
 
 

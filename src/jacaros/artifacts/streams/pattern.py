@@ -3,7 +3,6 @@
 import heapq
 import itertools
 import math
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
@@ -24,8 +23,6 @@ from jacaros.artifacts.streams.operators import (
 from jacaros.files.texts import suggestion
 
 # The operators by name: their options, the checks of declarations, and the creation of operators.
-#
-# Mapping files and programs declare the same operators with the same options, and both are checked here.
 
 
 LONGEST: Final = 86_400.0
@@ -245,9 +242,6 @@ def _wrong_limits(options: Mapping[str, Any]) -> Iterator[Fault]:
         yield Fault(used[1], f"`{used[1]}` must be {side} `{used[0]}`", "swap the two limits")
 
 
-_DATA = (bool, int, float, str, tuple, list, deque, type(None))
-
-
 class Pattern:
     """The incremental evaluation of one declaration.
 
@@ -320,21 +314,6 @@ class Pattern:
             self._mark = time
             operator.take(source, time, values)
 
-    def state(self) -> dict[str, Any]:
-        """Return the state of the evaluation, as numbers, tuples, lists and dictionaries."""
-        early = [tuple(each) for each in self._early]
-        own = {"start": self._start, "mark": self._mark, "early": early, "dropped": self._dropped}
-        return {**own, "operator": {name: _plain(value) for name, value in _kept(self._operator)}}
-
-    def resume(self, state: dict[str, Any]) -> None:
-        """Continue from the `state` of a pattern with the same declaration."""
-        self._start, self._mark, self._dropped = state["start"], state["mark"], state["dropped"]
-        self._early = [tuple(each) for each in state["early"]]
-        self._numbers = itertools.count(1 + max((each[1] for each in self._early), default=-1))
-        for name, value in state["operator"].items():
-            before = getattr(self._operator, name)
-            setattr(self._operator, name, deque(value) if isinstance(before, deque) else value)
-
     def advance(self, now: float) -> None:
         """Advance to *now* on the clock of the event times."""
         mark = now - self._start - self._lateness
@@ -358,15 +337,3 @@ class Pattern:
             operator.advance(due)
             if operator.deadline <= due:  # an operator that makes no progress would block all others
                 operator.deadline = math.nextafter(due, math.inf)
-
-
-def _kept(operator: Operator) -> list[tuple[str, Any]]:
-    """Return the attributes of an operator that are data."""
-    names = [name for kind in type(operator).__mro__ for name in getattr(kind, "__slots__", ())]
-    found = [(name, getattr(operator, name)) for name in names]
-    return [(name, value) for name, value in found if isinstance(value, _DATA)]
-
-
-def _plain(value: Any) -> Any:
-    """Return data with lists instead of deques."""
-    return list(value) if isinstance(value, deque) else value

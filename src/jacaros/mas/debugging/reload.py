@@ -6,7 +6,6 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import shape
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.rules import deriving
 from jacaros.agents.mind.rules.plan_changes import outdated_plans, replace_plans, replace_rules
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.agent_lifecycle import AgentLifecycle
@@ -43,7 +42,7 @@ def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) 
 
 def _texts(program: nodes.Program) -> set[tuple[str, str]]:
     """Return names and texts of the files of a program. The project's declarations are not in a file."""
-    clauses = (*program.plans, *program.beliefs, *program.goals, *program.derived)
+    clauses = (*program.plans, *program.beliefs, *program.goals)
     return {(clause.span.file.name, clause.span.file.text) for clause in clauses if clause.span is not None}
 
 
@@ -59,7 +58,6 @@ def _replace_soon(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle)
 def _replace(mind: Mind, program: nodes.Program, lifecycle: AgentLifecycle) -> None:
     mind.register_functions(program.functions)
     replace_rules(mind, mind.program.beliefs, program.beliefs)
-    deriving.replace(mind, mind.program, program)
     mind.program = program
     replace_plans(mind, lifecycle.plans_of(program))
 
@@ -73,20 +71,12 @@ def _report(mind: Mind, new: nodes.Program) -> list[str]:
             f"{agent}: {gone} plan{'s' if gone != 1 else ''} removed, {len(after - before)} new, "
             f"{len(before & after)} unchanged"
         ),
-        *_declarations(agent, deriving.texts(old), deriving.texts(new)),
         *(
             f"{agent}: intention {number} continues with its old plan {_place(plan.node)}"
             for number, plan in outdated_plans(mind, new.plans)
         ),
         *(f"{agent}: the new initial {what} is not adopted" for what in _new_facts(old, new)),
     ]
-
-
-def _declarations(agent: str, before: set[str], after: set[str]) -> Iterator[str]:
-    """Report changes of derived events."""
-    if before != after:
-        counts = f"{len(before - after)} removed, {len(after - before)} new, {len(before & after)} unchanged"
-        yield f"{agent}: derived events: {counts}"
 
 
 def _new_facts(old: nodes.Program, new: nodes.Program) -> Iterator[str]:

@@ -124,3 +124,8 @@ def test_wrong_patterns_are_refused_at_their_line():
     assert messages('sga("order", "true", g)')[0][1].startswith("`order` is not a trigger: ")
     assert messages('sga("+order", "a &", g)')[0][1].startswith("`a &` is not a condition: ")
     assert messages("foo(g)") == [(2, "unknown directive `foo` with a block")]
+
+
+def test_a_derived_event_in_a_program_is_refused():
+    program = "go.\n{ derive(low, hysteresis(battery(X), on_below(20), off_above(30))) }"
+    assert places(program) == [(2, "programs do not declare derived events")]

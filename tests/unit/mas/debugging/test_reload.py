@@ -118,29 +118,6 @@ def test_an_unchanged_program_is_not_reloaded(tmp_path: Path) -> None:
     reloaded(tmp_path, test)
 
 
-def test_derived_events_that_stay_keep_their_windows(tmp_path: Path) -> None:
-    old = '{ include("patterns.asl") } +many <- .print(many). -many <- .print(few).'
-    patterns = "{ derive(many, count(hit(_), within(1000), at_least(2))) }\n"
-
-    async def test(mas: Mas, file: Path, lines: list[str]) -> None:
-        bob = mas.agent("bob")
-        for hit in (1, 2):
-            bob.add_belief(f"hit({hit})")
-            await mas.sleep(0.1)
-        write(
-            tmp_path / "patterns.asl",
-            patterns + "{ derive(next, count(hit(_), within(1000), at_least(3))) }\n",
-        )
-        told = mas.reload()
-        assert "agent bob: derived events: 0 removed, 1 new, 1 unchanged" in told
-        await mas.sleep(0.7)
-        assert lines == ["bob many"]
-        await mas.sleep(0.2)
-        assert lines == ["bob many", "bob few"]
-
-    reloaded(tmp_path, test, old, patterns=patterns)
-
-
 def test_plans_of_run_time_stay_and_removed_ones_stay_away(tmp_path: Path) -> None:
     old = "@a +!a <- .print(a). @b +!b <- .print(b). +!c <- .print(c)."
 

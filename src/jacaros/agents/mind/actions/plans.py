@@ -23,7 +23,6 @@ from jacaros.agents.mind.storage import knowledge
 from jacaros.agents.terms.text import plan_text, text
 from jacaros.agents.terms.values import (
     SELF,
-    SOURCE_DERIVED,
     SOURCE_SELF,
     Annotated,
     Functor,
@@ -133,9 +132,7 @@ def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
 
 @internal_action(".save_agent", arity=(1, 2), restricted=0)
 def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
-    """``.save_agent(File[, Goals])`` writes the beliefs, rules, plans and directives of the agent as a program.
-
-    Derived beliefs are left out: the directives derive them again, from the beliefs that are written.
+    """``.save_agent(File[, Goals])`` writes the beliefs, rules and plans of the agent as a program.
 
     *Goals* is a list of initial goals for the program. A relative path is relative to the project's folder.
 
@@ -153,17 +150,14 @@ def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
 def _program_text(agent: Circumstance, goals: list[Term]) -> str:
     """Return the beliefs and plans of an agent as a program, with initial goals."""
     known = knowledge(agent)
-    directives = _directives(agent)
     parts = [
         "// beliefs and rules",
         *(
             _belief_text(symbol, entry, annotations)
             for symbol, rows, late in known["beliefs"]
             for entry, annotations in (*reversed(rows), *late)
-            if annotations != (SOURCE_DERIVED,)
         ),
         "",
-        *(["// derived events", *directives, ""] if directives else ()),
         "// initial goals",
         *(f"!{text(goal)}." for goal in goals),
         "",
@@ -179,22 +173,12 @@ def _program_text(agent: Circumstance, goals: list[Term]) -> str:
     return "\n".join(parts) + "\n"
 
 
-def _directives(agent: Circumstance) -> list[str]:
-    """Return the derived events declared by the agent's program and the programs it has included."""
-    if agent.observers.derived is None:
-        return []
-    from jacaros.agents.language.derive import format_derivation  # imported here: most agents derive nothing
-    from jacaros.agents.mind.rules.deriving import directives
-
-    return list(map(format_derivation, directives(agent)))
-
-
 def _belief_text(symbol: Functor, entry: Any, annotations: tuple[Term, ...]) -> str:
-    """Format a rule, or a belief without its default source or the source of a pattern."""
+    """Format a rule, or a belief without its default source."""
     if isinstance(entry, Rule):
         return f"{format_term(entry.node)}."
     belief = literal(symbol, entry, annotations) if isinstance(entry, tuple) else entry.head()
-    kept = tuple(each for each in annotations if each not in (SOURCE_DERIVED, SOURCE_SELF))
+    kept = tuple(each for each in annotations if each != SOURCE_SELF)
     return f"{text(Annotated(bare(belief), kept) if kept else bare(belief))}."
 
 

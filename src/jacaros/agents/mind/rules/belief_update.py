@@ -106,8 +106,6 @@ def _tell_change(
 ) -> None:
     """Notify observers of a belief that changed, or (not *believed*) of a signal."""
     observers, table = agent.observers, agent.beliefs[symbol]
-    if observers.derived is not None:
-        observers.derived.heard(operator, symbol, row, cause)
     if believed and observers.mind is not None:
         observers.mind.changed(operator, symbol, row, annotations, cause)
     kind = table.added if operator == "+" else table.deleted
@@ -283,13 +281,6 @@ def untell(agent: Circumstance, term: Term) -> bool:
     if removed is not None:
         external_change(agent, "-", symbol, removed, annotations)
     return removed is not None
-
-
-def disbelieve(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> None:
-    """Take these annotations off a belief in parts, if it is held; the event is external."""
-    removed = _remove_first(agent, symbol, row, annotations, bind=False)
-    if removed is not None:
-        external_change(agent, "-", symbol, removed, annotations)
 
 
 def external_change(

@@ -26,7 +26,7 @@ from jacaros.agents.mind.state.ports import Architecture, MindObserver
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail
-from jacaros.agents.terms.values import Functor, Term
+from jacaros.agents.terms.values import Term
 from jacaros.runtime.trace import Cause
 
 # The port of a mind to what chooses: which message, event, plan and intention goes first.
@@ -156,13 +156,6 @@ class StepObserver(Protocol):
         """Hear of a belief change or signal for which *agent* has no plan, so that it need not become an event."""
 
 
-class BeliefObserver(Protocol):
-    """What derives beliefs from others."""
-
-    def heard(self, operator: str, symbol: Functor, row: tuple[Term, ...], cause: Cause | None) -> None:
-        """Hear of a belief that was added (``+``) or deleted (``-``), or of a signal."""
-
-
 class HeldEvent(NamedTuple):
     """The event before which an agent is held.
 
@@ -184,15 +177,13 @@ class Observers:
         lost: called with the description of each lost goal (first line, further lines, place), or None.
         step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.sel_ev.observe_steps`.
         mind: observes plans, beliefs and messages, or None; see `jacaros.agents.mind.rules.meta_events.observe_mind`.
-        derived: derives beliefs from others, or None; see `jacaros.agents.mind.rules.deriving`.
-        hear_beliefs: whether one of the last three is set.
+        hear_beliefs: whether one of the last two is set.
     """
 
     goal: Callable[[str, Goal, int, int, str], None] | None = None
     lost: Callable[[str, Sequence[str], Span | None], None] | None = None
     step: StepObserver | None = None
     mind: MindObserver | None = None
-    derived: BeliefObserver | None = None
     hear_beliefs: bool = False
 
 
@@ -324,7 +315,7 @@ class Circumstance(_Rules):
     def look_at_observers(self) -> None:
         """Note whether anything observes beliefs."""
         each = self.observers
-        each.hear_beliefs = not (each.mind is None and each.step is None and each.derived is None)
+        each.hear_beliefs = each.mind is not None or each.step is not None
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Warn of an operand that is not a number."""
