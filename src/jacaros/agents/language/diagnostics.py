@@ -12,7 +12,7 @@ robot.asl:1:3: error: unclosed `(` [unclosed-bracket]
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 from typing import Literal as OneOf
 
 from jacaros.errors import JacarosError
@@ -31,6 +31,9 @@ class SourceFile:
 
     name: str
     text: str = field(repr=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return SourceFile, (self.name, self.text)
 
     @cached_property
     def lines(self) -> tuple[str, ...]:

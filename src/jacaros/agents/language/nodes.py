@@ -68,12 +68,20 @@ class Node(metaclass=_NodeType):
     def __hash__(self) -> int:
         return hash((self.__class__, self.parts()))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return remade, (self.__class__, self.parts(), self.span)
+
     def __repr__(self) -> str:
         shown = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.__match_args__)
         return f"{type(self).__name__}({shown})"
 
 
 Some = TypeVar("Some", bound=Node)
+
+
+def remade(kind: type[Some], parts: tuple[Any, ...], span: Span | None) -> Some:
+    """Return a node of these parts."""
+    return kind(*parts, span=span)
 
 
 def replace(node: Some, **parts: Any) -> Some:

@@ -1,23 +1,30 @@
-"""A mind as data: its objects by kind, shared ones once, and how each is restored.
+"""A mind as a value: written as a pickle that makes only what a mind holds, and read back.
 
-Plans, rules and beliefs of the program are stored as their places in it, with a digest of their text; those added at run
-time as their syntax. A step is stored as the plan and its position in it.
+A pickle can call any function of Python. Here it can name a few makers of immutable values (`_MAKERS`) and nothing else.
+Everything with a state of its own is made empty by `Reader` and filled afterwards, so nothing is nested deeply. Plans,
+rules and beliefs of the program are written as their places in it, with a digest of their text; a step as its plan and its
+position there; plans added at run time as their syntax.
 """
 
-import sys
+import pickle
+from base64 import b64decode, b64encode
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from importlib import import_module
-from types import FunctionType
-from typing import Any, NamedTuple
+from io import BytesIO
+from pickletools import genops
+from types import FunctionType, NoneType
+from typing import Any
 from zlib import crc32
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.language.diagnostics import SourceFile, Span
 from jacaros.agents.mind.explaining.failure_reason import FailureReason
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import goals, urgency
 from jacaros.agents.mind.rules.body_steps import interpreted
+from jacaros.agents.mind.rules.functions import RegisteredFunction
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
 from jacaros.agents.mind.rules.pending import look_again, now, start_alarm
 from jacaros.agents.mind.rules.plan_changes import look_at_plans
@@ -38,10 +45,10 @@ from jacaros.agents.mind.state.plan import (
     with_subplans,
 )
 from jacaros.agents.mind.state.triggers import Trigger, trigger
-from jacaros.agents.terms.collections import QueueValue
+from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.agents.terms.order import number_of
-from jacaros.agents.terms.substitution import ATOMIC
 from jacaros.agents.terms.values import (
+    CONS,
     SOURCE_PERCEPT,
     Annotated,
     Functor,
@@ -51,7 +58,7 @@ from jacaros.agents.terms.values import (
     Var,
     atom,
     functor,
-    list_items,
+    listed,
     make_list,
 )
 from jacaros.errors import JacarosError
@@ -59,9 +66,36 @@ from jacaros.runtime.trace import Cause
 
 Value = Any
 """Any object in a mind."""
-Data = list[Any]
-_PACKAGES = ("jacaros.agents.language.", "jacaros.agents.mind.", "jacaros.agents.terms.")
-"""Packages of the classes and functions of a mind."""
+Form = tuple[Any, ...]
+"""How `Reader` makes an object: the name of one of its functions, and the arguments."""
+_WHOLE = (
+    Annotated,
+    MapValue,
+    OpenFact,
+    QueueValue,
+    RegisteredFunction,
+    Remaining,
+    SetValue,
+    SourceFile,
+    Span,
+    String,
+)
+"""Classes of values that are made of their parts, whatever mind they are in."""
+_NODES = tuple(
+    each for each in vars(nodes).values() if isinstance(each, type) and issubclass(each, nodes.Node)
+)
+_CALLED = frozenset({functor, listed, nodes.remade, trigger})
+_MADE_BY: tuple[Any, ...] = (*_WHOLE, *_NODES, *_CALLED, Rule, deque)
+_MAKERS = {(each.__module__, each.__qualname__): each for each in _MADE_BY}
+"""What a pickle may call: nothing of it has another effect than its result."""
+_IN_PLACE = frozenset(
+    {*_WHOLE, Functor, List, NoneType, Trigger, bool, deque, dict, float, int, list, set, str, tuple, type}
+)
+"""Classes whose objects are written where they occur."""
+_PACKAGES = tuple(
+    f"jacaros.agents.{each}." for each in ("mind.explaining", "mind.rules", "mind.state", "terms")
+)
+"""Packages of the classes that have a state, and of the functions that are called later."""
 _LIVE = {
     CoroutineWait: "it waits for a coroutine",
     WatchedCondition: "Python code awaits a condition",
@@ -73,137 +107,134 @@ _LIVE = {
 class NotStorable(JacarosError):
     """Raised when a mind holds a live Python object."""
 
+    def __init__(self, why: str) -> None:
+        super().__init__(f"the mind cannot be stored: {why}")
 
-class Kind(NamedTuple):
-    """How objects of one kind are written and restored.
+
+class Writer(pickle.Pickler):
+    """Writes objects of a mind.
+
+    Args:
+        shared: for another mind of the same program in this process. Plans, rules, syntax and live
+            objects are not copied.
 
     Attributes:
-        write: returns plain data, and the parts.
-        make: makes an object of both; a mutable one, of the data alone.
-        fill: adds its parts to a mutable object; None for immutable ones.
+        objects: those that are written as numbers, by these.
     """
 
-    write: Callable[["ProgramParts", Value], tuple[Data, Iterable[Value]]]
-    make: Callable[["ProgramParts", Data, Data], Value]
-    fill: Callable[[Value, Data], None] | None = None
+    def __init__(self, mind: Mind, shared: bool = False) -> None:
+        self._stream = BytesIO()
+        super().__init__(self._stream, protocol=pickle.HIGHEST_PROTOCOL)
+        self.objects: list[Value] = []
+        self._shared = shared
+        self._numbers: dict[int, int] = {}
+        self._filled_later: list[Value] = []
+        self._places = {id(part): place for place, part in enumerate(parts_of_program(mind))}
+
+    def write(self, value: Value) -> bytes:
+        """Return the bytes of a value with everything it refers to.
+
+        Raises:
+            NotStorable: it holds a live object, or a term that is nested too deeply.
+        """
+        try:
+            self.dump(value)
+            for each in self._filled_later:  # becomes longer meanwhile
+                self.dump(dict(_attributes(each)))
+        except RecursionError:
+            raise NotStorable("a term is nested too deeply") from None
+        return self._stream.getvalue()
+
+    def persistent_id(self, value: Value) -> int | Form | None:
+        """Return the number of an object, with its form at its first occurrence; None for one that is written in place."""
+        if value.__class__ in _IN_PLACE and not _is_open_list(value):
+            return None
+        number = self._numbers.get(id(value))
+        if number is not None:
+            return number
+        shared = self._shared and _is_shared(value)
+        form = () if shared else self._form(value)
+        if form is None:
+            return None
+        number = self._numbers[id(value)] = len(self.objects)
+        self.objects.append(value)
+        return number if shared else (number, *form)
+
+    def _form(self, value: Value) -> Form | None:
+        if isinstance(value, Plan | nodes.Node) and id(value) in self._places:
+            return "part", self._places[id(value)], _digest(value)
+        if isinstance(value, Plan):
+            return _form_of_plan(value)
+        if isinstance(value, nodes.Node | Rule | type):
+            return None
+        if _is_open_list(value):
+            return "open_list", *_items_and_tail(value)
+        if isinstance(value, Cause):
+            return ("nothing",)  # of the run that has made it
+        if callable(value) and hasattr(value, "plan"):
+            return "step", value.plan, position_of(value)
+        _refuse_live(value)
+        if isinstance(value, FunctionType):
+            return None if value in _CALLED else ("function", *_name_of(value))
+        self._filled_later.append(value)
+        return "empty", *_name_of(value.__class__)
 
 
-class ProgramParts:
-    """The plans and beliefs of a mind's program, found by their places."""
-
-    def __init__(self, mind: Mind) -> None:
-        self.mind = mind
-        self._plans = list(every_plan(mind.library.program.plans))
-        self._beliefs = mind.program.beliefs
-        self._places = {id(part): place for place, part in enumerate(self._plans)}
-        self._places |= {id(node): place for place, node in enumerate(self._beliefs)}
-
-    def __contains__(self, part: Plan | nodes.Node) -> bool:
-        return id(part) in self._places
-
-    def written(self, part: Value) -> tuple[Data, tuple[()]]:
-        """Return the place of a plan or belief, and a digest of it, as the program may have changed when it is restored."""
-        return [self._places[id(part)], _digest(part)], ()
-
-    def plan(self, data: Data, _: Data) -> Plan:
-        """Restore a plan of the program."""
-        plan: Plan = _same_as(data, self._plans)
-        if plan.node.goal_condition is not None and plan.goal_condition is None:
-            interpreted(plan)  # a frame whose body has ended needs the condition, but no step
-        return plan
-
-    def belief(self, data: Data, _: Data) -> nodes.Node:
-        """Restore a belief or rule of the program."""
-        node: nodes.Node = _same_as(data, self._beliefs)
-        return node
-
-    def own_plan(self, _: Data, parts: Data) -> Plan:
-        """Restore a plan that was added at run time."""
-        node, *labels = parts
-        plan = with_subplans(Plan(node, label_of(node, 0), self.mind.library.by_name), 0)
-        for inner, label in zip(every_plan([plan]), labels, strict=True):
-            inner.label = label
-        return plan
+def _form_of_plan(plan: Plan) -> Form:
+    """Return the form of a plan that is not of the program."""
+    if plan.body_term is not None:
+        return "body", plan.body_term
+    if plan.scope is not None:
+        return "subplan", plan.scope, plan.scope.subplans.index(plan)
+    return "own_plan", plan.node, [each.label for each in every_plan([plan])]
 
 
-def _digest(part: Plan | nodes.Node) -> int:
-    node = part.node if isinstance(part, Plan) else part
-    return crc32(repr(node).encode())
+def _is_open_list(value: Value) -> bool:
+    """Return whether a value is a list term whose end is not known yet: its pairs may be nested deeply."""
+    return value.__class__ is tuple and value[:1] == (CONS,)
 
 
-def _same_as(data: Data, held: Iterable[Value]) -> Value:
-    """Return the stored plan or belief of a program; at another place, if the program has changed.
-
-    Raises:
-        ValueError: the program lacks it.
-    """
-    place, digest = data
-    at_place = list(held)[place : place + 1]
-    for part in (*at_place, *held):
-        if _digest(part) == digest:
-            return part
-    raise ValueError("the program has changed: it lacks a plan or belief that the stored mind uses")
+def _items_and_tail(term: Value) -> tuple[list[Value], Value]:
+    items = []
+    while _is_open_list(term):
+        _, item, term = term
+        items.append(item)
+    return items, term
 
 
-def _name_of(value: Value) -> Data:
+def _is_shared(value: Value) -> bool:
+    """Return whether two minds of a program may share this object."""
+    return isinstance(value, Cause | Plan | Reference | Rule | nodes.Node) or callable(value)
+
+
+def _name_of(value: Value) -> tuple[str, str]:
     """Return the module and the name of a function or class of the mind.
 
     Raises:
         NotStorable: it cannot be found by name.
     """
-    _refuse_live(value)
-    module, name = getattr(value, "__module__", None) or "", getattr(value, "__qualname__", "")
-    if module.startswith(_PACKAGES) and getattr(sys.modules.get(module), name, None) is value:
-        return [module, name]
-    raise NotStorable(f"the mind cannot be stored: it holds {value!r}")
+    name = value.__module__, value.__qualname__
+    if _found(*name) is not value:
+        raise NotStorable(f"it holds {value!r}")
+    return name
+
+
+def _found(module: str, name: str) -> Value:
+    """Return a function or class of the mind; None for another name."""
+    found = getattr(import_module(module), name, None) if module.startswith(_PACKAGES) else None
+    return found if getattr(found, "__module__", "") == module else None
 
 
 def _refuse_live(value: Value) -> None:
     """Refuse a live object, or a method of one."""
     for live, why in _LIVE.items():
         if isinstance(getattr(value, "__self__", value), live):
-            raise NotStorable(f"the mind cannot be stored: {why}")
-
-
-def _named(data: Data, wanted: type) -> Value:
-    """Return the function of that name, or the subclass of *wanted*.
-
-    Raises:
-        ValueError: it is not part of a mind.
-    """
-    module, name = data
-    found = getattr(import_module(module), name, None) if module.startswith(_PACKAGES) else None
-    if found.__class__ is wanted or (isinstance(found, type) and issubclass(found, wanted)):
-        return found
-    raise ValueError(f"{module}.{name} is not part of a mind")
-
-
-def fill_dict(made: dict[Value, Value], parts: Data) -> None:
-    """Put keys and values in turn into a dictionary."""
-    made.update(zip(parts[::2], parts[1::2], strict=True))
-
-
-def _fill_variable(made: Var, parts: Data) -> None:
-    made.ref, at, number = parts
-    if at is not None:
-        made.at = at
-    if number is not None:
-        made.number = number
-
-
-def _fill_queue(made: QueueValue, parts: Data) -> None:
-    for item in parts:
-        made.add(item)
-
-
-def _written_object(_: ProgramParts, value: Value) -> tuple[Data, Data]:
-    _refuse_live(value)
-    if isinstance(value, FailureReason):
-        value.terms  # noqa: B018 - puts them together
-    return _name_of(value.__class__), [part for item in _attributes(value) for part in item]
+            raise NotStorable(why)
 
 
 def _attributes(value: Value) -> Iterator[tuple[str, Value]]:
+    if isinstance(value, FailureReason):
+        value.terms  # noqa: B018 - puts them together
     for kind in value.__class__.__mro__:
         for name in kind.__dict__.get("__slots__", ()):
             if name != "timer" and hasattr(value, name):
@@ -211,290 +242,128 @@ def _attributes(value: Value) -> Iterator[tuple[str, Value]]:
     yield from getattr(value, "__dict__", {}).items()
 
 
-def _empty_object(_: ProgramParts, data: Data, __: Data) -> Value:
-    kind = _named(data, object)
-    return kind.__new__(kind)
-
-
-def _fill_object(made: Value, parts: Data) -> None:
-    for name, value in zip(parts[::2], parts[1::2], strict=True):
-        setattr(made, name, value)
-
-
-def kind_of(program: ProgramParts, value: Value) -> str:
-    """Return the kind of an object, usually by its class."""
-    known = _KIND_OF.get(value.__class__)
-    if known is not None:
-        return known
-    if isinstance(value, Plan):
-        return _kind_of_plan(program, value)
-    if isinstance(value, nodes.Node):
-        return "belief" if value in program else "node"
-    if callable(value):
-        return "step" if hasattr(value, "plan") else "function"
-    return "named" if isinstance(value, tuple) else "object"
-
-
-def _kind_of_plan(program: ProgramParts, plan: Plan) -> str:
-    if plan in program:
-        return "plan"
-    if plan.body_term is not None:
-        return "body"
-    return "own_plan" if plan.scope is None else "subplan"
-
-
-def _of_parts(make: Callable[..., Value], *names: str) -> Kind:
-    """Return a kind of immutable objects that are made of the values of their attributes."""
-    return Kind(
-        lambda _, value: ([], [getattr(value, name) for name in names]), lambda _, __, parts: make(*parts)
-    )
-
-
-def _filled(make: Callable[[], Value], fill: Callable[[Value, Data], None]) -> Kind:
-    """Return a kind of mutable collections."""
-    return Kind(lambda _, value: ([], value), lambda _, __, ___: make(), fill)
-
-
-_CLASSES: dict[type, Kind] = {
-    # immutable
-    tuple: Kind(lambda _, value: ([], value), lambda _, __, parts: tuple(parts)),
-    List: Kind(lambda _, value: ([], list_items(value)), lambda _, __, parts: make_list(parts)),
-    Functor: _of_parts(functor, "name", "arity", "negated", "namespace", "kind"),
-    Trigger: _of_parts(trigger, "operator", "kind", "functor"),
-    Annotated: _of_parts(Annotated, "term", "annotations", "tail"),
-    SourceFile: _of_parts(SourceFile, "name", "text"),
-    Rule: _of_parts(Rule, "written", "of_program"),
-    OpenFact: _of_parts(OpenFact, "literal", "annotations", "written"),
-    # mutable
-    list: _filled(list, list.extend),
-    deque: _filled(deque, deque.extend),
-    set: _filled(set, set.update),
-    dict: Kind(
-        lambda _, value: ([], [part for item in value.items() for part in item]),
-        lambda _, __, ___: {},
-        fill_dict,
-    ),
-    Var: Kind(
-        lambda _, var: ([var.name], (var.ref, getattr(var, "at", None), getattr(var, "number", None))),
-        lambda _, data, __: Var(*data),
-        _fill_variable,
-    ),
-    QueueValue: Kind(
-        lambda _, queue: ([queue.priority], queue), lambda _, data, __: QueueValue(*data), _fill_queue
-    ),
-    Remaining: Kind(
-        lambda _, value: ([], value.copy()),
-        lambda _, __, ___: Remaining(iter(())),
-        lambda made, parts: Remaining.__init__(made, iter(parts), parts),
-    ),
-}
-_KIND_OF = {each: each.__name__ for each in _CLASSES}
-KINDS: dict[str, Kind] = {_KIND_OF[each]: kind for each, kind in _CLASSES.items()} | {
-    "function": Kind(lambda _, value: (_name_of(value), ()), lambda _, data, __: _named(data, FunctionType)),
-    "named": Kind(
-        lambda _, value: (_name_of(value.__class__), value),
-        lambda _, data, parts: _named(data, tuple)(*parts),
-    ),
-    "plan": Kind(ProgramParts.written, ProgramParts.plan),
-    "own_plan": Kind(
-        lambda _, plan: ([], (plan.node, *(each.label for each in every_plan([plan])))),
-        ProgramParts.own_plan,
-    ),
-    "subplan": Kind(
-        lambda _, plan: ([plan.scope.subplans.index(plan)], (plan.scope,)),
-        lambda _, data, parts: parts[0].subplans[data[0]],
-    ),
-    "body": Kind(
-        lambda _, plan: ([], (plan.body_term,)), lambda program, _, parts: plan_of_body(program.mind, *parts)
-    ),
-    "step": Kind(
-        lambda _, step: ([position_of(step)], (step.plan,)),
-        lambda program, data, parts: program.mind.engine.step_at(*parts, *data),
-    ),
-    "belief": Kind(ProgramParts.written, ProgramParts.belief),
-    "node": Kind(
-        lambda _, node: (_name_of(node.__class__), (*node.parts(), node.span)),
-        lambda _, data, parts: _named(data, nodes.Node)(*parts[:-1], span=parts[-1]),
-    ),
-    "object": Kind(_written_object, _empty_object, _fill_object),
-}
-
-
-# Convert the objects of a mind to a flat table of data for JSON, and back.
-#
-# An entry is a kind of object (`jacaros.agents.mind.storage`), plain data, and the parts: values, or the numbers of other
-# entries. So shared objects are shared again, and nothing is nested too deeply. An immutable object comes after its parts;
-# a mutable one is made empty, and filled when all others exist.
-
-
-Entry = tuple[str, Data, Data]
-"""Kind, plain data, and parts; a list when it comes from JSON."""
-_INLINE = frozenset({bool, float, int, str, String})
-_SHARED = ATOMIC | {Cause, Plan, Reference, Rule, Trigger}
-_INFINITY = float("inf")
-
-
-class Writer:
-    """Write objects into a table.
+class Reader(pickle.Unpickler):
+    """Reads what a `Writer` has written for a mind.
 
     Args:
-        shared: the table is for another mind of the same program in this process. Plans, rules, Python objects in terms,
-            and beliefs without variables and collections are not copied.
-
-    Attributes:
-        table: the entries.
+        shared: the objects by number that the writer has not copied.
     """
 
-    def __init__(self, mind: Mind, shared: bool = False) -> None:
-        self.table: list[Entry] = []
-        self._program = ProgramParts(mind)
-        self._shared = shared
-        self._numbers: dict[int, int] = {}
-        self._written: list[Value] = []  # keeps the objects alive, so that no other object gets the same id
-        self._open: list[tuple[int, Data]] = []
+    def __init__(self, mind: Mind, data: bytes, shared: Iterable[Value] = ()) -> None:
+        super().__init__(BytesIO(data))
+        self._mind = mind
+        self._parts = parts_of_program(mind)
+        self._made = dict(enumerate(shared))
+        self._filled_later: list[Value] = []
+        self._forms: Mapping[str, Callable[..., Value]] = {
+            "part": self._part,
+            "own_plan": self._own_plan,
+            "subplan": lambda plan, index: plan.subplans[index],
+            "body": partial(plan_of_body, mind),
+            "step": mind.engine.step_at,
+            "open_list": make_list,
+            "function": partial(_named, FunctionType),
+            "empty": self._empty,
+            "nothing": lambda: None,
+        }
 
-    def write(self, value: Value) -> Value:
-        """Write a value with everything it refers to; return its reference in the table."""
-        self._enter(value)
-        while self._open:
-            number, parts = self._open.pop()
-            for part in parts:
-                self._enter(part)
-            self.table[number][2].extend(map(self._inline, parts))
-        return self._inline(value)
+    def read(self) -> Value:
+        """Return the value.
 
-    def _enter(self, value: Value) -> None:
-        """Number a value, after the values that it cannot be made without."""
-        todo = [value]
-        forms: dict[int, Entry] = {}
-        while todo:
-            each = todo[-1]
-            if self._is_known(each):
-                todo.pop()
-                continue
-            form = forms.get(id(each)) or forms.setdefault(id(each), self._form(each))
-            missing = [] if KINDS[form[0]].fill else [part for part in form[2] if not self._is_known(part)]
-            if missing:
-                todo += missing
-            else:
-                todo.pop()
-                self._put(each, form)
+        Raises:
+            ValueError: the program of the mind lacks a plan or belief that is used, or the data contains something that is
+                not part of a mind.
+        """
+        value = self.load()
+        for each in self._filled_later:  # becomes longer meanwhile
+            for name, part in self.load().items():
+                setattr(each, name, part)
+        compared = [each for each in self._filled_later if isinstance(each, Var) and hasattr(each, "number")]
+        for variable in sorted(compared, key=lambda each: each.number):
+            del variable.number  # the order is kept; the number was of another process
+            number_of(variable)
+        return value
 
-    def _form(self, value: Value) -> Entry:
-        kind = kind_of(self._program, value)
-        data, parts = KINDS[kind].write(self._program, value)
-        return kind, data, list(parts)
+    def find_class(self, module: str, name: str) -> Value:
+        """Return what makes an immutable value."""
+        if (module, name) not in _MAKERS:
+            raise ValueError(f"{module}.{name} is not part of a mind")
+        return _MAKERS[module, name]
 
-    def _put(self, value: Value, form: Entry) -> None:
-        kind, data, parts = form
-        number = self._numbers[id(value)] = len(self.table)
-        self._written.append((value, parts))
-        if KINDS[kind].fill:
-            self._open.append((number, parts))
-            parts = []
-        self.table.append((kind, data, [*map(self._inline, parts)]))
+    def persistent_load(self, form: int | Form) -> Value:
+        """Return the object of a number, which is made at its first occurrence."""
+        if not isinstance(form, tuple):
+            return self._made[form]
+        number, kind, *arguments = form
+        made = self._made[number] = self._forms[kind](*arguments)
+        return made
 
-    def _is_known(self, value: Value) -> bool:
-        return self._is_inline(value) or id(value) in self._numbers
+    def _part(self, place: int, digest: int) -> Plan | nodes.Node:
+        """Return a plan or belief of the program; from another place, if the program has changed."""
+        for part in (*self._parts[place : place + 1], *self._parts):
+            if _digest(part) == digest:
+                if (
+                    isinstance(part, Plan)
+                    and part.node.goal_condition is not None
+                    and part.goal_condition is None
+                ):
+                    interpreted(part)  # a frame whose body has ended needs the condition, but no step
+                return part
+        raise ValueError("the program has changed: it lacks a plan or belief that the stored mind uses")
 
-    def _is_inline(self, value: Value) -> bool:
-        if value is None or value.__class__ in _INLINE or value.__class__ is Cause:
-            return True
-        return self._shared and (
-            _is_shared(value) or (value.__class__ is tuple and all(map(_is_shared, value)))
-        )
+    def _own_plan(self, node: nodes.Plan, labels: list[Value]) -> Plan:
+        """Make a plan that was added at run time."""
+        plan = with_subplans(Plan(node, label_of(node, 0), self._mind.library.by_name), 0)
+        for inner, label in zip(every_plan([plan]), labels, strict=True):
+            inner.label = label
+        return plan
 
-    def _inline(self, value: Value) -> Value:
-        kind = value.__class__
-        if kind is int:
-            return {"i": value}
-        if kind is str:
-            return {"s": value}
-        if kind is float and not abs(value) < _INFINITY:
-            return {"f": repr(value)}
-        if self._is_inline(value):
-            return None if kind is Cause and not self._shared else value
-        return {"r": self._numbers[id(value)]}
-
-
-def _is_shared(value: Value, depth: int = 4) -> bool:
-    """Return whether two minds may share this object; rows with annotations are at most as deep as
-    *depth*.
-    """
-    if value.__class__ is tuple:
-        return depth > 0 and all(each.__class__ in ATOMIC or _is_shared(each, depth - 1) for each in value)
-    return value.__class__ in _SHARED or callable(value)
+    def _empty(self, module: str, name: str) -> Value:
+        kind = _named(type, module, name)
+        made = Var() if kind is Var else kind.__new__(kind)
+        self._filled_later.append(made)
+        return made
 
 
-class Reader:
-    """Make the objects of a table for a mind.
+def _named(wanted: type, module: str, name: str) -> Value:
+    """Return the function or class of that name.
 
     Raises:
-        ValueError: the program of the mind lacks a plan or belief that is used, or the table contains something that is
-            not part of a mind.
+        ValueError: it is not part of a mind.
     """
-
-    def __init__(self, mind: Mind, table: Iterable[Entry]) -> None:
-        program = ProgramParts(mind)
-        self._made: list[Value] = []
-        open_ones: list[tuple[str, Value, Data]] = []
-        for kind, data, parts in table:
-            fixed = KINDS[kind].fill is None
-            made = KINDS[kind].make(program, data, self._all(parts) if fixed else [])
-            self._made.append(made)
-            if not fixed:
-                open_ones.append((kind, made, parts))
-        open_ones.sort(
-            key=lambda each: each[0] == "dict"
-        )  # sets that are keys must be filled before their dictionaries
-        for kind, made, parts in open_ones:
-            fill = KINDS[kind].fill
-            assert fill is not None
-            fill(made, self._all(parts))
-        self._fill_nested_sets([(made, parts) for kind, made, parts in open_ones if kind == "dict"])
-        self._number_variables([made for kind, made, _ in open_ones if kind == "Var"])
-
-    def _fill_nested_sets(self, filled: list[tuple[Value, Data]]) -> None:
-        """Fill dictionaries again in which two keys were equal because the sets in them were still empty."""
-        short = [(made, parts) for made, parts in filled if 2 * len(made) < len(parts)]
-        for made, parts in short:
-            made.clear()
-            fill_dict(made, self._all(parts))
-        if short:
-            self._fill_nested_sets(short)
-
-    @staticmethod
-    def _number_variables(variables: list[Var]) -> None:
-        """Keep the order of variables that have been compared; their numbers come from another process."""
-        compared = [variable for variable in variables if hasattr(variable, "number")]
-        for variable in sorted(compared, key=lambda each: each.number):
-            del variable.number
-            number_of(variable)
-
-    def read(self, value: Value) -> Value:
-        """Return the value that an entry represents."""
-        if value.__class__ is not dict:
-            return String(value) if value.__class__ is str else value
-        ((how, inner),) = value.items()
-        if how == "r":
-            return self._made[inner]
-        return float(inner) if how == "f" else inner
-
-    def _all(self, parts: Data) -> Data:
-        return [self.read(part) for part in parts]
+    found = _found(module, name)
+    if found.__class__ is not wanted:
+        raise ValueError(f"{module}.{name} is not part of a mind")
+    return found
 
 
-# A mind as a value: convert its state to data for JSON, and back.
+def parts_of_program(mind: Mind) -> list[Plan | nodes.Node]:
+    """Return the plans and beliefs of a mind's program, in a fixed order."""
+    return [*every_plan(mind.library.program.plans), *mind.program.beliefs]
+
+
+def _digest(part: Plan | nodes.Node) -> int:
+    return crc32(repr(part.node if isinstance(part, Plan) else part).encode())
+
+
+def _refuse_changes(data: bytes) -> None:
+    """Refuse a pickle that sets attributes of what it has made; it could be a class, or shared by all minds."""
+    stream = BytesIO(data)
+    while stream.tell() < len(data):
+        if any(code.name == "BUILD" for code, _, _ in genops(stream)):
+            raise ValueError("the data is not that of a stored mind")
+
+
+# The state of a mind as data for JSON, and back.
 #
 # `knowledge` is what an agent believes and its plans. ``.save_agent`` writes it as a program, ``.clone`` gives it to
-# another agent together with events and intentions (`copy_mind`), and `stored` adds everything else. All of them use the
-# one walk over the state, `jacaros.agents.mind.storage`.
+# another agent together with events and intentions (`copy_mind`), and `stored` adds everything else.
 #
 # Live Python objects cannot be stored (`NotStorable`): coroutines of the project that an intention waits for, goals and
 # conditions that Python code awaits, and opaque objects in terms.
 
 
-FORMAT = 6
+FORMAT = 7
 """Version of the format."""
 
 _FIELDS = (
@@ -529,15 +398,8 @@ def stored(mind: Mind) -> dict[str, Any]:
     held |= {name: list(getattr(mind, name)) for name in _QUEUES}
     held["refused"] = {name: (each.refusals, each.losses) for name, each in mind.budgets.items()}
     held["serial"] = mind.trail.serial
-    writer = Writer(mind)
-    version, state, gauss = mind.architecture.random.getstate()
-    return {
-        "format": FORMAT,
-        "agent": mind.name,
-        "held": writer.write(held),
-        "objects": writer.table,
-        "random": [version, list(state), gauss],
-    }
+    held["random"] = mind.architecture.random.getstate()
+    return {"format": FORMAT, "agent": mind.name, "mind": b64encode(Writer(mind).write(held)).decode()}
 
 
 def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> None:
@@ -562,7 +424,9 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
             f"the stored mind has format {data.get('format')!r}; this version reads format {FORMAT}"
         )
     mind.engine.begin(mind)
-    held = Reader(mind, data["objects"]).read(data["held"])
+    pickled = b64decode(data["mind"])
+    _refuse_changes(pickled)
+    held = Reader(mind, pickled).read()
     _learn(mind, held)
     arrived = mind.incoming.percepts
     for name in _FIELDS:
@@ -582,8 +446,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     for name, (refusals, losses) in held["refused"].items():
         mind.budgets[name].refusals, mind.budgets[name].losses = refusals, losses
     mind.trail.serial = held["serial"]
-    version, state, gauss = data["random"]
-    mind.architecture.random.setstate((version, tuple(state), gauss))
+    mind.architecture.random.setstate(held["random"])
     urgency.plans_changed(mind)
     if not same_host:
         _leave_host(mind)
@@ -653,8 +516,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     ]
     part["intentions"] = [each for each in original.intentions if _can_be_copied(original, each)]
     writer = Writer(original, shared=True)
-    entry = writer.write(part)
-    held = Reader(clone, writer.table).read(entry)
+    held = Reader(clone, writer.write(part), writer.objects).read()
     _learn(clone, held)
     clone.events.extend(held["events"])
     clone.intentions.extend(held["intentions"])

@@ -15,7 +15,7 @@ Another agent gets copies of its own (`detached`).
 import heapq
 import itertools
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from jacaros.agents.terms.order import SortKey, sorted_terms
@@ -47,6 +47,9 @@ class SetValue:
     def __hash__(self) -> int:
         return hash(SetValue)  # the elements change while the set is an argument of a belief
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return SetValue, (self.items,)
+
 
 class MapValue:
     """``{k->v}``: a value per key, read in the standard order of the keys."""
@@ -60,6 +63,9 @@ class MapValue:
         """Keys and values in turn as a list term."""
         return make_list([part for key in self for part in (key, self.items[key])])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return MapValue, (self.items,)
+
     def __iter__(self) -> Iterator[Term]:
         return iter(sorted_terms(self.items))
 
@@ -72,11 +78,16 @@ class QueueValue:
 
     __slots__ = ("_heap", "_items", "_numbers", "priority")
 
-    def __init__(self, priority: bool = False) -> None:
+    def __init__(self, priority: bool = False, items: Iterable[Term] = ()) -> None:
         self.priority = priority
         self._items: deque[Term] = deque()
         self._heap: list[tuple[Any, int, Term]] = []  # ordered by SortKey
         self._numbers = itertools.count()
+        for item in items:
+            self.add(item)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return QueueValue, (self.priority, list(self))
 
     def add(self, item: Term) -> None:
         """Add an element."""
@@ -104,10 +115,7 @@ class QueueValue:
 
     def copy(self) -> "QueueValue":
         """Return a new queue with the same elements."""
-        other = QueueValue(self.priority)
-        for item in self:
-            other.add(item)
-        return other
+        return QueueValue(self.priority, self)
 
     def as_list(self) -> Term:
         """Return the elements in order as a list term."""

@@ -218,6 +218,9 @@ class Annotated:
     def __hash__(self) -> int:
         return hash((self.term, self.annotations))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Annotated, (self.term, self.annotations, self.tail)
+
     def __repr__(self) -> str:
         return f"Annotated({self.term!r}, {self.annotations!r})"
 
@@ -378,7 +381,7 @@ class List:
         return self.hashed
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return make_list, (self.elements(),)
+        return listed, tuple(self.elements())
 
     def __repr__(self) -> str:
         return f"make_list({self.elements()!r})"
@@ -414,6 +417,11 @@ def make_list(items: Iterable[Term], tail: Term = NIL) -> Term:
     for item in stack:
         tail = (CONS, item, tail)
     return tail
+
+
+def listed(*items: Term) -> Term:
+    """The list term of *items*."""
+    return make_list(items)
 
 
 def deref(term: Term) -> Term:

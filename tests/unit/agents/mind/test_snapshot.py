@@ -1,6 +1,9 @@
 """A mind is a value: stored as JSON and restored at any cycle, it continues as if nothing had happened."""
 
+import base64
 import json
+import os
+import pickle
 import sys
 from pathlib import Path
 from random import Random
@@ -8,7 +11,8 @@ from random import Random
 import pytest
 from recording_host import RecordingHost, mind, plans_of
 
-from jacaros.agents.mind.mind import Mind
+from jacaros.agents.language import nodes
+from jacaros.agents.mind.mind import Mind, new_engine
 from jacaros.agents.mind.state.act import Completion
 from jacaros.agents.mind.storage import NotStorable, restore, stored
 from jacaros.agents.terms.values import Reference, atom, structure
@@ -141,3 +145,40 @@ def test_a_mind_that_holds_an_object_of_python_cannot_be_stored():
 def test_a_stored_mind_of_another_format_is_refused():
     with pytest.raises(ValueError, match="format 0"):
         restore(mind("!s. +!s.").agent, {"format": 0})
+
+
+def tampered(pickled: bytes) -> Mind:
+    host = mind("")
+    data = {"format": stored(host.agent)["format"], "mind": base64.b64encode(pickled).decode()}
+    restore(host.agent, data)
+    return host.agent
+
+
+@pytest.mark.parametrize("called", [os.system, eval, type(nodes.Node), new_engine], ids=repr)
+def test_data_that_calls_something_else_is_refused(called):
+    with pytest.raises(ValueError, match="is not part of a mind"):
+        tampered(pickle.dumps(called))
+
+
+class Changed:
+    def __reduce__(self) -> tuple[object, ...]:
+        return atom, ("true",), {"name": "false"}
+
+
+def test_data_that_changes_shared_values_is_refused():
+    with pytest.raises(ValueError, match="not that of a stored mind"):
+        tampered(pickle.dumps(Changed()))
+
+
+def test_a_deep_stack_and_a_long_open_list_are_stored():
+    host = mind("""
+        !deep. !open.
+        +!deep <- !count(10000, R); .print(R).
+        +!count(0, 0) <- .wait(1000). +!count(N, R) <- !count(N-1, Q); R = Q + 1.
+        +!open <- !build(2000, L, T); .copy_term(L, C); .wait(2000); T = []; C = [_|_]; .length(L, N); .print(N).
+        +!build(0, T, T). +!build(N, [N|L], T) <- !build(N-1, L, T).
+        """)
+    host.agent.run(100_000)
+    restored(host)
+    host.run()
+    assert (host.printed, host.logged) == (["10000", "2000"], [])

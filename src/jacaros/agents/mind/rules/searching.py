@@ -326,10 +326,12 @@ class Remaining:
 
     __slots__ = ("_answers", "_found")
 
-    def __init__(
-        self, answers: Iterator[tuple[Term, ...]], found: list[tuple[Term, ...]] | None = None
-    ) -> None:
-        self._answers, self._found = answers, found
+    def __init__(self, answers: Iterable[tuple[Term, ...]]) -> None:
+        self._answers = iter(answers)
+        self._found = answers if isinstance(answers, list) else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Remaining, (list(self.copy()),)
 
     def __iter__(self) -> Iterator[tuple[Term, ...]]:
         return self._answers
@@ -343,9 +345,9 @@ class Remaining:
         if found is None:
             found = self._found = [tuple(map(resolve, answer)) for answer in self._answers]
             self._answers = iter(found)
-        other = iter(found)
-        other.__setstate__(len(found) - length_hint(self._answers))  # type: ignore[attr-defined]
-        return Remaining(other, found)
+        other = Remaining(found)
+        other._answers.__setstate__(len(found) - length_hint(self._answers))  # type: ignore[attr-defined]
+        return other
 
 
 @dataclass(slots=True, eq=False)

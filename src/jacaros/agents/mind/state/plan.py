@@ -57,6 +57,9 @@ class Rule:
         self.of_program = of_program
         self.made: Any = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Rule, (self.written, self.of_program)
+
     def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """A generator of the answers, see `jacaros.agents.mind.rules.searching.run`."""
         budget = agent.beliefs.budget
@@ -110,6 +113,9 @@ class OpenFact:
         self.node = None
         if written is not None:
             self.node = nodes.Rule(nodes.replace(written, annotations=None), _ALWAYS, span=written.span)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return OpenFact, (self.literal, self.annotations, self.written)
 
     def search(self, agent: Any, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """One answer when the arguments unify with a copy."""

@@ -1,6 +1,6 @@
 """Event kinds: what a plan reacts to, as objects that goals and events carry."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from jacaros.agents.terms.operators import positive_form
 from jacaros.agents.terms.order import annotation_set
@@ -39,6 +39,9 @@ class Trigger:
         self.operator, self.kind, self.functor = operator, kind, functor
         self.failing = operator == "-" and kind != ""
         self.on_fail = trigger("-", kind, functor) if operator == "+" and kind else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return trigger, (self.operator, self.kind, self.functor)
 
     def __repr__(self) -> str:
         return f"{self.operator}{self.kind}{self.functor!r}"
