@@ -164,7 +164,7 @@ def delete(ctx: Context, what: Term, *arguments: Term) -> bool:
     ==================  =====================================================================
     number              the element or character at this position (from 0)
     two numbers A, B    ``.delete(A, B, C, R)``: positions A to B-1
-    string              from the text of *C*: every match of this regular expression (of Java)
+    string              from the text of *C*: every match of this regular expression
     any other term      from a list: every element that unifies with it; variables keep the values that
                         they get from the first one (``f(_)`` removes ``f(1)`` and then keeps ``f(3)``)
     ==================  =====================================================================

@@ -1,14 +1,7 @@
-r"""Internal actions on strings, and Java's regular expressions translated to Python's.
-
-The two languages of regular expressions agree on most of the syntax. Translated are named groups, quoting with
-``\Q…\E``, the classes ``\p{Alpha}`` and so on, ``\z`` and ``\Z``, and replacement texts with ``$1`` and
-``${name}``. The classes ``\d \w \s`` are ASCII, as in Java. Nested classes and ``&&`` are rejected.
-"""
+"""Internal actions on strings. Regular expressions are those of Python."""
 
 import re
-import warnings
 from collections.abc import Iterator
-from functools import lru_cache
 
 from jacaros.agents.mind.actions.internal_action import (
     ActionError,
@@ -22,24 +15,7 @@ from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import String, Term, Var, atom, make_list
 from jacaros.errors import JacarosError
 
-_CLASSES = {
-    "Lower": "a-z",
-    "Upper": "A-Z",
-    "Alpha": "a-zA-Z",
-    "Digit": "0-9",
-    "Alnum": "a-zA-Z0-9",
-    "Punct": r"!-/:-@\[-`{-~",
-    "Space": r"\s",
-    "Blank": r" \t",
-    "XDigit": "0-9a-fA-F",
-    "ASCII": r"\x00-\x7F",
-}
-_DIFFERENT = re.compile(
-    r"\\Q(?P<quoted>.*?)(?:\\E|$)|\\(?P<sign>[pP])\{(?P<class>\w+)\}|(?P<end>\\[zZ])|(?P<escape>\\.)"
-    r"|(?P<open>\[\^?\]?)|(?P<close>\])|(?P<group>\(\?<(?![=!]))",
-    re.DOTALL,
-)
-_REFERENCE = re.compile(r"\\(.)|\$\{(\w+)\}|\$(\d+)|(\$|\\$)", re.DOTALL)
+_GROUP = re.compile(r"\$(\d+)")
 
 
 @internal_action(".substring", arity=(2, 4), backtracks=True, pure=True)
@@ -92,12 +68,12 @@ def _cut(source: str, start: Term, end: Term) -> String:
 
 @internal_action(".replace", arity=4, pure=True)
 def replace(ctx: Context, source: Term, pattern: Term, by: Term, result: Term) -> bool:
-    """``.replace(S, Regex, By, R)``: *R* is *S* with every match of a regular expression (of Java) replaced.
+    """``.replace(S, Regex, By, R)``: *R* is *S* with every match of a regular expression replaced.
 
     *by* may refer to groups of the match (``$1``). An *S* that is not a string is converted to text.
 
     Raises:
-        ActionError: one of them is invalid, or not supported by `replace_all`.
+        ActionError: one of them is invalid.
     """
     expression = string(pattern, "the second argument of .replace")
     replacement = string(by, "the third argument of .replace")
@@ -146,100 +122,26 @@ def replace_all(source: str, pattern: str, by: str) -> str:
     """Return *source* with every match of *pattern* replaced.
 
     Raises:
-        ValueError: the pattern or replacement is invalid or not supported.
+        ValueError: the pattern or replacement is invalid.
     """
-    compiled = _compile(pattern)
-    return compiled.sub(lambda match: _expand(by, match), source)
+    compiled = _compiled(pattern)
+    try:
+        return compiled.sub(_GROUP.sub(r"\\g<\1>", by), source)
+    except (re.error, IndexError) as error:
+        raise ValueError(f"invalid replacement '{by}': {error}") from None
 
 
 def matches_whole(pattern: str, source: str) -> bool:
     """Return whether *pattern* matches all of *source*.
 
     Raises:
-        ValueError: the pattern is invalid or not supported.
+        ValueError: the pattern is invalid.
     """
-    return _compile(pattern).fullmatch(source) is not None
+    return _compiled(pattern).fullmatch(source) is not None
 
 
-@lru_cache(maxsize=64)
-def _compile(pattern: str) -> re.Pattern[str]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", FutureWarning)
-        try:
-            return re.compile(_translate(pattern), re.ASCII)
-        except (re.error, FutureWarning) as error:
-            raise ValueError(f"invalid regular expression '{pattern}': {error}") from None
-
-
-def _translate(pattern: str) -> str:
-    inside = False
-    result: list[str] = []
-    position = 0
-    for match in _DIFFERENT.finditer(pattern):
-        result.append(pattern[position : match.start()])
-        position = match.end()
-        kind = match.lastgroup
-        found = match.group()
-        if kind == "open":
-            if inside:
-                raise ValueError(f"nested classes in '{pattern}' are not supported")
-            inside = True
-            result.append(found)
-        elif kind == "close":
-            inside = False
-            result.append(found)
-        elif kind == "quoted":
-            result.append(re.escape(match["quoted"]))
-        elif kind == "class":
-            result.append(_posix_class(match["class"], match["sign"] == "P", inside, pattern))
-        elif kind == "end":
-            result.append(r"\Z" if found == r"\z" else r"(?=\n?\Z)")
-        else:
-            result.append("(?P<" if kind == "group" and not inside else found)
-    result.append(pattern[position:])
-    return "".join(result)
-
-
-def _posix_class(name: str, negated: bool, inside: bool, pattern: str) -> str:
-    characters = _CLASSES.get(name)
-    if characters is None or (negated and inside):
-        raise ValueError(f"class {name} in '{pattern}' is not supported")
-    return characters if inside else f"[{'^' if negated else ''}{characters}]"
-
-
-def _expand(replacement: str, match: re.Match[str]) -> str:
-    """Return the replacement for one match, with its group references filled in."""
-    result: list[str] = []
-    position = 0
-    for reference in _REFERENCE.finditer(replacement):
-        result.append(replacement[position : reference.start()])
-        position = reference.end()
-        escaped, name, digits, stray = reference.groups()
-        if stray is not None:
-            raise ValueError(f"unescaped {stray} in '{replacement}'")
-        if escaped is not None:
-            result.append(escaped)
-        elif name is not None:
-            result.append(_group(match, name, replacement))
-        else:
-            used = _known_group(digits, match)
-            result.append(_group(match, int(used), replacement) + digits[len(used) :])
-    result.append(replacement[position:])
-    return "".join(result)
-
-
-def _known_group(digits: str, match: re.Match[str]) -> str:
-    """Return as many of the digits as name a group, at least one."""
-    used = digits[0]
-    for digit in digits[1:]:
-        if int(used + digit) > match.re.groups:
-            break
-        used += digit
-    return used
-
-
-def _group(match: re.Match[str], which: int | str, replacement: str) -> str:
+def _compiled(pattern: str) -> re.Pattern[str]:
     try:
-        return match.group(which) or ""
-    except IndexError:
-        raise ValueError(f"unknown group {which} in '{replacement}'") from None
+        return re.compile(pattern, re.ASCII)
+    except re.error as error:
+        raise ValueError(f"invalid regular expression '{pattern}': {error}") from None
