@@ -1,6 +1,6 @@
 """Internal actions on beliefs, their namespaces, rules and conditions."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from jacaros.agents.language import nodes
@@ -11,7 +11,7 @@ from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.state.belief_base import Table, parts, without_sources
 from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import own_annotations
-from jacaros.agents.terms.order import annotation_set, compare, ordered_by_python
+from jacaros.agents.terms.order import SortKey, annotation_set, ordered_by_python
 from jacaros.agents.terms.plans import RULE
 from jacaros.agents.terms.substitution import rename, resolve
 from jacaros.agents.terms.text import text
@@ -152,7 +152,7 @@ def greatest(ctx: Context, *arguments: Term) -> bool:
 
     ``.max(T, F, X)``: *X* is the greatest instance of *T* among the answers of the formula *F*. Fails without answers.
     """
-    return _extreme(ctx, arguments, 1, ".max")
+    return _extreme(ctx, arguments, max, ".max")
 
 
 @internal_action(".min", arity=(2, 3), pure=True)
@@ -161,34 +161,24 @@ def least(ctx: Context, *arguments: Term) -> bool:
 
     ``.min(T, F, X)``: *X* is the smallest instance of *T* among the answers of the formula *F*. Fails without answers.
     """
-    return _extreme(ctx, arguments, -1, ".min")
+    return _extreme(ctx, arguments, min, ".min")
 
 
-def _extreme(ctx: Context, arguments: tuple[Term, ...], sign: int, name: str) -> bool:
-    """Find the greatest (*sign* 1) or smallest (*sign* -1) element; the first of equal ones counts."""
-    if len(arguments) == 3:
-        found = best(ctx, arguments[0], arguments[1], sign)
-        return found is not None and ctx.unify(arguments[2], found)
-    items = elements(arguments[0], f"the first argument of {name}")
+def _extreme(ctx: Context, arguments: tuple[Term, ...], pick: Callable[..., Term], name: str) -> bool:
+    """Find the greatest or smallest element; the first of equal ones counts."""
+    *first, target = arguments
+    items = (
+        _instances(ctx, *first) if len(first) == 2 else elements(first[0], f"the first argument of {name}")
+    )
     if not items:
         return False
-    if ordered_by_python(items):
-        return ctx.unify(arguments[1], max(items) if sign > 0 else min(items))
-    extreme = items[0]
-    for item in items[1:]:
-        if sign * compare(item, extreme) > 0:
-            extreme = item
-    return ctx.unify(arguments[1], extreme)
+    return ctx.unify(target, pick(items) if ordered_by_python(items) else pick(items, key=SortKey))
 
 
-def best(ctx: Context, template: Term, formula: Term, sign: int) -> Term | None:
-    """Return the greatest (sign 1) or smallest (sign -1) instance of a template; None without answers."""
-    found: Term | None = None
+def _instances(ctx: Context, template: Term, formula: Term) -> list[Term]:
+    """Return the instances of a template among the answers of a formula."""
     mark = len(ctx.trail)
-    for _ in ctx.answers(formula):
-        value = rename(resolve(template))
-        if found is None or sign * compare(value, found) > 0:
-            found = value
+    found = [rename(resolve(template)) for _ in ctx.answers(formula)]
     undo(ctx.trail, mark)
     return found
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any, cast
 
 from jacaros.agents.language import nodes
@@ -17,31 +18,14 @@ from jacaros.agents.mind.state.budget import SearchBudget, SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, Intention
 from jacaros.agents.mind.state.plan import Answers, Plan, Rule
-from jacaros.agents.mind.state.ports import Architecture
 from jacaros.agents.terms.arithmetic import RUNNING
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Functor, List, String, Term
 
-_SHORT, _KEPT = 200, 200
-"""Characters of a text whose syntax is kept, and how many of them are."""
+_KEPT = 200
+"""Texts of which the syntax is kept: agents read the same ones again and again."""
 _CONSTANTS = (nodes.Literal, nodes.Number, nodes.String, nodes.ListTerm)
-
-
-class Parsed:
-    """A text that was read; short ones are kept, for agents read the same ones again and again.
-
-    Attributes:
-        node: its syntax.
-        term: what it denotes, if it has neither variables nor anything to be evaluated; else None.
-    """
-
-    __slots__ = ("node", "term")
-
-    def __init__(self, node: nodes.Term) -> None:
-        self.node = node
-        constant = all(isinstance(part, _CONSTANTS) for part in walk(node))
-        self.term: Term = lower_value(node, Names().__getitem__) if constant else None
 
 
 class Context:
@@ -49,22 +33,17 @@ class Context:
 
     Attributes:
         agent: the agent, for actions about its beliefs, goals and plans.
+        architecture: its port to its host.
         trail: where bindings are noted.
-        parsed: texts that were read lately, by text and number of functions.
     """
 
-    __slots__ = ("agent", "parsed", "trail")
+    __slots__ = ("_parsed", "agent", "architecture", "trail")
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent: Any = agent
+        self.architecture = agent.architecture
         self.trail: Trail = agent.trail
-        self.parsed: dict[tuple[str, int], Parsed] = {}
-
-    @property
-    def architecture(self) -> Architecture:
-        """The agent's port to its host."""
-        architecture: Architecture = self.agent.architecture
-        return architecture
+        self._parsed = lru_cache(_KEPT)(self._parse)
 
     @property
     def intention(self) -> Intention | None:
@@ -103,16 +82,14 @@ class Context:
         Raises:
             AslError: the text is not a term.
         """
-        agent = self.agent
-        key = text, len(agent.functions.own)
-        known: Parsed | None = self.parsed.get(key)
-        if known is None:
-            known = Parsed(parse_term(text, functions=known_names(agent)))
-            if len(text) <= _SHORT:
-                if len(self.parsed) >= _KEPT:
-                    self.parsed.clear()
-                self.parsed[key] = known
-        return known.term if known.term is not None else lower_value(known.node, self._names().__getitem__)
+        node, term = self._parsed(text, len(self.agent.functions.own))
+        return lower_value(node, self._names().__getitem__) if term is None else term
+
+    def _parse(self, text: str, _functions: int) -> tuple[nodes.Term, Term]:
+        """Return the syntax of a text, and its term if it has neither variables nor anything to be evaluated."""
+        node = parse_term(text, functions=known_names(self.agent))
+        constant = all(isinstance(part, _CONSTANTS) for part in walk(node))
+        return node, lower_value(node) if constant else None
 
     def _names(self) -> Names:
         """The variables of the running plan by their names."""

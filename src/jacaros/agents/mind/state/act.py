@@ -80,6 +80,7 @@ class Percept:
 # Messages between agents.
 
 
+@dataclass(slots=True, eq=False)
 class SpeechAct:
     """A message between agents (KQML). Never changed once it has been sent.
 
@@ -88,36 +89,19 @@ class SpeechAct:
         sender: name of the sending agent, ``self`` in messages to oneself.
         receiver: name of the receiving agent.
         content: a term; a copy, so that agents share no variables.
+        _id: unique in the system; or the number of the message among those of its sender, from which `id` is made.
         in_reply_to: id of the question that this message answers, or None.
         flat: the content is known to be an atom, or a structure of atoms, numbers and strings: it need not be
             copied or searched; False if this has not been checked.
     """
 
-    __slots__ = ("_id", "content", "flat", "in_reply_to", "performative", "receiver", "sender")
-
-    def __init__(
-        self,
-        performative: str,
-        sender: str,
-        receiver: str,
-        content: Term,
-        id: str | int,
-        in_reply_to: str | None = None,
-        flat: bool = False,
-    ) -> None:
-        """Make a message.
-
-        Args:
-            id: unique in the system; or the number of the message among those of its sender, from which the id is made
-                on demand.
-        """
-        self.performative = performative
-        self.sender = sender
-        self.receiver = receiver
-        self.content = content
-        self._id = id
-        self.in_reply_to = in_reply_to
-        self.flat = flat
+    performative: str
+    sender: str
+    receiver: str
+    content: Term
+    _id: str | int
+    in_reply_to: str | None = None
+    flat: bool = False
 
     @property
     def id(self) -> str:
@@ -129,9 +113,6 @@ class SpeechAct:
     def with_content(self, content: Term) -> "SpeechAct":
         """Return the same message with another content."""
         return SpeechAct(self.performative, self.sender, self.receiver, content, self._id, self.in_reply_to)
-
-    def __repr__(self) -> str:
-        return f"SpeechAct({self.performative!r}, {self.sender!r}, {self.receiver!r}, {self.content!r}, {self.id!r})"
 
 
 def message_id(number: int, sender: str) -> str:
