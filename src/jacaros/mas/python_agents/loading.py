@@ -20,7 +20,6 @@ _OF_MINDS: Final = (
     "nrcbp",
     "rule_depth",
     "goal_depth",
-    "search_limit",
     "urgency",
     "tro",
 )

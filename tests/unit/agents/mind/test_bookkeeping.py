@@ -10,7 +10,6 @@ from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.rules.pending import asked_by, note_change
 from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.budget import SearchBudget, SearchLimit
 from jacaros.agents.terms.values import NIL, Term, functor
 
 
@@ -22,15 +21,6 @@ def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> N
 
 def term(source: str) -> Term:
     return lower_value(parse_term(source))
-
-
-def test_after_an_exceeded_budget_a_search_may_take_as_much_again() -> None:
-    budget = SearchBudget(3)
-    for _ in range(2):
-        for _ in range(3):
-            budget.spend()
-        with pytest.raises(SearchLimit, match="more than 3"):
-            budget.spend()
 
 
 # --- awaited conditions ------------------------------------------------------------------------------------

@@ -170,18 +170,10 @@ def test_many_answers_are_not_searched_to_the_end() -> None:
     assert found.endswith(" answers); not searched to the end")
 
 
-def test_a_search_limit_is_unchanged() -> None:
-    host = mind("p(1). p(2). low(X) :- p(X) & X > 5.\n+!go : low(X).\n!go.", options=_limited())
+def test_the_budget_of_a_question_ends_with_it() -> None:
+    host = mind("p(1). p(2). low(X) :- p(X) & X > 5.\n+!go : low(X).\n!go.")
     host.run()
-    budget = host.agent.beliefs.budget
-    assert budget is not None
-    assert budget.limit == 50
-
-
-def _limited() -> object:
-    from jacaros.agents.mind.state.budget import Options
-
-    return Options(search_limit=50)
+    assert host.agent.beliefs.budget is None
 
 
 def test_nothing_is_searched_for_handled_failures(monkeypatch: pytest.MonkeyPatch) -> None:

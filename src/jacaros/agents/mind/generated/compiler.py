@@ -13,7 +13,6 @@ from jacaros.agents.mind.generated.selection import given_positions
 from jacaros.agents.mind.generated.unit import Written, write_body, write_rule, write_search, write_select
 from jacaros.agents.mind.rules.add_im import Interpreter, Selection
 from jacaros.agents.mind.rules.searching import run, solve
-from jacaros.agents.mind.state.budget import SearchBudget
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP, Frame, NextStep
 from jacaros.agents.mind.state.plan import Answers, Every, Plan, Rule, Select
@@ -55,10 +54,6 @@ class Predicate(Protocol):
     @property
     def functor(self) -> Functor:
         """The name of the predicate."""
-
-    @property
-    def budget(self) -> SearchBudget | None:
-        """How much may be searched; None for any amount."""
 
     def around(self) -> tuple[list[Any], list[Any]] | None:
         """What answers before all facts, and what behind all facts; None when they are mixed."""
@@ -146,8 +141,7 @@ class Searches(dict[int, Search]):
             # What was written is held, so that nothing else can be at its place in memory.
             functions[key] = (search, [entry.written for entry in entries])
         found: Search = functions[key][0]
-        budget = self.predicate.budget
-        return found if budget is None else budget.counting(found)
+        return found
 
 
 # Many plans for one kind of event, each compiled separately.

@@ -27,11 +27,6 @@ from jacaros.errors import InternalError
 
 def run(agent: Circumstance, fuel: int) -> bool:
     """Make at most *fuel* cycles; True when there is more to do."""
-    budget = agent.beliefs.budget
-    if budget is not None:
-        if fuel > 1:  # each cycle gets the whole budget
-            return all(run(agent, 1) for _ in range(fuel))
-        budget.renew()
     # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True

@@ -11,7 +11,6 @@ from jacaros.agents.language import nodes
 from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
 from jacaros.agents.mind.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, Place, goal_text
 from jacaros.agents.mind.rules import forks, supervision
-from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -80,7 +79,6 @@ def step_failure(frame: Frame, fault: Exception | None = None) -> FailureReason:
 _ERRORS = (
     (WrongArguments, "wrong_arguments"),
     (ArithmeticFault, "arithmetic_error"),
-    (SearchLimit, "search_limit"),
     (RecursionError, "too_deep"),
 )
 """Exceptions whose text is the message, and their error ids."""

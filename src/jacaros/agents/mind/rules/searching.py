@@ -63,14 +63,12 @@ def values_of(context: Calling, action: InternalAction, *arguments: Term) -> Ite
     """
     assert action.values is not None
     try:
-        values = action.values(*arguments)
+        return action.values(*arguments)
     except InternalError:
         raise
     except Exception as fault:
         context.report(action.name, fault)
         return ()
-    budget = context.agent.beliefs.budget
-    return values if budget is None else budget.counting_answers(values)
 
 
 def first_answer_of(context: Calling, trail: Trail, action: InternalAction, *arguments: Term) -> bool:

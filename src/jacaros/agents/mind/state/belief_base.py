@@ -86,11 +86,6 @@ class Table:
     def __post_init__(self) -> None:
         self.added, self.deleted = trigger("+", "", self.functor), trigger("-", "", self.functor)
 
-    @property
-    def budget(self) -> SearchBudget | None:
-        """How much may be searched; None for any amount."""
-        return None if self._base is None else self._base.budget
-
     def search(self, pattern: int, agent: Any, trail: Trail) -> Callable[..., Answers]:
         """The generator function for a search that begins here; *pattern* tells which arguments are given."""
         trail.room = agent.options.rule_depth
@@ -367,7 +362,7 @@ class BeliefTables(dict[Functor, Table]):
         searching: number of the internal action that a search is calling, 0 while none is.
         next_call: returns the number of the next one.
         room: number of beliefs that can be added without a look at the limit: deleted ones are counted when it is used up.
-        budget: how much may be searched; None for no limit.
+        budget: how much a question may search; None while there is none.
         engine: runs the rules.
         held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
             of annotations and entries if several do (decision 22).

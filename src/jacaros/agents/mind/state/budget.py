@@ -1,17 +1,15 @@
 """Budgets: how much of something an agent may hold at the same time (agent options ``belief_limit``, ``event_limit``,
-``intention_limit`` and ``mailbox_limit``), and how much it may search in one cycle (``search_limit``).
+``intention_limit`` and ``mailbox_limit``), and how much a question about it may search.
 
 A program that never stops growing loses some of its goals, with a reason, instead of exhausting the memory of the run.
-An endless search would block all other agents; agents without that option count nothing.
 """
 
-from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.mind.state.ports import Architecture
-from jacaros.agents.terms.values import String, Term, atom, functor
+from jacaros.agents.terms.values import String, atom, functor
 from jacaros.files.texts import is_worth_a_line
 
 # Agent options, named as in Jason's project files.
@@ -34,7 +32,6 @@ class Options:
             (some kilobytes each).
         goal_depth: maximum number of plans on the stack of an intention; a goal that exceeds it fails (a quarter
             of a kilobyte each, and what the plans hold).
-        search_limit: maximum number of calls of rules and answers of internal actions in one cycle; 0 for no limit.
         belief_limit: maximum number of beliefs.
         event_limit: maximum number of waiting events.
         intention_limit: maximum number of intentions.
@@ -47,7 +44,6 @@ class Options:
     tail_calls: bool = True
     rule_depth: int = 500_000
     goal_depth: int = 1_000_000
-    search_limit: int = 0
     belief_limit: int = 10_000_000
     event_limit: int = 1_000_000
     intention_limit: int = 100_000
@@ -137,10 +133,10 @@ class SearchLimit(Exception):
 
 
 class SearchBudget:
-    """Counts what searches do: calls of rules, and answers of internal actions.
+    """Counts what a question does: calls of rules, and answers of internal actions.
 
     Args:
-        limit: how many there may be in one cycle.
+        limit: how many there may be.
     """
 
     __slots__ = ("_left", "limit")
@@ -148,36 +144,12 @@ class SearchBudget:
     def __init__(self, limit: int) -> None:
         self.limit = self._left = limit
 
-    def renew(self) -> None:
-        """A cycle begins."""
-        self._left = self.limit
-
     def spend(self) -> None:
         """A rule is called, or an internal action gives an answer.
 
         Raises:
-            SearchLimit: that is one too many.  What deals with the failure may search as much again.
+            SearchLimit: that is one too many.
         """
         self._left -= 1
         if self._left < 0:
-            self._left = self.limit
-            raise SearchLimit(
-                f"the search takes more than {self.limit} rules and answers (option search_limit)"
-            )
-
-    def counting_answers(self, values: Iterable[Term]) -> Iterator[Term]:
-        """The answers of an internal action, each at the expense of this budget."""
-        for value in values:
-            self.spend()
-            yield value
-
-    def counting(
-        self, search: Callable[..., Iterator[tuple[Term, ...]]]
-    ) -> Callable[..., Iterator[tuple[Term, ...]]]:
-        """The function of a rule that searches at the expense of this budget."""
-
-        def counted(*arguments: Any) -> Iterator[tuple[Term, ...]]:
-            self.spend()
-            return search(*arguments)
-
-        return counted
+            raise SearchLimit(f"the search takes more than {self.limit} rules and answers")

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, Protocol
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.state.act import Percept, SpeechAct
 from jacaros.agents.mind.state.belief_base import BeliefTables, Table
-from jacaros.agents.mind.state.budget import Budget, Options, SearchBudget, budgets
+from jacaros.agents.mind.state.budget import Budget, Options, budgets
 from jacaros.agents.mind.state.intention import (
     EVENT_GOAL,
     EVENT_INTENTION,
@@ -307,8 +307,6 @@ class Circumstance(_Rules):
         self.budgets = budgets(self)
         self.engine = plans.engine
         self.beliefs = BeliefTables(plans.engine, self.options.belief_limit, self.budgets["belief_limit"])
-        if self.options.search_limit:
-            self.beliefs.budget = SearchBudget(self.options.search_limit)
         self.library = PlanLibrary(plans)
         self.look_at_observers()
 
