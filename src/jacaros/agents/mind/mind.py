@@ -63,7 +63,6 @@ from jacaros.agents.terms.values import (
     functor,
     functor_of,
 )
-from jacaros.runtime.trace import Cause
 
 # The choice of the engine that runs programs: the rules of the language as written, or generated code.
 
@@ -211,13 +210,13 @@ class Mind(Circumstance):
         else:
             belief_update.tell(self, term)
 
-    def post_goal(self, goal: Term, goal_cause: Cause | None = None) -> None:
+    def post_goal(self, goal: Term) -> None:
         """Adopt a new goal in an intention of its own."""
         symbol, arguments, annotations = parts(rename(goal))
         if symbol is None:
             raise ActionError("a goal must be a literal")
         kind = trigger("+", "!", symbol)
-        event = ((kind, *arguments), None, own_annotations(annotations), goal_cause)
+        event = ((kind, *arguments), None, own_annotations(annotations), None)
         deadlines.adopt(self, event)
         self.architecture.ready()
 

@@ -221,9 +221,7 @@ def _shown_call(goal: Goal, annotations: EventAnnotations) -> Term:
 
 def _failed_formula(node: nodes.Node) -> nodes.Node:
     """Return what ``code(..)`` shows of a step: the formula, without the operator of a test."""
-    if isinstance(node, nodes.Test):
-        return node.formula
-    if isinstance(node, nodes.Constraint):
+    if isinstance(node, nodes.Test | nodes.Constraint):
         return node.formula
     if isinstance(node, nodes.ExternalAction):
         return node.action

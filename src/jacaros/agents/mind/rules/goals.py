@@ -28,7 +28,7 @@ from jacaros.agents.mind.state.intention import (
 )
 from jacaros.agents.mind.state.pending import supervisions_below
 from jacaros.agents.mind.state.plan import hidden_plan
-from jacaros.agents.mind.state.triggers import Trigger, literal_of, own_annotations, trigger
+from jacaros.agents.mind.state.triggers import Goal, Trigger, literal_of, own_annotations, trigger
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import undo, unify
 from jacaros.agents.terms.values import BY_SELF, Term, atom, functor, structure
@@ -43,20 +43,14 @@ def goal_literals(intention: Intention) -> list[Term]:
     return [
         literal_of(frame[GOAL], frame[ANNOTATIONS])
         for frame in reversed(intention.frames)
-        if frame[GOAL][0].kind == "!" and frame[GOAL][0].operator == "+"
+        if _is_goal(frame[GOAL])
     ]
 
 
-def frame_of(agent: Circumstance, intention: Intention, goal: Term, lowest: int = 0) -> int | None:
-    """Return the index of the lowest frame (from *lowest* on) that serves a matching goal, without binding variables."""
+def frame_of(agent: Circumstance, intention: Intention, goal: Term) -> int | None:
+    """Return the index of the lowest frame that serves a matching goal, without binding variables."""
     for index, frame in enumerate(intention.frames):
-        trigger = frame[GOAL][0]
-        if (
-            index >= lowest
-            and trigger.kind == "!"
-            and trigger.operator == "+"
-            and matches(agent, goal, literal_of(frame[GOAL], frame[ANNOTATIONS]))
-        ):
+        if _is_goal(frame[GOAL]) and matches(agent, goal, literal_of(frame[GOAL], frame[ANNOTATIONS])):
             return index
     return None
 
@@ -81,7 +75,7 @@ def goal_of(agent: Circumstance, intention: Intention, goal: Term) -> Term | Non
         frame = intention.frames[index]
         return literal_of(frame[GOAL], frame[ANNOTATIONS])
     event = pending_event(agent, intention)
-    if event is None or not _is_goal(event):
+    if event is None or not _is_goal(event[EVENT_GOAL]):
         return None
     literal = event_literal(event)
     return literal if matches(agent, goal, literal) else None
@@ -98,8 +92,8 @@ def first_match(agent: Circumstance, goal: Term) -> Term | None:
     return None
 
 
-def _is_goal(event: Event) -> bool:
-    return bool(event[EVENT_GOAL][0].kind == "!" and event[EVENT_GOAL][0].operator == "+")
+def _is_goal(goal: Goal) -> bool:
+    return goal[0].kind == "!" and goal[0].operator == "+"
 
 
 def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
@@ -107,14 +101,14 @@ def goal_events(agent: Circumstance, goal: Term) -> list[Event]:
     return [
         e
         for e in _pending_events(agent)
-        if e[EVENT_INTENTION] is None and _is_goal(e) and matches(agent, goal, event_literal(e))
+        if e[EVENT_INTENTION] is None and _is_goal(e[EVENT_GOAL]) and matches(agent, goal, event_literal(e))
     ]
 
 
 def desires(agent: Circumstance) -> Iterator[tuple[Term, int | None]]:
     """Yield all goals: of pending events and of intentions, with the id of the intention."""
     for event in _pending_events(agent):
-        if _is_goal(event):
+        if _is_goal(event[EVENT_GOAL]):
             owner = event[EVENT_INTENTION]
             yield event_literal(event), owner.id if owner else None
     yield from intended(agent, include_suspended=True)
@@ -156,7 +150,7 @@ def drop_events(agent: Circumstance, goal: Term) -> None:
     for event in _pending_events(agent):
         if (
             event[EVENT_INTENTION] is not None
-            and _is_goal(event)
+            and _is_goal(event[EVENT_GOAL])
             and matches(agent, goal, event_literal(event))
         ):
             _drop_event(agent, event)
@@ -195,7 +189,7 @@ def drop_all_intentions(agent: Circumstance) -> None:
 def drop_all_events(agent: Circumstance, goals_only: bool = False) -> None:
     """Drop all pending events, or those of goals, with the intentions that posted them."""
     for event in _pending_events(agent):
-        if not goals_only or _is_goal(event):
+        if not goals_only or _is_goal(event[EVENT_GOAL]):
             _drop_event(agent, event)
     if not goals_only:
         agent.waits.requeued.clear()
