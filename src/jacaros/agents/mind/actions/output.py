@@ -15,7 +15,7 @@ from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.state.intention import PLAN
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import display, text
-from jacaros.agents.terms.values import NUMBERS, Functor, String, Term, Var
+from jacaros.agents.terms.values import FALSE, NUMBERS, TRUE, Functor, String, Term, Var
 from jacaros.errors import JacarosError
 
 _LEVELS = {"severe": "error", "warning": "warning", "fine": "debug", "finer": "debug", "finest": "debug"}
@@ -35,28 +35,29 @@ def print_(ctx: Context, *arguments: Term) -> None:
 
 @internal_action(".printf", arity=(1, None), prints=True)
 def printf(ctx: Context, template: Term, *arguments: Term) -> None:
-    """``.printf(Format, A, ...)`` prints a text made with a format of Python such as ``%8.2f``.
+    """``.printf(Format, A, ...)`` prints a text made with a Java format such as ``%8.2f``.
+
+    Numbers are doubles: use ``%.0f`` instead of ``%d``. See `java_format` for the supported conversions.
 
     Raises:
         ActionError: the format is invalid or does not fit the arguments.
     """
+    from jacaros.agents.mind.actions.java_format import (
+        java_format,  # imported here: few programs use it, and it needs decimal
+    )
+
     pattern = string(template, "the first argument of .printf")
     try:
-        shown = pattern % tuple(map(_value, arguments))
-    except (TypeError, ValueError) as error:
+        shown = java_format(pattern, [_value(argument) for argument in arguments])
+    except ValueError as error:
         raise ActionError(f".printf: {error}") from None
     ctx.architecture.print(shown)
 
 
-class _Number(float):
-    """A number that ``%s`` shows as programs see it."""
-
-    def __str__(self) -> str:
-        return text(float(self))
-
-
-def _value(term: Term) -> float | str:
-    return _Number(term) if term.__class__ in NUMBERS else display(term)
+def _value(term: Term) -> float | str | bool:
+    if term is TRUE or term is FALSE:
+        return term is TRUE
+    return term if term.__class__ in NUMBERS else display(term)
 
 
 @internal_action(".puts", arity=(1, 2), prints=True, by_name=True)

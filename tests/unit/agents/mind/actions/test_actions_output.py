@@ -4,6 +4,7 @@ import pytest
 from fake_context import FakeContext
 
 from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
+from jacaros.agents.mind.actions.java_format import java_format
 from jacaros.agents.terms.values import String, Var
 
 
@@ -32,31 +33,48 @@ def test_print_marks_unbound_variables(mind: FakeContext) -> None:
     ("template", "arguments", "shown"),
     [
         ("plain", [], "plain"),
-        ("%s and %s", ["a", 3.0], "a and 3"),
-        ("[%5s|%-5s|%.2s]", ["a", "b", String("word")], "[    a|b    |wo]"),
-        ("%f %10.3f|", [3.14159, 3.14159], "3.141590      3.142|"),
-        ("%08.0f %d %i", [461012.0, 3.0, 2.5], "00461012 3 2"),
-        ("%+.1f % .1f %06.1f", [1.0, 1.0, -2.5], "+1.0  1.0 -002.5"),
-        ("%e %.2E", [12345.678, 0.00123], "1.234568e+04 1.23E-03"),
-        ("%g %s 100%%", [0.0001, [1, "a"]], "0.0001 [1,a] 100%"),
+        ("%s and %s", ["a", 3.0], "a and 3.0"),
+        ("%2$s %1$s", ["a", "b"], "b a"),
+        ("[%5s|%-5s|%.2s]", ["a", "b", "word"], "[    a|b    |wo]"),
+        ("%f", [3.14159], "3.141590"),
+        ("%10.3f|", [3.14159], "     3.142|"),
+        ("%08.0f", [461012.0], "00461012"),
+        ("%.1f %.2f %.0f", [0.25, 1.005, 2.5], "0.3 1.01 3"),
+        ("%+.1f % .1f %(.1f", [1.0, 1.0, -1.0], "+1.0  1.0 (1.0)"),
+        ("%,.2f", [1234567.891], "1,234,567.89"),
+        ("%06.1f", [-2.5], "-002.5"),
+        ("%e %.2E %.0e", [12345.678, 0.00123, 5.0], "1.234568e+04 1.23E-03 5e+00"),
+        ("%e", [0.0], "0.000000e+00"),
+        ("%g %g %g", [0.0001, 123456.0, 1234567.0], "0.000100000 123456 1.23457e+06"),
+        ("%g %.3g", [0.00001, 0.0], "1.00000e-05 0.00"),
+        ("%b %b %S", [True, "x", "loud"], "true true LOUD"),
+        ("100%%%n", [], "100%\n"),
+        ("%f %5.1f", [float("inf"), float("nan")], "Infinity   NaN"),
+        ("%f", [float("-inf")], "-Infinity"),
+        ("%s", [1e10], "1.0E10"),
     ],
 )
-def test_printf_shows_what_the_format_makes(
-    mind: FakeContext, template: str, arguments: list[object], shown: str
-) -> None:
-    assert mind.succeeds(".printf", String(template), *arguments)
-    assert mind.architecture.printed == [shown]
+def test_formats_are_read_as_java_reads_them(template: str, arguments: list[object], shown: str) -> None:
+    assert java_format(template, arguments) == shown  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
     ("template", "arguments"),
-    [("%s", []), ("%q", [1.0]), ("50%", []), ("%f", ["a"]), ("a", [1.0])],
+    [("%d", [1.0]), ("%s", []), ("%q", [1.0]), ("%.f", [1.0]), ("50%", []), ("%f", ["a"])],
 )
-def test_printf_fails_for_a_format_that_does_not_fit(
-    mind: FakeContext, template: str, arguments: list[object]
-) -> None:
-    with pytest.raises(ActionError, match=r"\.printf: "):
-        mind.succeeds(".printf", String(template), *arguments)
+def test_wrong_formats_are_refused(template: str, arguments: list[object]) -> None:
+    with pytest.raises(ValueError, match="%"):
+        java_format(template, arguments)  # type: ignore[arg-type]
+
+
+def test_printf_shows_what_the_format_makes(mind: FakeContext) -> None:
+    assert mind.succeeds(".printf", String("%.1f %s %s %b"), 2.25, String("text"), [1, "a"], "false")
+    assert mind.architecture.printed == ["2.3 text [1,a] false"]
+
+
+def test_printf_fails_for_a_format_that_does_not_fit(mind: FakeContext) -> None:
+    with pytest.raises(ActionError, match=r"use %\.0f"):
+        mind.succeeds(".printf", String("%d"), 1)
 
 
 def test_printf_needs_a_string(mind: FakeContext) -> None:
