@@ -171,8 +171,8 @@ class Writer(pickle.Pickler):
             return "open_list", *_items_and_tail(value)
         if isinstance(value, Cause):
             return ("nothing",)  # of the run that has made it
-        if callable(value) and hasattr(value, "plan"):
-            return "step", value.plan, position_of(value)
+        if callable(value) and (plan := getattr(value, "plan", None)) is not None:
+            return "step", plan, position_of(value)
         _refuse_live(value)
         if isinstance(value, FunctionType):
             return None if value in _CALLED else ("function", *_name_of(value))
