@@ -362,7 +362,7 @@ class BeliefTables(dict[Functor, Table]):
         searching: number of the internal action that a search is calling, 0 while none is.
         next_call: returns the number of the next one.
         room: number of beliefs that can be added without a look at the limit: deleted ones are counted when it is used up.
-        budget: how much a question may search; None while there is none.
+        budget: how much the present question may search; None between questions.
         engine: runs the rules.
         held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
             of annotations and entries if several do (decision 22).
