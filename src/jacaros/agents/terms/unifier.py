@@ -121,7 +121,7 @@ def unify(left: Term, right: Term, trail: Trail) -> bool:  # noqa: C901 - the in
 
 
 def _unify_others(left: Term, right: Term, trail: Trail) -> bool:
-    """Unify two settled values that are no variables, no two ordinary structures and no parts of an open list."""
+    """Unify two settled values: no variable, not two ordinary structures, and not part of an open list."""
     kind = left.__class__
     if kind is right.__class__ is List:
         return _unify_lists(left, right, trail)
