@@ -154,12 +154,12 @@ def _plain(value: Any, room: int) -> object:
         return {_plain_key(key, room): _plain(item, room) for key, item in value.items()}
     if isinstance(value, (set, frozenset)):
         return frozenset(_plain_key(item, room) for item in value)
+    if hasattr(kind, "tolist") and hasattr(kind, "dtype"):
+        return _plain(value.tolist(), room)
     if isinstance(value, Enum):
         return Atom(str(value.name).lower())
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return _structure(kind, (getattr(value, field.name) for field in dataclasses.fields(value)), room)
-    if hasattr(kind, "tolist") and hasattr(kind, "dtype"):
-        return _plain(value.tolist(), room)
     return value
 
 
