@@ -8,7 +8,7 @@ from typing import NamedTuple
 from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.paths import Path
 from jacaros.artifacts.mapping.units import Line
-from jacaros.artifacts.streams.pattern import OCCURRENCE, Spec
+from jacaros.artifacts.streams.pattern import Spec
 from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
@@ -196,7 +196,7 @@ class ParameterPart:
 
 @dataclass(frozen=True, slots=True)
 class DerivedPart:
-    """A property or signal derived from events of others.
+    """A property derived from events of others.
 
     Attributes:
         spec: the pattern; None after a mistake.
@@ -208,11 +208,6 @@ class DerivedPart:
     spec: Spec | None
     sources: tuple[Written, ...]
     description: str = ""
-
-    @property
-    def signal(self) -> bool:
-        """Whether it is a signal."""
-        return self.spec is not None and self.spec.gives == OCCURRENCE
 
 
 class Source(StrEnum):
@@ -335,7 +330,7 @@ class ArtifactPart:
         connected: whether to show that topics are connected; a number: seconds without a message after which they are
             not.
         topics: properties and signals from topics.
-        derived: properties and signals derived from events of others.
+        derived: properties derived from events of others.
         interfaces: folders with definitions of types.
     """
 

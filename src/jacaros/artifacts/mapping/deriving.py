@@ -1,4 +1,4 @@
-"""Derived properties and signals: messages of other properties go through a pattern of `jacaros.artifacts.streams`."""
+"""Derived properties: messages of other properties go through a pattern of `jacaros.artifacts.streams`."""
 
 from collections import deque
 from functools import partial
@@ -7,7 +7,7 @@ from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FramePart
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.stamped_frames import StampedFrames
-from jacaros.artifacts.streams.operators import HIDE, OCCUR, SHOW
+from jacaros.artifacts.streams.operators import HIDE, SHOW
 from jacaros.artifacts.streams.pattern import Pattern, Spec
 from jacaros.files.texts import is_worth_a_line
 from jacaros.ros.message import to_seconds
@@ -19,7 +19,7 @@ JUMP = 0.1
 
 
 class Derivation:
-    """A derived property or signal.
+    """A derived property.
 
     It receives every message of its streams, before dead bands, rates and the range of view apply.
 
@@ -44,7 +44,7 @@ class Derivation:
         if frames:
             patience = float(spec.options["within"]) + spec.lateness
             self._frames = StampedFrames(host, part, frames, patience, self._take_with_frames)
-        for number, name in enumerate(spec.streams):
+        for number, name in enumerate(spec.sources):
             hear = self._hear_end if number in frames else self.hear
             host.taps.setdefault(name, []).append(partial(hear, number))
         host.at_dispose(self.close)
@@ -111,12 +111,9 @@ class Derivation:
 
     def _emit(self, kind: str, values: Values) -> None:
         host, name = self._host, self._part.name
-        if kind == OCCUR:
-            host.start(host.send_signals, name, [values], cause=self._cause)
-        else:
-            self._pending.append(values if kind == SHOW else None)
-            if len(self._pending) == 1:
-                host.start(host.show_derived, name, cause=self._cause)
+        self._pending.append(values if kind == SHOW else None)
+        if len(self._pending) == 1:
+            host.start(host.show_derived, name, cause=self._cause)
         for tap in host.taps.get(name, ()):
             tap(self._latest, None if kind == HIDE else values, self._cause)
 
@@ -165,7 +162,7 @@ def frames_at_stamps(spec: Spec, part: ArtifactPart) -> dict[int, FramePart]:
     if spec.operator != "together":
         return {}
     frames = {each.name: each for each in part.frames}
-    return {number: frames[name] for number, name in enumerate(spec.streams) if number and name in frames}
+    return {number: frames[name] for number, name in enumerate(spec.sources) if number and name in frames}
 
 
 def stamp_of(message: object, latched: bool) -> float:

@@ -81,7 +81,7 @@ def _properties(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
     for parameter in part.parameters:
         yield f"{parameter.name}(Value): {_of_parameter(parameter)}."
     for derived in part.derived:
-        if derived.spec is not None and not derived.signal:
+        if derived.spec is not None:
             yield _derived(derived, derived.spec)
     for operation in part.operations:
         for feedback in operation.feedback:
@@ -111,13 +111,10 @@ def _of_parameter(part: ParameterPart) -> str:
 def _signals(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
     for topic in part.signals:
         yield _from_topic(topic, interfaces)
-    for derived in part.derived:
-        if derived.spec is not None and derived.signal:
-            yield _derived(derived, derived.spec)
 
 
 def _derived(part: DerivedPart, spec: Spec) -> str:
-    """Describe a derived property or signal."""
+    """Describe a derived property."""
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
     values = "" if spec.gives != VALUE else "(Values)" if spec.operator == "together" else "(Value)"

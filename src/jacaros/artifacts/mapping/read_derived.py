@@ -11,13 +11,13 @@ from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Node, Problem
 
 _COMMON = ("value", "lateness", "description")
-_EVENTS = frozenset({"count", "absent", "sequence"})
+_EVENTS = frozenset({"count", "absent"})
 """Operators that use only the events, not their values, so each element of an array may be one."""
 _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
 
 
 def read_derived(name: Node, node: Node) -> DerivedPart:
-    """Read one derived property or signal."""
+    """Read one derived property."""
     place = place_of(name)
     if not isinstance(node.value, dict):
         node.wrong(f"`{name.value}` has no operator", _EXAMPLE)

@@ -5,13 +5,10 @@ docs/reference/derived_events.md defines them.
 ============================================== =======================================================================
 file                                           what it holds
 ============================================== =======================================================================
-`schema`                                       operators with their options; checks of declarations
-`pattern`                                      one derived event: puts late events in order, drives an operator
-`operator`, `condition`                        the interface and conditions of operators
-`counting`                                     the number of events in a sliding window
-`states`                                       hysteresis, a condition held for a while
-`order`                                        sequence, absence
-`together`                                     samples of several streams with nearby stamps
+`pattern`                                      one derived event: puts late events in order, drives an operator; the
+                                               operators with their options, and checks of declarations
+`operators`                                    sliding windows, hysteresis, conditions held for a while, absence, samples
+                                               with nearby stamps
 ============================================== =======================================================================
 
 The package has no clock: the host passes times, and calls `Pattern.advance` at `Pattern.deadline`.

@@ -1,16 +1,16 @@
-"""The operators: sliding windows, states, sequences and absences, and samples of several streams together."""
+"""The operators: sliding windows, states, absences, and samples of several streams together."""
 
 import math
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 Values = tuple[object, ...]
 
-SHOW, HIDE, OCCUR = "show", "hide", "occur"
-"""Kinds of output: the derived state begins or changes its values; it ends; an occurrence."""
+SHOW, HIDE = "show", "hide"
+"""Kinds of output: the derived state begins or changes its values; it ends."""
 
 Emit = Callable[[str, Values], None]
 """Takes the kind of an output and its values (empty for `HIDE`)."""
@@ -64,10 +64,6 @@ class Operator:
         if self.shown is not None:
             self.shown = None
             self._emit(HIDE, ())
-
-    def occur(self, values: Values = ()) -> None:
-        """Emit an occurrence."""
-        self._emit(OCCUR, values)
 
     def hold(self, holds: bool) -> None:
         """Show or hide a state without values."""
@@ -232,39 +228,7 @@ def _satisfies(values: Values | None, place: int, condition: Condition) -> bool:
     return condition.is_open or (place < len(values) and condition.holds(values[place]))
 
 
-# Sequences of events, and their absence.
-
-
-class Chain(Operator):
-    """A sequence of events; occurs with the last one, if the first was less than *within* seconds before.
-
-    Of all chains that end with an event, the one with the latest start counts; events can be used repeatedly. Therefore
-    only the latest start of each prefix of the chain is stored.
-
-    Args:
-        steps: numbers of the streams, in the order of the chain.
-        within: maximum duration in seconds.
-    """
-
-    __slots__ = ("_begun", "_steps", "_within")
-
-    def __init__(self, emit: Emit, steps: Sequence[int], within: float) -> None:
-        super().__init__(emit)
-        self._steps, self._within = tuple(steps), within
-        self._begun = [-math.inf] * len(self._steps)
-
-    def take(self, source: int, time: float, values: Values | None) -> None:
-        if values is None:
-            return
-        begun, last = self._begun, len(self._steps) - 1
-        for step in range(last, -1, -1):  # from the end, so that an event does not follow itself
-            if self._steps[step] == source:
-                begun[step] = begun[step - 1] if step else time
-                if step == last and begun[step] + self._within > time:
-                    self.occur()
-
-    def advance(self, time: float) -> None:
-        self.deadline = math.inf
+# The absence of events.
 
 
 class Absent(Operator):

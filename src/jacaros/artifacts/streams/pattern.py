@@ -10,7 +10,6 @@ from typing import Any, Final, NamedTuple
 from jacaros.artifacts.streams.operators import (
     ANYTHING,
     Absent,
-    Chain,
     Condition,
     Count,
     Emit,
@@ -28,8 +27,8 @@ from jacaros.files.texts import suggestion
 LONGEST: Final = 86_400.0
 """Maximum duration in seconds of a window, or of waiting for late events: the window bounds memory."""
 
-STATE, VALUE, OCCURRENCE = "state", "value", "occurrence"
-"""Kinds of output: a state without values, a state with values, or an occurrence."""
+STATE, VALUE = "state", "value"
+"""Kinds of output: a state without values, or with values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +37,7 @@ class Spec:
 
     Attributes:
         operator: name in `OPERATORS`.
-        sources: streams by name, in the order of the declaration; a sequence may repeat a stream.
+        sources: streams by name, in the order of the declaration.
         options: times in seconds.
         place: index of the value of an event to use, from 0.
         lateness: seconds for which the evaluation waits for late events.
@@ -50,18 +49,13 @@ class Spec:
     place: int = 0
     lateness: float = 0.0
 
-    @property
-    def streams(self) -> tuple[str, ...]:
-        """The streams without repetition; events carry the index of their stream."""
-        return tuple(dict.fromkeys(self.sources))
-
     def seconds(self, option: str) -> float:
         """The value of an option that is a time."""
         return float(self.options[option])
 
     @property
     def gives(self) -> str:
-        """Kind of output: `STATE`, `VALUE` or `OCCURRENCE`."""
+        """Kind of output: `STATE` or `VALUE`."""
         return STATE if "at_least" in self.options else OPERATORS[self.operator].gives
 
 
@@ -101,10 +95,6 @@ def _make_absent(spec: Spec, emit: Emit) -> Operator:
     return Absent(emit, spec.seconds("for"))
 
 
-def _make_chain(spec: Spec, emit: Emit) -> Operator:
-    return Chain(emit, [spec.streams.index(each) for each in spec.sources], spec.seconds("within"))
-
-
 def _make_together(spec: Spec, emit: Emit) -> Operator:
     return Together(emit, len(spec.sources), spec.seconds("within"), spec.lateness)
 
@@ -115,7 +105,7 @@ class Shape:
 
     Attributes:
         meaning: short description.
-        gives: `STATE`, `VALUE` or `OCCURRENCE`.
+        gives: `STATE` or `VALUE`.
         make: creates it from a valid declaration.
         required, optional: names of options.
         several: whether it takes a list of two or more streams.
@@ -141,7 +131,6 @@ OPERATORS: Final[dict[str, Shape]] = {
     ),
     "held": Shape("a condition has held for a while", STATE, _make_held, ("for",), _CONDITION, valued=True),
     "absent": Shape("no event for a while", STATE, _make_absent, ("for",)),
-    "sequence": Shape("events in this order", OCCURRENCE, _make_chain, ("within",), several=True),
     "together": Shape(
         "samples with stamps near each other", VALUE, _make_together, ("within",), several=True
     ),
@@ -168,7 +157,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) ->
     """
     shape = OPERATORS[operator]
     if shape.several and len(sources) < 2:
-        help = "write them as a list, such as [press, release]"
+        help = "write them as a list, such as [scan, pose]"
         yield Fault("", f"`{operator}` needs two streams or more", help)
     if operator == "together" and len(set(sources)) < len(sources):
         yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
@@ -295,7 +284,7 @@ class Pattern:
         """Process an event.
 
         Args:
-            source: number of its stream in `Spec.streams`.
+            source: number of its stream in `Spec.sources`.
             time: time of the event, in seconds.
             values: values of the event; None if the state shown by the stream ended.
         """

@@ -99,25 +99,25 @@ def test_stamps_count_and_not_arrivals() -> None:
 def test_late_messages_within_the_lateness_are_put_in_order() -> None:
     async def body(s: Sender) -> None:
         await s.lab.sleep(1.0)
-        await s.send("b", 1.0)
+        await s.send("a", 1.0)
         await s.send("a", 1.0, ago=0.1)
         await s.lab.sleep(0.3)
         await settle()
-        assert len(s.signals("both")) == 1
+        assert s.watcher.values("many") == [(2,)]
 
-    derived("both: {sequence: [a, b], within: 1, lateness: 0.2}", body)
+    derived("many: {count: a, within: 1, lateness: 0.2}", body)
 
 
 def test_late_messages_beyond_it_are_dropped_and_logged() -> None:
     async def body(s: Sender) -> None:
         await s.lab.sleep(1.0)
-        await s.send("b", 1.0)
+        await s.send("a", 1.0)
         await s.send("a", 1.0, ago=0.1)
         await s.lab.sleep(0.3)
-        assert s.signals("both") == []
+        assert s.watcher.values("many") == [(1,)]
         assert any("1 late messages dropped" in line for line in s.lab.logged)
 
-    derived("both: {sequence: [a, b], within: 1}", body)
+    derived("many: {count: a, within: 1}", body)
 
 
 def test_topics_come_together_by_their_stamps() -> None:
@@ -297,7 +297,7 @@ def _problems(entry: str) -> list[str]:
         ("x: {held: a, count: a, within: 1}", "23: `held` and `count` are alternatives | derive one name"),
         ("x: {held: a, for: 1, value: 2}", "13: `a` has 1 values, not 2 | write a smaller `value`"),
         ("x: {absent: hit, for: 1, wait: 2}", "28: `absent` has no option `wait` | options: for"),
-        ("x: {sequence: [a], within: 1}", "6: `sequence` needs two streams or more | write them as a list"),
+        ("x: {together: [a], within: 1}", "6: `together` needs two streams or more | write them as a list"),
         (
             "x: {together: [a, a], within: 1}",
             "6: `together` names a stream twice | name each stream once",

@@ -1,6 +1,5 @@
 """The definition of derived events, computed from all events anew for each time: slow, but simple to read."""
 
-import math
 from collections.abc import Sequence
 
 from jacaros.artifacts.streams.operators import Values
@@ -14,30 +13,6 @@ def shown(spec: Spec, events: Sequence[Event], now: float) -> Values | None:
     """Return the values that a pattern started at 0 shows at *now*, after the events (in order) of this time."""
     past = [event for event in events if event[1] <= now]
     return _STATES[spec.operator](spec, past, now)
-
-
-def occurrences(spec: Spec, events: Sequence[Event]) -> list[float]:
-    """Return the times of occurrences."""
-    within = spec.options["within"]
-    steps = [spec.streams.index(each) for each in spec.sources]
-    found = []
-    for place, (stream, time, values) in enumerate(events):
-        if stream == steps[-1] and values is not None:
-            start = _latest_start(steps[:-1], events[:place], time)
-            if start + within > time:
-                found.append(time)
-    return found
-
-
-def _latest_start(steps: list[int], events: Sequence[Event], time: float) -> float:
-    if not steps:
-        return time
-    starts = [
-        _latest_start(steps[:-1], events[:place], at)
-        for place, (stream, at, values) in enumerate(events)
-        if stream == steps[-1] and values is not None
-    ]
-    return max(starts, default=-math.inf)
 
 
 def _count(spec: Spec, past: Sequence[Event], now: float) -> Values | None:

@@ -66,10 +66,7 @@ def add_plan(agent: Circumstance, term: Term, source: Term = SELF, first: bool =
     """
     term = resolve(term)
     if term.__class__ is String:
-        written = str(term).strip()
-        if not written.endswith("."):
-            written += "."
-        for node in parse_plans(written, functions=known_names(agent), actions=agent.engine.actions):
+        for node in parse_plans(str(term), functions=known_names(agent), actions=agent.engine.actions):
             _add_node(agent, node, source, first)
         return
     if is_list(term):
