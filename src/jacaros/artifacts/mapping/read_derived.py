@@ -33,6 +33,10 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
         _report(fault, entries, node)
     if "value" in entries and not OPERATORS[operator].valued:
         entries["value"].wrong(f"`{operator}` does not use values", "leave `value` out")
+    if "lateness" in entries and operator != "together":
+        entries["lateness"].wrong(
+            f"`{operator}` waits for nothing", "leave `lateness` out: delayed messages count"
+        )
     spec = Spec(
         operator,
         tuple(each.text for each in sources),

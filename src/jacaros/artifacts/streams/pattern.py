@@ -1,7 +1,5 @@
-"""One derived event: takes events of its streams, sorts late ones, and drives its operator."""
+"""One derived event: takes events of its streams, and drives its operator."""
 
-import heapq
-import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -40,7 +38,7 @@ class Spec:
         sources: streams by name, in the order of the declaration.
         options: times in seconds.
         place: index of the value of an event to use, from 0.
-        lateness: seconds for which the evaluation waits for late events.
+        lateness: further seconds for which samples that are joined wait for each other.
     """
 
     operator: str
@@ -234,29 +232,22 @@ def _wrong_limits(options: Mapping[str, Any]) -> Iterator[Fault]:
 class Pattern:
     """The incremental evaluation of one declaration.
 
-    Event times are seconds of any clock. The *watermark* is the event time up to which all events are known: the time
-    of the newest event or of the last `advance`, whichever is later, minus the lateness. Events are evaluated in time
-    order when the watermark reaches them; events older than the watermark are dropped.
+    Event times are seconds of any clock. An event that is older than the time up to which the pattern has been evaluated,
+    because its message took long, counts at that time.
 
     Args:
         spec: a valid declaration.
         start: start time of the pattern.
         emit: takes the outputs, in order.
-
-    Attributes:
-        dropped: number of events that arrived too late.
     """
 
-    __slots__ = ("_dropped", "_early", "_lateness", "_mark", "_numbers", "_operator", "_start", "spec")
+    __slots__ = ("_mark", "_operator", "_start", "spec")
 
     def __init__(self, spec: Spec, start: float, emit: Emit) -> None:
         self.spec = spec
         self._operator = OPERATORS[spec.operator].make(spec, emit)
-        self._start, self._lateness = start, spec.lateness if self._operator.ordered else 0.0
+        self._start = start
         self._mark = 0.0
-        self._early: list[tuple[float, int, int, Values | None]] = []
-        self._numbers = itertools.count()
-        self._dropped = 0
 
     @property
     def shown(self) -> Values | None:
@@ -265,20 +256,13 @@ class Pattern:
 
     @property
     def dropped(self) -> int:
-        """Number of events that arrived too late."""
-        return self._dropped + int(getattr(self._operator, "dropped", 0))
+        """Number of events that arrived too late for their partners."""
+        return int(getattr(self._operator, "dropped", 0))
 
     @property
     def deadline(self) -> float:
         """Time of the next call of `advance`, unless an event arrives before; infinite for never."""
-        if not self._early:
-            return self._start + self._operator.deadline + self._lateness
-        return self._start + self._due() + self._lateness
-
-    def _due(self) -> float:
-        """Return the event time of the next change without an event."""
-        due = self._operator.deadline
-        return self._early[0][0] if self._early and self._early[0][0] < due else due
+        return self._start + self._operator.deadline
 
     def take(self, source: int, time: float, values: Values | None) -> None:
         """Process an event.
@@ -289,38 +273,20 @@ class Pattern:
             values: values of the event; None if the state shown by the stream ended.
         """
         time -= self._start
-        operator = self._operator
-        if not operator.ordered:
-            operator.take(source, time, values)
-        elif time < self._mark:
-            self._dropped += 1
-        elif self._lateness:
-            heapq.heappush(self._early, (time, next(self._numbers), source, values))
-            self._release(time - self._lateness)
-        else:
-            if operator.deadline <= time:
-                self._pass(time)
-            self._mark = time
-            operator.take(source, time, values)
+        if self._operator.ordered:
+            time = max(time, self._mark)
+            self._pass(time)
+        self._operator.take(source, time, values)
 
     def advance(self, now: float) -> None:
         """Advance to *now* on the clock of the event times."""
-        mark = now - self._start - self._lateness
-        # Deadlines at *now* are due, despite rounding in the conversion of times.
-        self._release(max(mark, self._due()) if self.deadline <= now else mark)
-
-    def _release(self, mark: float) -> None:
-        """Move the watermark, and evaluate the events up to it."""
-        self._mark = mark = max(self._mark, mark)
-        early = self._early
-        while early and early[0][0] <= mark:
-            time, _, source, values = heapq.heappop(early)
-            self._pass(time)
-            self._operator.take(source, time, values)
-        self._pass(mark)
+        time = max(self._mark, now - self._start)
+        # A deadline at *now* is due, despite rounding in the conversion of times.
+        self._pass(max(time, self._operator.deadline) if self.deadline <= now else time)
 
     def _pass(self, time: float) -> None:
         """Advance the operator through its deadlines up to *time*."""
+        self._mark = time
         operator = self._operator
         while (due := operator.deadline) <= time:
             operator.advance(due)
