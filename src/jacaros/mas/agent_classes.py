@@ -15,7 +15,6 @@ from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.python_code import PythonCode
 
 if TYPE_CHECKING:
-    from jacaros.agents.python.agent import Agent
     from jacaros.agents.python.customising import Made
 
 _DEFAULTS = ("", "jason.asSemantics.Agent")
@@ -89,7 +88,7 @@ class AgentClasses:
             self._begin_as(spec, mind, made)
         return host
 
-    def _begin_as(self, spec: AgentSpec, mind: Mind, face: "Made[Agent]") -> None:
+    def _begin_as(self, spec: AgentSpec, mind: Mind, face: "Made") -> None:
         from jacaros.agents.python.customising import begin_as
 
         try:
@@ -103,17 +102,16 @@ class AgentClasses:
             message = crash_text(f"agent {spec.name}", face.made.init, error)
             raise self._project_error(spec, message) from error
 
-    def _object(self, spec: AgentSpec) -> "Made[Agent] | None":
+    def _object(self, spec: AgentSpec) -> "Made | None":
         """Return an object of the agent's class; None, with a warning, if the project does not have the class."""
         written = spec.agent_class or ""
         name = written.partition("(")[0].strip()
         if name in _DEFAULTS:
             return None
-        from jacaros.agents.python.agent import Agent
         from jacaros.agents.python.customising import object_of
 
         try:
-            made = object_of(self._modules, written, Agent)
+            made = object_of(self._modules, written)
         except (ProjectError, NotImported):
             raise
         except JacarosError as error:

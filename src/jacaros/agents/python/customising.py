@@ -5,7 +5,7 @@ The mind does not know of this: its selection functions are replaced by ones tha
 
 from collections.abc import Callable
 from types import ModuleType
-from typing import Generic, NamedTuple, TypeVar, cast
+from typing import NamedTuple, TypeVar, cast
 
 from jacaros.agents.body.values import to_value
 from jacaros.agents.language.diagnostics import AslError
@@ -27,28 +27,25 @@ from jacaros.files.texts import aside
 # Find the classes that a project file names, and create objects of them.
 
 
-T = TypeVar("T")
-
-
 class UnknownClass(JacarosError):
     """Raised when the project's Python code lacks a class named in a project file."""
 
 
-class Made(NamedTuple, Generic[T]):
+class Made(NamedTuple):
     """An object of a class named in a project file, and the arguments of its `init`."""
 
-    made: T
+    made: Agent
     arguments: tuple[object, ...]
 
 
-def object_of(modules: ProjectModules, written: str, kind: type[T]) -> Made[T] | None:
+def object_of(modules: ProjectModules, written: str) -> Made | None:
     """Create an object of a class named in a project file; None if the project does not have the module."""
     name, terms = _split(written)
-    found = find_class(modules, name, kind)
+    found = _find_class(modules, name)
     if found is None:
         return None
     try:
-        return Made(found(), _values(terms))
+        return Made(found(), tuple(map(to_value, terms)))
     except Exception as error:
         raise JacarosError(f"cannot create {name}: {type(error).__name__}: {error}") from error
 
@@ -65,18 +62,14 @@ def _split(written: str) -> tuple[str, tuple[Term, ...]]:
         raise JacarosError(f"invalid arguments of {written}: {message}") from wrong
 
 
-def _values(terms: tuple[Term, ...]) -> tuple[object, ...]:
-    return tuple(to_value(term) for term in terms)
-
-
-def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | None:
-    """Return the subclass of *kind* that ``my.Careful`` names; None if the project does not have it.
+def _find_class(modules: ProjectModules, name: str) -> type[Agent] | None:
+    """Return the subclass of `Agent` that ``my.Careful`` names; None if the project does not have it.
 
     A module of the project may have other things of a Java package than this class.
 
     Raises:
         ModuleUnreadable: the module cannot be imported.
-        UnknownClass: the class of that name is not a *kind*, or the module has others that are; the text lists them.
+        UnknownClass: the class of that name is not an `Agent`, or the module has others that are; the text lists them.
     """
     path, _, last = name.rpartition(".")
     # The module of ``my.inner.Careful``, or all of the package ``my``.
@@ -87,20 +80,18 @@ def find_class(modules: ProjectModules, name: str, kind: type[T]) -> type[T] | N
     for module in found:
         modules.require_seen(module, last)
         candidate = vars(module).get(last)
-        if isinstance(candidate, type) and issubclass(candidate, kind):
+        if isinstance(candidate, type) and issubclass(candidate, Agent):
             return candidate
-    known = sorted(
-        {key for module in found for key, value in vars(module).items() if _is_own(value, kind, module)}
-    )
-    there = f"it has {', '.join(known)}" if known else f"it has no class derived from jacaros.{kind.__name__}"
+    known = sorted({key for module in found for key, value in vars(module).items() if _is_own(value, module)})
+    there = f"it has {', '.join(known)}" if known else "it has no class derived from jacaros.Agent"
     meant = aside(name, [f"{path}.{each}".lstrip(".") for each in known])
     if not known and not any(last in vars(module) for module in found):
         return None
     raise UnknownClass(f"unknown class {last} in {found[0].__file__ or path}: {there}{meant}")
 
 
-def _is_own(value: object, kind: type[object], module: ModuleType) -> bool:
-    return isinstance(value, type) and issubclass(value, kind) and value.__module__ == module.__name__
+def _is_own(value: object, module: ModuleType) -> bool:
+    return isinstance(value, type) and issubclass(value, Agent) and value.__module__ == module.__name__
 
 
 Result = TypeVar("Result")

@@ -222,15 +222,10 @@ def _inner(compiler: BodyCompiler, step: nodes.Node) -> list[int]:
     return [frame.slots[n] for n in names_in(step) if n not in frame.states and n in frame.slots]
 
 
-def _free_at_entry(compiler: BodyCompiler) -> list[str]:
-    """Variables that a loop has to give back as they were: those that may hold a `Var` at its beginning."""
-    return [name for name, state in compiler.frame.states.items() if state]
-
-
 def _enter_loop(compiler: BodyCompiler, fn: FunctionBuilder, step: nodes.Node) -> int:
     """Remember which variables are free before a loop; returns the place of the `Loop`."""
     frame = compiler.frame
-    names = _free_at_entry(compiler)
+    names = [name for name, state in frame.states.items() if state]  # those that may hold a `Var`
     fn.load(frame, names)
     loop = frame.hidden_slot()
     # `free_variables` takes the first element of a tuple for a functor.
@@ -446,10 +441,10 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
     if operand.annotations is not None:
         annotations = own_annotations(fn, operand.annotations)
     if operator in ("-", "--"):
-        arguments = tuple_of([build(fn, a) for a in operand.arguments]) if operand.arguments else "()"
+        arguments = tuple_of([build(fn, a) for a in operand.arguments])
         fn.line(f"posted = delete_belief(agent, {symbol}, {arguments}, {annotations}, {operator == '--'})")
         return
-    row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments]) if operand.arguments else "()"
+    row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments])
     fn.line(f"posted = {_ADDITIONS[operator]}{symbol}, {row}, {annotations})")
 
 
@@ -465,7 +460,7 @@ def _external(compiler: BodyCompiler, step: nodes.ExternalAction, name: str, nex
             if action.annotations is not None:
                 annotations = f"resolve_all({annotation_parts(fn, action.annotations)[0]})"
             fn.store(compiler.frame)
-            call = f"agent.begin_act({symbol}, {tuple_of(arguments) if arguments else '()'}, {annotations}, {next_name})"
+            call = f"agent.begin_act({symbol}, {tuple_of(arguments)}, {annotations}, {next_name})"
         else:
             value = build(fn, action)
             fn.store(compiler.frame)

@@ -174,10 +174,6 @@ def _joined(formulae: list[Any]) -> nodes.Node:
     return cast("nodes.Node", joined)
 
 
-def _or(fn: FunctionBuilder, node: nodes.Or, then: Then) -> None:
-    in_own_function(fn, node, then)
-
-
 def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
     if not (fn.trampoline or fn.snapshot or fn.writer.loops > _MAX_LOOPS) and _not_in_place(
         fn, node.operand, then
@@ -345,7 +341,7 @@ def searched(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
 
 _WRITERS: dict[type, Callable[..., None]] = {
     nodes.And: _and,
-    nodes.Or: _or,
+    nodes.Or: in_own_function,
     nodes.Not: _not,
     nodes.Relation: relation,
     nodes.Literal: literal,

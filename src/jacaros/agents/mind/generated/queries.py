@@ -188,11 +188,7 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
     fn.line(f"{table} = agent.beliefs[{symbol}]")
     arguments = QueryArguments(fn, node.arguments)
     rows = arguments.fast_rows(table)
-    general = (
-        f"solve(agent, {table}, {tuple_of(arguments.terms)}, t)"
-        if arguments.terms
-        else f"solve(agent, {table}, (), t)"
-    )
+    general = f"solve(agent, {table}, {tuple_of(arguments.terms)}, t)"
     test = " and ".join([f"{table}.plain", *arguments.tests])
     given = "".join(f", {arguments.terms[i]}" for i in arguments.given)
     pattern = sum(1 << i for i in arguments.given)
@@ -212,7 +208,7 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
 
 def _rows_at_once(fn: FunctionBuilder, table: str, arguments: QueryArguments, rows: str) -> str:
     """An expression for the rows of a search that is over before anything else happens."""
-    terms = tuple_of(arguments.terms) if arguments.terms else "()"
+    terms = tuple_of(arguments.terms)
     if arguments.tests:
         rows = f"{rows} if {' and '.join(arguments.tests)} else facts({table}, {terms}, t)"
     given = "".join(f", {arguments.terms[i]}" for i in arguments.given)
@@ -250,7 +246,7 @@ def _annotated_literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> 
         _rows_with_annotations(fn, node, table, patterns, then)
         return
     names = names_in(node)
-    arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
+    arguments = tuple_of([build(fn, a) for a in node.arguments])
     items, tail = annotation_parts(fn, node.annotations)
     call = f"solve_annotated(agent, {table}, {arguments}, {items}, {tail}, t)"
     loop_binding(fn, call, names, then)
@@ -262,7 +258,7 @@ def _rows_with_annotations(
     """A loop over the rows of a predicate and their annotations, and among these for those that are asked for."""
     arguments = QueryArguments(fn, node.arguments)
     held = fn.local("h")
-    general = f"solve_held(agent, {table}, {tuple_of(arguments.terms) if arguments.terms else '()'}, t)"
+    general = f"solve_held(agent, {table}, {tuple_of(arguments.terms)}, t)"
     test = " and ".join([f"{table}.plain", *arguments.tests])
     rows = arguments.rows_and_annotations(table)
     with fn.writer.block(
@@ -275,7 +271,7 @@ def _in_namespaces(fn: FunctionBuilder, node: nodes.Literal, namespace: nodes.Va
     """A literal whose namespace is a variable."""
     names = names_in(node)
     items, tail = ("None", "None") if node.annotations is None else annotation_parts(fn, node.annotations)
-    arguments = tuple_of([build(fn, a) for a in node.arguments]) if node.arguments else "()"
+    arguments = tuple_of([build(fn, a) for a in node.arguments])
     parts = [build(fn, namespace), repr(node.functor), repr(node.negated), arguments, items, tail]
     loop_binding(fn, f"agent.solve_in_namespaces({', '.join(parts)}, t)", names, then)
 
