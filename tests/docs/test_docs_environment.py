@@ -5,7 +5,7 @@ import re
 import pytest
 from pages import ROOT, blocks
 
-from jacaros.agents.body.actions import keys
+from jacaros.agents.body.body import keys
 from jacaros.artifacts import Artifact, describe
 from jacaros.artifacts.env.environment import (
     Blackboard,

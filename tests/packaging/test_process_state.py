@@ -49,7 +49,7 @@ CACHES = {
     "agents.mind.actions.strings._compile": "of a text",
     "agents.mind.rules.proc_msg._achieved": "of a name",
     "agents.mind.rules.proc_msg._only_from": "of a name",
-    "agents.body.actions.keys": "of nothing",
+    "agents.body.body.keys": "of nothing",
     "agents.body.values.symbol_of": "of a name",
     "mas.mappings.stored_interfaces": "of files of the package",
     "mas.history.values._field_names": "of a class of messages",

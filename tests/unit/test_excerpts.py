@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.checker import check
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, render_all
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.mind.actions.internal_action import STANDARD

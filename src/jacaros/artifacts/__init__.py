@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.property import ObservableProperty, Observation, Observer, Signal
     from jacaros.artifacts.env.values import UNSET, Atom, Out, Structure, plain, text
     from jacaros.artifacts.env.workspace import Workspace
-    from jacaros.artifacts.presence.perception import ObservedProperty, PropertyChange, ReceivedSignal
+    from jacaros.artifacts.presence.presence import ObservedProperty, PropertyChange, ReceivedSignal
     from jacaros.artifacts.presence.session import Session, SessionOperation
 
 
@@ -97,7 +97,7 @@ _MODULES = {
     "jacaros.artifacts.env.property": "ObservableProperty Observation Observer Signal",
     "jacaros.artifacts.env.values": "Atom Out Structure UNSET plain text",
     "jacaros.artifacts.env.workspace": "Workspace",
-    "jacaros.artifacts.presence.perception": "ObservedProperty PropertyChange ReceivedSignal",
+    "jacaros.artifacts.presence.presence": "ObservedProperty PropertyChange ReceivedSignal",
     "jacaros.artifacts.presence.session": "Session SessionOperation",
 }
 

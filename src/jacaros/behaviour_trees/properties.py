@@ -6,7 +6,7 @@ from py_trees.common import Status
 
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownProperty
 from jacaros.artifacts.env.values import equal, plain, text
-from jacaros.artifacts.presence.perception import ObservedProperty
+from jacaros.artifacts.presence.presence import ObservedProperty
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from py_trees.common import Status
 
 from jacaros.artifacts.env.values import text
-from jacaros.artifacts.presence.perception import ReceivedSignal
+from jacaros.artifacts.presence.presence import ReceivedSignal
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour, nothing
 
 

@@ -10,7 +10,7 @@ from py_trees.common import Status
 from py_trees.trees import BehaviourTree
 
 from jacaros.artifacts import Session
-from jacaros.artifacts.presence.perception import Observer
+from jacaros.artifacts.presence.presence import Observer
 from jacaros.behaviour_trees.act import Act
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 from jacaros.behaviour_trees.timing import follow

@@ -44,9 +44,6 @@ _DECORATORS: Final = frozenset(
         *("staticmethod", "classmethod", "property"),
     }
 )
-_TRANSPARENT: Final = frozenset({"functools", "contextlib", "typing"})
-"""Modules whose decorators leave the parameters of a function as they are."""
-_KEEPING: Final = frozenset({"cache", "lru_cache", "wraps", "cached_property", "contextmanager", "overload"})
 _BINDING_CALLS: Final = frozenset(
     {"exec", "eval", "globals", "locals", "setattr", "vars", "__import__", "import_module"}
 )
@@ -223,12 +220,11 @@ class _Outline:
 
     def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
         """Empty the body of a function; return False if a decorator may turn it into anything."""
-        known = [each for each in node.decorator_list if self._is_known(each)]
-        if any(each not in known and not self._is_transparent(each) for each in node.decorator_list):
+        if not all(map(self._is_known, node.decorator_list)):
             return False
         documentation = node.body[:1] if ast.get_docstring(node) is not None else []
         node.body = [*documentation, ast.Expr(ast.Yield()) if _yields(node) else ast.Pass()]
-        node.decorator_list, node.returns = known, _written(node.returns)
+        node.returns = _written(node.returns)
         _reduce(node.args)
         return True
 
@@ -243,12 +239,6 @@ class _Outline:
         module = getattr(value, "__module__", "") or ""
         ours = module.startswith(("jacaros.", "dataclasses", "abc", "typing", "builtins"))
         return value is not UNSEEN and ours and getattr(value, "__name__", "") in _DECORATORS
-
-    def _is_transparent(self, decorator: ast.expr) -> bool:
-        called = decorator.func if isinstance(decorator, ast.Call) else decorator
-        if isinstance(called, ast.Attribute) and isinstance(called.value, ast.Name):
-            return called.value.id in _TRANSPARENT
-        return isinstance(called, ast.Name) and called.id in _KEEPING
 
     def _assigned(self, statement: ast.Assign | ast.AnnAssign) -> Iterator[ast.stmt]:
         targets: list[ast.expr] = (

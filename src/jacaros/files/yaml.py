@@ -138,8 +138,6 @@ def read_text(path: Path) -> tuple[str, Problem | None]:
 # World files and mapping files are read with it.
 
 
-__all__ = ["Node", "Problem", "YamlFileError", "plain_values", "read_document", "shown"]
-
 LARGEST = 1_000_000
 """Maximum number of values of a document, including those that aliases repeat."""
 

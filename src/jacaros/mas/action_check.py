@@ -8,7 +8,7 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from jacaros.agents.body.actions import keys
+from jacaros.agents.body.body import keys
 from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic

@@ -97,7 +97,7 @@ class AgentClasses:
         except JacarosError as error:
             raise self._project_error(spec, str(error)) from error
         except Exception as error:
-            from jacaros.agents.python.calling import crash_text
+            from jacaros.agents.python.declaring import crash_text
 
             message = crash_text(f"agent {spec.name}", face.made.init, error)
             raise self._project_error(spec, message) from error

@@ -5,9 +5,8 @@ from random import Random
 from typing import Any, Protocol
 
 from jacaros.agents.language.nodes import Literal
-from jacaros.agents.mind.state.act import NEEDS, Act, Completion, SpeechAct
+from jacaros.agents.mind.state.act import NEEDS, Act, Completion, SpeechAct, Timer
 from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.mind.state.ports import Timer
 from jacaros.agents.terms.values import String, Term, atom, functor
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
@@ -127,7 +126,7 @@ class Run(Protocol):
 
 
 class AgentHost:
-    """Runs one mind. It is the mind's `jacaros.agents.mind.state.ports.Architecture`.
+    """Runs one mind. It is the mind's `jacaros.agents.mind.state.act.Architecture`.
 
     Args:
         name: name of the agent.
@@ -218,7 +217,7 @@ class AgentHost:
         if not self._ended:
             self._mind.receive(message)
 
-    # ---- the port `jacaros.agents.mind.state.ports.Architecture`
+    # ---- the port `jacaros.agents.mind.state.act.Architecture`
 
     def ready(self) -> None:
         """The mind has something to do."""

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.checker import Suppressions, check, place, wanted
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.agents.language.loader import parse_literals, read_program

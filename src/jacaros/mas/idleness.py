@@ -7,7 +7,7 @@ import asyncio
 from collections.abc import Callable
 from typing import Protocol
 
-from jacaros.agents.mind.state.ports import Timer
+from jacaros.agents.mind.state.act import Timer
 from jacaros.runtime.clock import Clock
 
 

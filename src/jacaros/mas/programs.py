@@ -5,8 +5,8 @@ from dataclasses import replace
 from errno import ENOTDIR
 from pathlib import Path
 
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.checker import check_for_run, wanted
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, Diagnostic
 from jacaros.agents.language.loader import load_program, parse_literals

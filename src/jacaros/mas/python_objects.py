@@ -14,7 +14,7 @@ from jacaros.agents.body.call import name_of
 from jacaros.agents.body.values import UNKEPT, to_term, to_value
 from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, Registry
 from jacaros.agents.mind.rules.context import Context
-from jacaros.agents.python.calling import FAULTS
+from jacaros.agents.python.declaring import FAULTS
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, Term, bare, is_list, make_list
 from jacaros.artifacts.env.values import Out, plain

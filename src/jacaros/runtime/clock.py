@@ -599,7 +599,7 @@ def _work(work: Callable[[], T], done: Future[T]) -> None:
 
 
 def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
-    """Run *work* in a daemon thread, during which a virtual clock goes on; return a future with its result."""
+    """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result."""
     return asyncio.wrap_future(_DaemonThreads().submit(work))
 
 

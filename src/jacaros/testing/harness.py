@@ -44,7 +44,7 @@ from jacaros.testing.recorded import Action, RecordedAct, SentMessage, matches
 
 
 class HarnessPort:
-    """The agent's port to its host (`jacaros.agents.mind.state.ports.Architecture`), which records what the agent does.
+    """The agent's port to its host (`jacaros.agents.mind.state.act.Architecture`), which records what the agent does.
 
     Attributes:
         mind: the agent.

@@ -25,8 +25,7 @@ from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_path import PROJECTS, SourcePath, project_folders, source_folders
 from jacaros.mas.system import System
-from jacaros.testing.assertions import UNTESTED
-from jacaros.testing.probe import Assertion
+from jacaros.testing.assertions import UNTESTED, Assertion
 
 TEST_RUN: Final = RunOptions(fast=True, seed=0, keep_ground_truth=True)
 """Default options of a run in a test."""

@@ -29,8 +29,7 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
-from jacaros.testing.assertions import actions
-from jacaros.testing.probe import Assertion, Probe
+from jacaros.testing.assertions import Assertion, Probe, actions
 from jacaros.testing.recorded import Fakes
 from jacaros.testing.run import AgentTest, Outcome, Problem, Suite, with_assertions
 

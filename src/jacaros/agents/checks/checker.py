@@ -11,17 +11,17 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
-from jacaros.agents.checks.actions import (
+from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.checks.formulas import singletons, singletons_of_facts, vain_comparisons
+from jacaros.agents.checks.goals import (
     KnownActions,
     acting_conditions,
     doubtful_values,
+    goals_without_plan,
     unknown_actions,
     unknown_performatives,
     wrong_arguments,
 )
-from jacaros.agents.checks.formulas import clauses as clauses_of
-from jacaros.agents.checks.formulas import singletons, singletons_of_facts, vain_comparisons
-from jacaros.agents.checks.goals import goals_without_plan
 from jacaros.agents.checks.plans import (
     contexts_never_true,
     narrow_handlers,

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Final
 
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.formulas import annotations_of, contradiction, is_true, labelled
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, problem

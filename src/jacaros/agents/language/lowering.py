@@ -10,7 +10,6 @@ from typing import Any, Final, cast
 
 from jacaros.agents.language import nodes
 from jacaros.agents.terms import plans
-from jacaros.agents.terms.arithmetic import settle
 from jacaros.agents.terms.operators import BINARY, named, qualify
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.plans import body_steps, is_body, trigger_parts
@@ -193,11 +192,6 @@ _LOWER: dict[type, Callable[..., Term]] = {
         (nodes.Achieve, nodes.Test, nodes.BeliefChange, nodes.If, nodes.While, nodes.For, nodes.Fork), _step
     ),
 }
-
-
-def settled(node: nodes.Node, lookup: Lookup) -> Term:
-    """Return the term, evaluated at its top level only."""
-    return settle(lower(node, lookup))
 
 
 # Convert terms back to syntax trees, so that plans and bodies made at run time are compiled like any other.

@@ -9,15 +9,14 @@ from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.actions.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.agents.mind.rules import (
     belief_update,
+    context,
     cycle,
     deadlines,
     forks,
-    functions,
     goals,
     meta_events,
     needs,
     pending,
-    perceiving,
     plan_changes,
     plan_terms,
     query,
@@ -29,7 +28,7 @@ from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.rules.failure import output_misfit
 from jacaros.agents.mind.rules.proc_msg import answer_by_plan
 from jacaros.agents.mind.rules.urgency import Fair
-from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct, message_id
+from jacaros.agents.mind.state.act import Act, Architecture, Completion, Percept, SpeechAct, message_id
 from jacaros.agents.mind.state.belief_base import parts
 from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.mind.state.circumstance import Circumstance
@@ -37,7 +36,6 @@ from jacaros.agents.mind.state.intention import STEP, Frame, Intention, NextStep
 from jacaros.agents.mind.state.pending import ACTION, Need, Waiting, Wanted
 from jacaros.agents.mind.state.plan import FAILED, SUSPENDED, Engine, Fail, Failure, OpenFact, Rule
 from jacaros.agents.mind.state.plan_library import ProgramPlans
-from jacaros.agents.mind.state.ports import Architecture
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,
@@ -131,7 +129,7 @@ class Mind(Circumstance):
     def start(self) -> None:
         """Adopt the initial beliefs and goals."""
         self.engine.begin(self)
-        with functions.evaluating(self):
+        with context.evaluating(self):
             self.take_up(self.program)
 
     def take_up(self, program: nodes.Program) -> None:
@@ -146,7 +144,7 @@ class Mind(Circumstance):
 
     def adopt(self, goals: Iterable[nodes.Literal]) -> None:
         """Adopt the goals of a program."""
-        with functions.evaluating(self):
+        with context.evaluating(self):
             for goal in goals:
                 term = self._initial_value(goal)
                 if term is not None:
@@ -173,7 +171,7 @@ class Mind(Circumstance):
             ActionError: another plan has the same label.
         """
         program = include_program(
-            path, self.architecture.read_program, functions.known_names(self), self.engine.actions, namespace
+            path, self.architecture.read_program, context.known_names(self), self.engine.actions, namespace
         )
         self.register_functions(program.functions)
         plan_changes.include_plans(self, program.plans)
@@ -187,7 +185,7 @@ class Mind(Circumstance):
     def register_functions(self, declared: tuple[nodes.RegisteredFunction, ...]) -> None:
         """Register the arithmetic functions of a program."""
         for function in declared:
-            self.functions.own[function.name] = functions.RegisteredFunction(
+            self.functions.own[function.name] = context.RegisteredFunction(
                 function.arity, function.implementation
             )
 
@@ -257,7 +255,7 @@ class Mind(Circumstance):
             self.incoming.called = True
             self.architecture.ready()
 
-    has_untaken = perceiving.is_untaken
+    has_untaken = belief_update.is_untaken
 
     def complete(self, act_id: int, completion: Completion) -> None:
         """Handle the end of an external action; ids of acts that are not pending are ignored."""
@@ -311,8 +309,8 @@ class Mind(Circumstance):
     solve_in_namespaces = query.solve_in_namespaces
     collect_formula = query.collect_formula
     drop_desire = goals.drop_desire
-    call_function = functions.call_function
-    call_own = functions.call_own  # pyright: ignore[reportAssignmentType]
+    call_function = context.call_function
+    call_own = context.call_own  # pyright: ignore[reportAssignmentType]
 
     def change_mind(self, operator: str, term: Term) -> Raised:
         """Run a belief operator whose operand is known only at run time: a literal, a plan or a rule.

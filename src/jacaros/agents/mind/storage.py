@@ -24,7 +24,7 @@ from jacaros.agents.mind.explaining.failure_reason import FailureReason
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import goals, urgency
 from jacaros.agents.mind.rules.body_steps import interpreted
-from jacaros.agents.mind.rules.functions import RegisteredFunction
+from jacaros.agents.mind.rules.context import RegisteredFunction
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
 from jacaros.agents.mind.rules.pending import look_again, now, start_alarm
 from jacaros.agents.mind.rules.plan_changes import look_at_plans

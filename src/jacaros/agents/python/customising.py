@@ -17,7 +17,7 @@ from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.python.agent import Agent, Message, Option, agent_of, give_face, overridden
-from jacaros.agents.python.calling import FAULTS, crash_text
+from jacaros.agents.python.declaring import FAULTS, crash_text
 from jacaros.agents.terms.unifier import bind, undo
 from jacaros.agents.terms.values import Term, Var, arguments_of
 from jacaros.errors import JacarosError
@@ -103,12 +103,10 @@ class CustomMind(Mind):
     __slots__ = ()
 
     def accepts(self, message: SpeechAct) -> bool:
-        accepts = overridden(agent_of(self), Agent, "soc_acc")
-        return accepts is None or ask(self, accepts, bool, True, Message(message))
+        return ask(self, agent_of(self).soc_acc, bool, True, Message(message))
 
     def accept_kill(self, killer: str) -> bool:
-        accepts = overridden(agent_of(self), Agent, "kill_acc")
-        return accepts is None or ask(self, accepts, bool, True, killer)
+        return ask(self, agent_of(self).kill_acc, bool, True, killer)
 
 
 class Chosen(Urgent):

@@ -6,13 +6,12 @@ from inspect import iscoroutinefunction
 from random import Random
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar, Unpack
 
-from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.ports import AgentSystem
+from jacaros.agents.mind.state.act import AgentSystem, SpeechAct
 from jacaros.agents.python.agent import Literal, ReceivedMessage, content_of, heard, overridden
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.values import text
-from jacaros.artifacts.presence.perception import PropertyChange, ReceivedSignal
+from jacaros.artifacts.presence.presence import PropertyChange, ReceivedSignal
 from jacaros.artifacts.presence.session import ActOptions, Session
 from jacaros.errors import JacarosError
 from jacaros.runtime.clock import Clock

@@ -159,9 +159,7 @@ OPERATORS: Final = (
 )
 BINARY: Final = {each.symbol: each for each in OPERATORS if each.arity == 2}
 PREFIX: Final = {each.symbol: each for each in OPERATORS if each.arity == 1}
-OR, AND, NOT, RELATIONAL, SUM = (
-    each.level for each in (BINARY["|"], BINARY["&"], PREFIX["not"], BINARY["="], BINARY["+"])
-)
+OR, AND, NOT, SUM = (each.level for each in (BINARY["|"], BINARY["&"], PREFIX["not"], BINARY["+"]))
 """Levels used by name in the grammar."""
 COMPUTE: Final[dict[Functor, Callable[..., float]]] = {
     each.functor: each.numbers for each in OPERATORS if each.kind == ARITHMETIC and each.numbers is not None

@@ -13,8 +13,7 @@ from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.artifacts.kernel.faults import is_interruption
-from jacaros.artifacts.resources.arbiter import Arbiter
-from jacaros.artifacts.resources.claim import Claim, State, local_name
+from jacaros.artifacts.resources.arbiter import Arbiter, Claim, State, local_name
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 

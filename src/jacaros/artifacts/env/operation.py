@@ -7,7 +7,7 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.claim import Claim, Policy
+from jacaros.artifacts.resources.arbiter import Claim, Policy
 from jacaros.runtime.trace import Cause
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -10,13 +10,7 @@ from types import CodeType
 from typing import Any
 
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
-from jacaros.artifacts.env.operation import (
-    INTERNAL,
-    LINK,
-    OPERATION,
-    OperationOutcome,
-    OperationRequest,
-)
+from jacaros.artifacts.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import Interface, WrongArguments
 from jacaros.errors import InternalError

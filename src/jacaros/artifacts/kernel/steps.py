@@ -28,7 +28,7 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, W
 from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
-from jacaros.artifacts.resources.claim import read_uses, scoped
+from jacaros.artifacts.resources.arbiter import read_uses, scoped
 from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause

@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, OperationKind, OperationPart
-from jacaros.artifacts.resources.claim import WHEELS
+from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.ros.guarded import VELOCITIES
 
 Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]

@@ -26,7 +26,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
     operator = _operator(name, node, entries)
     if operator is None:
         return DerivedPart(belief_name(name), place, None, ())
-    sources = _sources(entries[operator], OPERATORS[operator].several)
+    sources = _sources(entries[operator], operator == "together")
     options = {key: _option(key, each) for key, each in entries.items() if key not in (operator, *_COMMON)}
     wrong = list(faults(operator, [each.text for each in sources], options))
     for fault in wrong:

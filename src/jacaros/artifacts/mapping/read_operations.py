@@ -27,7 +27,7 @@ from jacaros.artifacts.mapping.read_fields import (
 )
 from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
 from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
-from jacaros.artifacts.resources.claim import read_uses
+from jacaros.artifacts.resources.arbiter import read_uses
 from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.files.yaml import Node, Problem
 

@@ -7,13 +7,7 @@ from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, resolve_path
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
 from jacaros.artifacts.env.ports import OnOutcome, Workspace
-from jacaros.artifacts.env.property import (
-    Change,
-    ObservableProperty,
-    Observation,
-    Observer,
-    SlowObserver,
-)
+from jacaros.artifacts.env.property import Change, ObservableProperty, Observation, Observer, SlowObserver
 from jacaros.artifacts.env.values import Atom, Out, Structure, equal
 
 

@@ -14,18 +14,20 @@ from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import ENDED, UnderWay, Workspace, awaited
 from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Out, plain, text
-from jacaros.artifacts.presence.perception import (
+from jacaros.artifacts.presence.presence import (
+    ANYWHERE,
     Account,
     Conditions,
+    Direction,
     NoAccount,
     Observed,
     ObservedProperty,
     Observer,
+    Presence,
     PropertyChange,
     ReceivedSignal,
     changes_of,
 )
-from jacaros.artifacts.presence.presence import ANYWHERE, Direction, Presence
 from jacaros.runtime.clock import Clock
 
 # An operation that a session has requested, from begin to end.

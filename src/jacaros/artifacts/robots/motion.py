@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import Matching
-from jacaros.artifacts.resources.claim import WHEELS
+from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
 from jacaros.artifacts.robots.drive_model import DriveModel

@@ -15,7 +15,7 @@ from jacaros.artifacts.kit.connection import MATCH_OPTIONS, Matching
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.resources.claim import WHEELS
+from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.drift import LOCALISED, Drift
 from jacaros.artifacts.robots.drive_model import DriveModel

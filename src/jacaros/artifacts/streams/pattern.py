@@ -106,7 +106,6 @@ class Shape:
         gives: `STATE` or `VALUE`.
         make: creates it from a valid declaration.
         required, optional: names of options.
-        several: whether it takes a list of two or more streams.
         valued: whether it uses one value of an event.
     """
 
@@ -115,7 +114,6 @@ class Shape:
     make: Callable[[Spec, Emit], Operator]
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
-    several: bool = False
     valued: bool = False
 
 
@@ -129,9 +127,7 @@ OPERATORS: Final[dict[str, Shape]] = {
     ),
     "held": Shape("a condition has held for a while", STATE, _make_held, ("for",), _CONDITION, valued=True),
     "absent": Shape("no event for a while", STATE, _make_absent, ("for",)),
-    "together": Shape(
-        "samples with stamps near each other", VALUE, _make_together, ("within",), several=True
-    ),
+    "together": Shape("samples with stamps near each other", VALUE, _make_together, ("within",)),
 }
 """All operators by name: to add one, add a line here and its options to `_OPTIONS`."""
 
@@ -154,7 +150,7 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) ->
         options: options as written, times in seconds.
     """
     shape = OPERATORS[operator]
-    if shape.several and len(sources) < 2:
+    if operator == "together" and len(sources) < 2:
         help = "write them as a list, such as [scan, pose]"
         yield Fault("", f"`{operator}` needs two streams or more", help)
     if operator == "together" and len(set(sources)) < len(sources):

@@ -6,7 +6,7 @@ from jacaros.mas.idleness import Activity, Idleness
 
 
 class SessionAccount:
-    """Counts the running operations of sessions: the `jacaros.artifacts.presence.perception.Account` of a run.
+    """Counts the running operations of sessions: the `jacaros.artifacts.presence.presence.Account` of a run.
 
     Args:
         activity: counts what the agents wait for.

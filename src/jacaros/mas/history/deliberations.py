@@ -115,7 +115,7 @@ class DeliberationRecords:
         frame: Frame | None,
         cause: Cause | None,
     ) -> Cause | None:
-        """Record a deliberation. See `jacaros.agents.mind.state.ports.MindObserver`."""
+        """Record a deliberation. See `jacaros.agents.mind.state.act.MindObserver`."""
         plans = self._plans_for(goal[0])
         if not plans and frame is None and not goal[0].kind:
             return cause  # no plan is relevant for this event

@@ -124,7 +124,7 @@ class _Work:
         self._at_work: dict[object, int] = {}
 
     def __call__(self, state: str, text: str, which: object, why: str) -> None:
-        """Record a change reported by the agent. See `jacaros.artifacts.presence.perception.Observer`."""
+        """Record a change reported by the agent. See `jacaros.artifacts.presence.presence.Observer`."""
         if state == "executing":
             self._at_work[which] = next(self._numbers)
         number = self._at_work.get(which)

@@ -47,7 +47,7 @@ class Records(NamedTuple):
 
 
 class MindRecords:
-    """Records one mind. It is the mind's `jacaros.agents.mind.state.ports.MindObserver`.
+    """Records one mind. It is the mind's `jacaros.agents.mind.state.act.MindObserver`.
 
     Args:
         mind: the mind.

@@ -1,6 +1,6 @@
 """What an intention waits for, in words."""
 
-from jacaros.agents.mind.actions.waiting import TIME
+from jacaros.agents.mind.actions.goals import TIME
 from jacaros.agents.mind.state.pending import (
     ASK,
     GOAL_CONDITION,
@@ -28,7 +28,7 @@ def waits_for(waiting: Waiting) -> str:
 
 
 def _awaited(waiting: Waiting) -> Term:
-    """Return the subject of a ``.wait``. See `jacaros.agents.mind.actions.waiting`."""
+    """Return the subject of a ``.wait``. See `jacaros.agents.mind.actions.goals`."""
     found = annotations_of(waiting.reason)
     return found[0] if found else waiting.reason
 

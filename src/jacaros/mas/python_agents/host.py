@@ -15,7 +15,7 @@ from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.errors import WorkspaceError
 from jacaros.artifacts.kernel.faults import error_text
-from jacaros.artifacts.presence.perception import Observer
+from jacaros.artifacts.presence.presence import Observer
 from jacaros.artifacts.presence.session import Session
 from jacaros.errors import JacarosError
 from jacaros.mas.agent_host import AgentHost, Run

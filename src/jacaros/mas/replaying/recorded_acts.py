@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
-from jacaros.agents.body.actions import keys
+from jacaros.agents.body.body import keys
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value

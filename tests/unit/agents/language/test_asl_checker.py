@@ -3,8 +3,8 @@
 import pytest
 from asl_lab import errors, program
 
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.checker import Suppressions, check, check_for_run, wanted
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.agents.language.loader import read_program

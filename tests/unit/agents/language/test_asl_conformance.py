@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from asl_lab import parse_plan
 
-from jacaros.agents.checks.actions import KnownActions
 from jacaros.agents.checks.checker import check
+from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.lowering import format_plan

@@ -1,14 +1,6 @@
 """Manuals of artifact types."""
 
-from jacaros.artifacts import (
-    Artifact,
-    Out,
-    describe,
-    initializer,
-    internal_operation,
-    link,
-    operation,
-)
+from jacaros.artifacts import Artifact, Out, describe, initializer, internal_operation, link, operation
 
 
 class Shining(Artifact):

@@ -11,9 +11,10 @@ from jacaros.agents.mind.explaining import lost_goals
 from jacaros.agents.mind.rules import forks, meta_events, needs
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.deadlines import begin_guarded
-from jacaros.agents.mind.rules.goal_failure import has_room, too_deep, unplanned
+from jacaros.agents.mind.rules.failure import has_room, too_deep, unplanned
 from jacaros.agents.mind.rules.query import answers, interpret_rule
 from jacaros.agents.mind.rules.searching import run, unify_rows
+from jacaros.agents.mind.state.act import MindObserver
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -26,7 +27,6 @@ from jacaros.agents.mind.state.intention import (
     NextStep,
 )
 from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Every, Plan, Rule, Select
-from jacaros.agents.mind.state.ports import MindObserver
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,

@@ -4,10 +4,10 @@ Each cycle takes in new input, handles one event, and lets one intention run one
 """
 
 from jacaros.agents.mind.rules import failure, meta_events, needs
+from jacaros.agents.mind.rules.belief_update import take_percepts
 from jacaros.agents.mind.rules.clr_int import end_achieved_goals
 from jacaros.agents.mind.rules.exec_int import execute, select_intention
 from jacaros.agents.mind.rules.pending import check_conditions
-from jacaros.agents.mind.rules.perceiving import take_percepts
 from jacaros.agents.mind.rules.proc_msg import read_message
 from jacaros.agents.mind.rules.sel_ev import (
     event_of,

@@ -11,7 +11,7 @@ from math import ceil, floor
 
 from jacaros.agents.language.lowering import Names, lower
 from jacaros.agents.mind.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, nowhere
-from jacaros.agents.mind.rules import failure, goal_failure, meta_events
+from jacaros.agents.mind.rules import failure, meta_events
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.clr_int import cut_out
 from jacaros.agents.mind.rules.pending import is_true, now, set_alarm, watch
@@ -246,7 +246,7 @@ def _clean_up(
     end(agent, supervision)
     symbol = functor_of(supervision.cleanup)
     if symbol is None or symbol.kind:
-        return goal_failure.fail_intention(agent, intention, reason)
+        return failure.fail_intention(agent, intention, reason)
     supervision.lost, frame[STEP] = reason, fail_lost
     _, arguments, annotations = parts(supervision.cleanup)
     return Posted((trigger("+", "!", symbol), *arguments), own_annotations(annotations))
@@ -258,7 +258,7 @@ def fail_lost(agent: Circumstance, frame: Frame) -> object:
     assert intention is not None
     supervision: Supervision = intention.frames[-2][SUPERVISION]
     reason, supervision.lost = supervision.lost, None
-    return goal_failure.fail_intention(agent, intention, reason) or SUSPENDED
+    return failure.fail_intention(agent, intention, reason) or SUSPENDED
 
 
 # --- interruptions -----------------------------------------------------------------------------------------
@@ -311,12 +311,12 @@ def _stop(agent: Circumstance, intention: Intention, index: int, reason: Failure
     stopped = frames[place:]
     if stopped:
         reason = reason.interrupted(stopped)
-        goal_failure.observe_failed(agent, intention, place + 1, reason)
+        failure.observe_failed(agent, intention, place + 1, reason)
     if holder[SUPERVISION].kind is not None:
         number, goal, annotations = _goal_of(stopped[0] if stopped else holder)
         failure.release_bindings(goal, holder[SERIAL])
         cut_out(agent, intention, index + 1)
-        agent.post_for(intention, goal_failure.fail_goal(agent, intention, goal, annotations, reason, number))
+        agent.post_for(intention, failure.fail_goal(agent, intention, goal, annotations, reason, number))
     elif stopped:
         cut_out(agent, intention, place + 1)
         agent.post_for(intention, _clean_up(agent, intention, holder[SUPERVISION], stopped[0], reason))

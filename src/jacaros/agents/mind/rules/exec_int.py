@@ -6,8 +6,7 @@ from jacaros.agents.mind.actions.internal_action import Crashed
 from jacaros.agents.mind.rules import failure, meta_events
 from jacaros.agents.mind.rules.add_im import push
 from jacaros.agents.mind.rules.clr_int import pop_finished
-from jacaros.agents.mind.rules.failure import note_lack_of_memory
-from jacaros.agents.mind.rules.goal_failure import fail_intention
+from jacaros.agents.mind.rules.failure import fail_intention, note_lack_of_memory
 from jacaros.agents.mind.rules.sel_ev import is_held_before_event, is_ready
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP, Frame, Intention

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 from jacaros.agents.mind.actions.internal_action import ActionError
 from jacaros.agents.mind.explaining.failure_reason import FailureReason, nowhere
-from jacaros.agents.mind.rules import goal_failure, meta_events, needs, waits
+from jacaros.agents.mind.rules import failure, meta_events, needs, waits
 from jacaros.agents.mind.rules.clr_int import achieve, cut_out, pending_event, pop_finished, remove_event
 from jacaros.agents.mind.rules.deadlines import supervised
 from jacaros.agents.mind.rules.exec_int import announce
@@ -350,11 +350,9 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         frame = intention.frames[index]
         ended = reason.interrupted(intention.frames[index:])
         release_bindings(frame[GOAL], frame[SERIAL])
-        goal_failure.observe_failed(agent, intention, index + 1, ended)
+        failure.observe_failed(agent, intention, index + 1, ended)
         cut_out(agent, intention, index)
-        posted = goal_failure.fail_goal(
-            agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL]
-        )
+        posted = failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL])
         agent.post_for(intention, posted)
     for event in goal_events(agent, goal):
         _fail_event(agent, agent.new_intention(event[EVENT_CAUSE]), event, reason)
@@ -365,7 +363,7 @@ def _fail_event(agent: Circumstance, intention: Intention, event: Event, reason:
     """Fail a goal that was posted and not handled yet."""
     goal, _, annotations, _ = event
     remove_event(agent, event)
-    agent.post_for(intention, goal_failure.fail_goal(agent, intention, goal, annotations, reason))
+    agent.post_for(intention, failure.fail_goal(agent, intention, goal, annotations, reason))
 
 
 def _end_periods(intention: Intention, index: int) -> None:

@@ -6,6 +6,7 @@ Also events about the agent itself: it falls asleep, awakes, or is about to be s
 from collections.abc import Callable
 
 from jacaros.agents.mind.explaining.failure_reason import FailureReason
+from jacaros.agents.mind.state.act import MindObserver
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -18,7 +19,6 @@ from jacaros.agents.mind.state.intention import (
     Intention,
 )
 from jacaros.agents.mind.state.pending import is_pause
-from jacaros.agents.mind.state.ports import MindObserver
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, annotations_of_event, trigger
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.values import BY_SELF, Annotated, String, Term, atom, functor, structure

@@ -8,7 +8,7 @@ from jacaros.agents.language.lowering import Reflection, fresh_names, lower
 from jacaros.agents.language.nodes import shape
 from jacaros.agents.mind.actions.internal_action import ActionError
 from jacaros.agents.mind.rules import belief_update, urgency
-from jacaros.agents.mind.rules.functions import known_names
+from jacaros.agents.mind.rules.context import known_names
 from jacaros.agents.mind.rules.meta_events import AWAKING, SLEEPING
 from jacaros.agents.mind.state.belief_base import is_source
 from jacaros.agents.mind.state.circumstance import Circumstance

@@ -21,7 +21,6 @@ from jacaros.agents.mind.state.pending import AnswerWait
 from jacaros.agents.mind.state.plan import hidden_plan
 from jacaros.agents.mind.state.triggers import Goal, Trigger, trigger
 from jacaros.agents.terms.order import annotation_set
-from jacaros.agents.terms.plans import PLAN
 from jacaros.agents.terms.substitution import is_flat, rename, resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import undo
@@ -356,12 +355,6 @@ def _tell_how(agent: Circumstance, message: SpeechAct) -> None:
 def _untell_how(agent: Circumstance, message: SpeechAct) -> None:
     for content in _contents(message.content):
         agent.remove_plan(content, atom(message.sender))  # type: ignore[attr-defined]
-
-
-def plan_term(content: Term) -> bool:
-    """Whether a message content is a plan."""
-    content = deref(content)
-    return content.__class__ is tuple and content[0] is PLAN
 
 
 def _undelivered(agent: Circumstance, message: SpeechAct) -> None:

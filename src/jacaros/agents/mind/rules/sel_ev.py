@@ -11,7 +11,7 @@ from jacaros.agents.mind.rules.add_im import (
     select_plan,
 )
 from jacaros.agents.mind.rules.clr_int import remove_event
-from jacaros.agents.mind.rules.goal_failure import unplanned
+from jacaros.agents.mind.rules.failure import unplanned
 from jacaros.agents.mind.rules.plan_changes import look_at_plans
 from jacaros.agents.mind.rules.proc_msg import RECEIVED, receive_event
 from jacaros.agents.mind.state.circumstance import Circumstance, HeldEvent, StepObserver

@@ -2,8 +2,7 @@
 
 from jacaros.agents.mind.rules import meta_events
 from jacaros.agents.mind.rules.clr_int import pop_finished
-from jacaros.agents.mind.rules.failure import error_terms, step_failure, told
-from jacaros.agents.mind.rules.goal_failure import fail_intention
+from jacaros.agents.mind.rules.failure import error_terms, fail_intention, step_failure, told
 from jacaros.agents.mind.rules.pending import cancel, now
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP

@@ -1,9 +1,12 @@
-"""External actions: what a mind wants done in its environment, and how it ended."""
+"""What passes between a mind and its host: acts and how they ended, messages, percepts, and the ports (Jason's agent architecture)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from random import Random
+from typing import Any, Protocol
 
+from jacaros.agents.mind.state.intention import Frame, Intention
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.terms.values import Functor, Term, functor
 from jacaros.runtime.trace import Cause
 
@@ -118,3 +121,181 @@ class SpeechAct:
 def message_id(number: int, sender: str) -> str:
     """Return the id of a message; numbers are unique for its sender."""
     return f"mid{number}_{sender}"
+
+
+# The ports of a mind: to its host (Jason's agent architecture), and to the observer of its reasons.
+
+
+class MindObserver(Protocol):
+    """Hears what one mind does and why; it changes nothing and raises nothing."""
+
+    def selected(
+        self,
+        goal: Goal,
+        annotations: EventAnnotations,
+        intention: Intention | None,
+        frame: Frame | None,
+        cause: Cause | None,
+    ) -> Cause | None:
+        """Hear which plan was taken for a goal or event.
+
+        Args:
+            goal: as it was before plans were tried.
+            annotations: of the goal.
+            intention: that posted it, None for an event from outside.
+            frame: of the plan that was taken, None when no plan is applicable.
+            cause: of an event from outside.
+
+        Returns:
+            the cause of what the plan does.
+        """
+
+    def cause(self) -> Cause | None:
+        """Return what led to the step, or the message, that the mind is at; None for neither."""
+
+    def place(self, intention: Intention) -> Mapping[str, Any]:
+        """Return plan, file and line of the step that an intention is at."""
+
+    def changed(
+        self,
+        operator: str,
+        symbol: Functor,
+        row: tuple[Term, ...],
+        annotations: tuple[Term, ...],
+        cause: Cause | None,
+    ) -> None:
+        """Hear of a belief that was added (``+``) or deleted (``-``); *annotations* came or went."""
+
+    def reads(self, message: SpeechAct | None) -> None:
+        """Hear that the mind begins to read a message, and (None) that it has read it."""
+
+    def plans_changed(self) -> None:
+        """Hear that plans came or went."""
+
+
+# The port of a mind to its host (Jason's agent architecture).
+#
+# A mind does no input or output of its own. It gets input through `Mind.receive`, `Mind.perceive` and `Mind.complete`, and
+# reaches out through this port alone.
+
+
+class Timer(Protocol):
+    """A pending call."""
+
+    def cancel(self) -> None:
+        """Cancel the call."""
+
+
+class AgentSystem(Protocol):
+    """What agents of every kind need from the agent system."""
+
+    def agent_names(self) -> Sequence[str]:
+        """Return the names of all agents of the system, in order of creation."""
+
+    def print(self, text: str) -> None:
+        """Print a line of the program's output."""
+
+    def log(self, level: str, text: str) -> None:
+        """Log a message; *level* is ``debug``, ``info``, ``warning`` or ``error``."""
+
+    def stop_system(self, delay: float, exit_code: int) -> None:
+        """End the run after *delay* seconds."""
+
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None after
+        logging the reason.
+
+        *classes* are its classes, by ``agentClass``, ``agentArchClass`` and ``beliefBaseClass``.
+        """
+
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; return False if it does not exist or refuses."""
+
+    def register_service(self, service: str) -> None:
+        """Register a service that this agent provides with the directory facilitator."""
+
+    def deregister_service(self, service: str) -> None:
+        """Remove the registration."""
+
+    def providers(self, service: str) -> Sequence[str]:
+        """Return the agents that provide a service, in order of registration."""
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Subscribe this agent to the present and future providers of a service."""
+
+
+class Architecture(AgentSystem, Protocol):
+    """What a mind needs from its host. No call may re-enter the agent before it returns."""
+
+    @property
+    def random(self) -> Random:
+        """The agent's own random number generator, seeded by the run."""
+
+    def now(self) -> float:
+        """Return seconds since the Unix epoch on the run's clock."""
+
+    def ready(self) -> None:
+        """Report that the agent has work to do: `Mind.run` must be called soon."""
+
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+        """Call *callback* after *delay* seconds of the run's clock."""
+
+    def start_coroutine(
+        self, coroutine: Coroutine[Any, Any, Any], ended: Callable[[object, BaseException | None], None]
+    ) -> Timer:
+        """Run a coroutine of the project's Python code concurrently with the agent.
+
+        *ended* is called with its result, or the exception that ended it; not after it was cancelled.
+        """
+
+    def act(self, act: Act) -> None:
+        """Begin an external action; `Mind.complete` reports its end (later, or during this call)."""
+
+    def cancel_act(self, act_id: int) -> None:
+        """Report that the intention of a pending act was dropped."""
+
+    def suspend_act(self, act_id: int) -> None:
+        """Report that the intention of a pending act was suspended."""
+
+    def resume_act(self, act_id: int) -> None:
+        """Report that the intention of a pending act was resumed."""
+
+    def send(self, message: SpeechAct) -> bool:
+        """Deliver a message; return False if the receiver does not exist."""
+
+    def goal_lost(self) -> None:
+        """Report that a goal failed and no plan handled the failure; the warning comes through `log`."""
+
+    def out_of_memory(self) -> None:
+        """Report that a step or an event raised a `MemoryError`; the agent continues as long as the host allows."""
+
+    def explain(self, question: str) -> Mapping[str, Any]:
+        """Answer a question about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
+
+        Raises:
+            UsageError: the question is invalid.
+        """
+
+    def clone_agent(self, name: str) -> str | None:
+        """Create an agent with a copy of this mind; return its final name, or None after logging the reason."""
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Return the name and text of a program file (for ``.include``).
+
+        Raises:
+            FileNotFoundError: it does not exist.
+        """
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """Return the files in a folder and its subfolders, as sorted paths that begin with *folder*.
+
+        Raises:
+            OSError: the folder cannot be read.
+        """
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file, replacing its contents.
+
+        Raises:
+            OSError: the file cannot be written.
+        """

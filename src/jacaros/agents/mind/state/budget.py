@@ -7,8 +7,8 @@ A program that never stops growing loses some of its goals, with a reason, inste
 from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
+from jacaros.agents.mind.state.act import Architecture
 from jacaros.agents.mind.state.plan import Failure
-from jacaros.agents.mind.state.ports import Architecture
 from jacaros.agents.terms.values import String, atom, functor
 from jacaros.files.texts import is_worth_a_line
 

@@ -6,7 +6,7 @@ from dataclasses import InitVar, dataclass, field
 from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.agents.language.diagnostics import Span
-from jacaros.agents.mind.state.act import Percept, SpeechAct
+from jacaros.agents.mind.state.act import Architecture, MindObserver, Percept, SpeechAct
 from jacaros.agents.mind.state.belief_base import BeliefTables, Table
 from jacaros.agents.mind.state.budget import Budget, Options, budgets
 from jacaros.agents.mind.state.intention import (
@@ -22,7 +22,6 @@ from jacaros.agents.mind.state.intention import (
 from jacaros.agents.mind.state.pending import Waiting, Waits, Wanted
 from jacaros.agents.mind.state.plan import Engine, Plan
 from jacaros.agents.mind.state.plan_library import PlanLibrary, ProgramPlans
-from jacaros.agents.mind.state.ports import Architecture, MindObserver
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail

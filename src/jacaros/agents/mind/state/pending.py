@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from jacaros.agents.mind.state.act import Timer
 from jacaros.agents.mind.state.intention import (
     FIRST_SLOT,
     GOAL,
@@ -18,7 +19,6 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     NextStep,
 )
-from jacaros.agents.mind.state.ports import Timer
 from jacaros.agents.mind.state.triggers import Trigger, trigger
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Functor, String, Term, atom, bare, functor

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.arbiter import Arbiter
-from jacaros.artifacts.resources.claim import POLICIES, Claim, State
+from jacaros.artifacts.resources.arbiter import POLICIES, Arbiter, Claim, State
 from jacaros.runtime.clock import VirtualClock, run
 
 NAMES = ("base", "arm", "lift", "map")
