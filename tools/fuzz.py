@@ -32,8 +32,8 @@ from fuzzed_files import KINDS  # noqa: E402
 from program_grammar import Grammar  # noqa: E402
 from recording_host import RecordingHost  # noqa: E402
 
-from jacaros.agents.checks.actions import KnownActions  # noqa: E402
 from jacaros.agents.checks.checker import check  # noqa: E402
+from jacaros.agents.checks.goals import KnownActions  # noqa: E402
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile  # noqa: E402
 from jacaros.agents.language.loader import read_program  # noqa: E402
 from jacaros.agents.language.lowering import format_plan, format_term  # noqa: E402
