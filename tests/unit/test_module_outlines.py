@@ -75,7 +75,6 @@ def findings() -> list[tuple[str, str]]:
         ("check", "a.asl"),
         ("check", "p.jcm"),
         ("check", "artifacts.py"),
-        ("compile", "a.asl"),
         ("describe", "artifacts.py"),
         ("describe", "Switch"),
         ("describe", "p.jcm"),

@@ -187,7 +187,7 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
     if kind.failing:
         intention.handlers.append(0)
     # A goal that needs something has annotations beside its source.
-    plain = not kind.kind or (annotations.__class__ is tuple and len(annotations) == 1)
+    plain = not kind.kind or (isinstance(annotations, tuple) and len(annotations) == 1)
     if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
         if agent.selections.urgencies is None:
             agent.intentions.append(intention)
