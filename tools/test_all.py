@@ -377,13 +377,14 @@ def processes() -> dict[int, tuple[int, float]]:
     Children that a process has waited for count as its own. Reads ``/proc``; empty on systems without it.
     """
     found = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
+    # Not `Path.glob`: it raises ProcessLookupError when a process ends between listing and looking.
+    for number in filter(str.isdigit, os.listdir("/proc") if os.path.isdir("/proc") else ()):
         try:
             # The name of the program, in parentheses, may hold anything.
-            fields = stat.read_text(errors="replace").rpartition(")")[2].split()
+            fields = Path("/proc", number, "stat").read_text(errors="replace").rpartition(")")[2].split()
         except OSError:  # it has just ended
             continue
-        found[int(stat.parent.name)] = int(fields[1]), sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+        found[int(number)] = int(fields[1]), sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
     return found
 
 

@@ -1,4 +1,4 @@
-"""Failure of formulae and of goals: reasons, and who handles them (an own plan, that of a goal further down, or nobody).
+"""Failure of formulae and of goals: their reasons, and the goal on the stack whose plan handles them.
 
 An exception that no rule of the language foresees, such as a lack of memory, costs an agent one message, event or
 intention; it is logged, and the agent continues.

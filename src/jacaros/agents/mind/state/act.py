@@ -1,4 +1,4 @@
-"""What passes between a mind and its host: acts and how they ended, messages, percepts, and the ports (Jason's agent architecture)."""
+"""What passes between a mind and its host: acts and how they ended, percepts, messages, and the ports."""
 
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
