@@ -43,7 +43,8 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
     if agent.atomic_over:
         agent.atomic, agent.atomic_over = None, False
     frames, trail = intention.frames, agent.trail
-    events, intentions, incoming, listened = agent.events, agent.intentions, agent.incoming, None
+    events, intentions, incoming = agent.events, agent.intentions, agent.incoming
+    listened = agent.waits.events or agent.features.meta or agent.selections.urgencies is not None
     while True:
         fuel -= 1
         frame: Frame = frames[-1]
@@ -73,8 +74,6 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
             goal, annotations = (
                 (posted, BY_SELF) if posted.__class__ is tuple else (posted.goal, posted.annotations)
             )
-            if listened is None:
-                listened = agent.waits.events or agent.features.meta or agent.selections.urgencies is not None
             if listened:
                 announce(agent, intention, goal, annotations)
             alone = not (fuel <= last or events or intentions or incoming.called)
