@@ -1,6 +1,7 @@
 """From observations of focused artifacts to percepts of the mind."""
 
 from collections.abc import Callable
+from typing import Any
 
 from jacaros.agents.body.values import References, atom_of, symbol_of, to_term
 from jacaros.agents.mind.state.act import Percept
@@ -64,10 +65,14 @@ class PerceptWriter:
         about_property, about_signal = self._annotations.get(artifact) or self._origin(artifact)
         found: list[Percept] = []
         for signal in signals:
-            literal = self._literal(signal.name, signal.arguments, namespace)
+            literal, _ = self._literal(signal.name, signal.arguments, namespace)
             found.append(Percept(SIGNAL, literal, about_signal, cause))
         for old, new in changed:
-            found.append(self._percept(REMOVE, old, about_property, namespace, cause))
+            first: Percept | None = old.written
+            if first is None or namespace:
+                found.append(self._percept(REMOVE, old, about_property, namespace, cause))
+            else:  # the usual case
+                found.append(Percept(REMOVE, first.literal, first.annotations, cause, first.kept))
             found.append(self._percept(ADD, new, about_property, namespace, cause))
         for each in added:
             found.append(self._percept(ADD, each, about_property, namespace, cause))
@@ -90,7 +95,8 @@ class PerceptWriter:
             if each.annotations:
                 own = tuple(to_term(a, self.references) for a in each.annotations)
                 about = annotation_set((*about, *own))
-            first = each.written = Percept(kind, self._literal(each.name, each.values, None), about, cause)
+            literal, kept = self._literal(each.name, each.values, None)
+            first = each.written = Percept(kind, literal, about, cause, kept)
             if not namespace:
                 return first
         if not namespace:
@@ -130,11 +136,13 @@ class PerceptWriter:
             )
         return known
 
-    def _literal(self, name: str, values: tuple[object, ...], namespace: str | None) -> Term:
+    def _literal(self, name: str, values: tuple[object, ...], namespace: str | None) -> tuple[Term, Any]:
+        """Return a literal, and its parts for the mind if all arguments are numbers (`Percept.kept`)."""
         symbol = symbol_of(f"{namespace}::{name}" if namespace else name, len(values))
         if not values:
-            return symbol
-        written: list[Term] = [symbol]
+            return symbol, (symbol, (), True)
+        written: list[Term] = []
+        numbers = True
         for value in values:
             # Nearly all are numbers.
             kind = type(value)
@@ -144,7 +152,8 @@ class PerceptWriter:
                 written.append(number(value))  # type: ignore[arg-type]
             else:
                 written.append(to_term(_complete(value), self.references))
-        return tuple(written)
+                numbers = False
+        return (symbol, *written), (symbol, tuple(written), True) if numbers else None
 
 
 def _complete(value: object) -> object:

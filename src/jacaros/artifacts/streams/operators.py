@@ -65,13 +65,6 @@ class Operator:
             self.shown = None
             self._emit(HIDE, ())
 
-    def hold(self, holds: bool) -> None:
-        """Show or hide a state without values."""
-        if holds:
-            self.show(())
-        else:
-            self.hide()
-
 
 def number_at(values: Values | None, place: int) -> float | None:
     """Return the finite number at *place*; None otherwise."""
@@ -84,11 +77,8 @@ def number_at(values: Values | None, place: int) -> float | None:
 # Conditions on one value.
 
 
-class _Anything:
-    """Marks that no value is required."""
-
-
-ANYTHING: Final = _Anything()
+ANYTHING: Final = object()
+"""Marks that no value is required."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +146,8 @@ class Count(Operator):
             times.popleft()
         self.deadline = times[0] + within if times else math.inf
         if self._at_least is not None:
-            self.hold(len(times) >= self._at_least)
+            enough = len(times) >= self._at_least
+            self.show(()) if enough else self.hide()
         elif times:
             self.show((len(times),))
         else:

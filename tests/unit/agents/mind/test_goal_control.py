@@ -4,6 +4,7 @@ import pytest
 from recording_host import mind, printed
 
 from jacaros.agents.mind.rules import goals
+from jacaros.agents.mind.state.intention import Intention
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.values import functor
 
@@ -184,7 +185,7 @@ def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
 def test_dropping_the_event_of_a_suspended_intention_drops_the_intention(action: str) -> None:
     host = mind(f"!s. +!s <- .{action}; .print(dropped). +!b <- .print(b).")
     agent = host.agent
-    intention = agent.new_intention()
+    intention = Intention(agent)
     agent.queue(((trigger("+", "!", functor("b", 0)),), intention, (), None))
     goals.suspend_intention(agent, intention)
     host.run(seconds=1)

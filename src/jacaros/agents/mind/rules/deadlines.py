@@ -112,7 +112,7 @@ def adopt(agent: Circumstance, event: Event) -> None:
         if len(agent.alive) >= agent.options.intention_limit:
             agent.budgets["intention_limit"].refuse(len(agent.alive))
             return
-        intention = agent.new_intention(cause)
+        intention = Intention(agent, cause)
         event = (supervised(agent, intention, goal, annotations), intention, annotations, None)
     meta_events.post_new_goal(agent, event)
 

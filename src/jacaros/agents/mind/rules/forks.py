@@ -49,7 +49,7 @@ def fork(
     point = Fork(operator == "and", len(parent.frames) - 1, next_step, set(range(len(firsts))))
     del frame
     for number, first in enumerate(firsts):
-        branch = agent.new_intention(agent.cause_now() or parent.cause)
+        branch = Intention(agent, agent.cause_now() or parent.cause)
         branch.frames = copied(parent.frames)
         branch.frames[-1][STEP] = first
         branch.handlers = list(parent.handlers)

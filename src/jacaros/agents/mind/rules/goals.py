@@ -355,7 +355,7 @@ def fail_goal(agent: Circumstance, goal: Term, reason: FailureReason | None = No
         posted = failure.fail_goal(agent, intention, frame[GOAL], frame[ANNOTATIONS], ended, frame[SERIAL])
         agent.post_for(intention, posted)
     for event in goal_events(agent, goal):
-        _fail_event(agent, agent.new_intention(event[EVENT_CAUSE]), event, reason)
+        _fail_event(agent, Intention(agent, event[EVENT_CAUSE]), event, reason)
     return own
 
 
@@ -428,7 +428,7 @@ class WatchedGoal:
         self._on_end, self._on_dropped = on_end, on_dropped
         posted = (trigger("+", "!", symbol), *arguments)
         self._bottom = (_WATCHED, float(id(self)))
-        intention = agent.new_intention()
+        intention = Intention(agent)
         intention.on_failed, intention.on_end = (self._intention_failed, ()), (self._intention_ended, ())
         frame: Frame = [self._reached, self._bottom, BY_SELF, agent.trail.serial, _BOTTOM]
         intention.frames.append(frame)

@@ -16,7 +16,7 @@ from jacaros.agents.mind.rules.searching import run
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.belief_base import is_source, parts, without_sources
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import FIRST_SLOT, STEP, Frame
+from jacaros.agents.mind.state.intention import FIRST_SLOT, STEP, Frame, Intention
 from jacaros.agents.mind.state.pending import AnswerWait
 from jacaros.agents.mind.state.plan import hidden_plan
 from jacaros.agents.mind.state.triggers import Goal, Trigger, trigger
@@ -404,7 +404,7 @@ def answer_by_plan(
         message: the question.
         symbol, arguments, annotations: the test goal; the asker is a source of it.
     """
-    intention = agent.new_intention()
+    intention = Intention(agent)
     goal = (trigger("+", "?", symbol), *arguments)
     intention.on_failed = (_answer_failure, (message, goal))
     answer_term = Annotated((symbol, *arguments) if arguments else symbol, annotations)

@@ -182,7 +182,7 @@ def begin_intention(agent: Circumstance, event: Event) -> bool:
         frame, cause = select_for_reasons(agent, agent.observers.mind, goal, annotations, None, cause)
     if frame is None:
         return _begin_without_plan(agent, (goal, None, annotations, cause), reacted)
-    intention = agent.new_intention(cause)
+    intention = Intention(agent, cause)
     intention.frames.append(frame)
     if kind.failing:
         intention.handlers.append(0)
@@ -209,7 +209,7 @@ def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> boo
     if trigger is RECEIVED:
         receive_event(agent, goal)
         return True
-    intention = agent.new_intention(cause)
+    intention = Intention(agent, cause)
     agent.post_for(intention, unplanned(agent, intention, goal, annotations))
     return True
 
@@ -221,7 +221,7 @@ def _react(agent: Circumstance, event: Event, plans: Sequence[Plan]) -> bool:
     for owner, outer, frame in reactions:
         if agent.observers.mind is not None:
             cause = agent.observers.mind.selected(goal, annotations, None, frame, event[EVENT_CAUSE])
-        intention = agent.new_intention(cause)
+        intention = Intention(agent, cause)
         intention.frames.append(frame)
         intention.outer = (owner, outer)
         agent.make_ready(intention)

@@ -323,12 +323,6 @@ class Circumstance(_Rules):
         observer = self.observers.mind
         return None if observer is None else observer.cause()
 
-    def new_intention(self, cause: Any = None) -> Intention:
-        """Make an intention with a new number; it is not in any queue yet."""
-        number = self.counts.intentions = self.counts.intentions + 1
-        intention = self.alive[number] = Intention(number, cause)
-        return intention
-
     def note_plan(self, intention: Intention, plan: Plan) -> None:
         """Note a plan on the stack of an intention that is looked for from outside: by events, or in each cycle."""
         if plan.subplans:

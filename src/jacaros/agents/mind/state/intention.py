@@ -58,8 +58,10 @@ class Intention:
 
     urgencies: list[tuple[Frame, int]]
 
-    def __init__(self, number: int, cause: Cause | None) -> None:
-        self.id = number
+    def __init__(self, agent: Any, cause: Cause | None = None) -> None:
+        """Make an intention of an agent (`Circumstance`), with a new number; it is in no queue yet."""
+        self.id = agent.counts.intentions = agent.counts.intentions + 1
+        agent.alive[self.id] = self
         self.frames: list[Frame] = []
         self.handlers: list[int] = []
         self.suspended: Term = None
