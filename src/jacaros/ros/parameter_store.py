@@ -142,7 +142,9 @@ def checked_value(value: Any) -> ParameterValue:
     elif isinstance(value, bytes | bytearray):
         return bytes(value)
     elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
-        raise ParameterRefused(f"{value} is too large for a parameter, which has 64 bits")
+        # Python writes no integer of more than 4,300 digits.
+        number = value if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
+        raise ParameterRefused(f"{number} is too large for a parameter, which has 64 bits")
     elif isinstance(value, bool | int) or (isinstance(value, float) and not math.isnan(value)):
         return value
     raise ParameterRefused(

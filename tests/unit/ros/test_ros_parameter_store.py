@@ -152,3 +152,8 @@ def test_values_become_plain() -> None:
         *("bool", "int", "float", "text", "bytes", "empty list"),
         *("list of bool", "list of int", "list of float", "list of text"),
     ]
+
+
+def test_an_integer_that_python_does_not_write_is_refused_by_its_size() -> None:
+    with pytest.raises(ParameterRefused, match="an integer of 20001 bits is too large for a parameter"):
+        checked_value(1 << 20_000)
