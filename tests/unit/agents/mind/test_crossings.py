@@ -6,7 +6,10 @@ from recording_host import RecordingHost, mind, printed
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.actions.internal_action import ActionError
+from jacaros.agents.mind.rules.goals import WatchedGoal
+from jacaros.agents.mind.rules.meta_events import observe_goals, observe_mind
 from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
+from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.values import SOURCE_PERCEPT, structure
 
 
@@ -157,3 +160,70 @@ def test_a_limit_multiplies_a_random_number() -> None:
     host = mind("!g. +!g <- .findall(X, .range(_, 1, 60) & X = math.random(10), L); .max(L, M); .print(M).")
     host.run()
     assert 3 < float(host.printed[0]) < 10
+
+
+def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely() -> None:
+    steps = "; ".join(f".print({number})" for number in range(12))
+    host = mind(f"!g. +!g <- {steps}. +p(_) <- .print(p).", options=Options(percept_interval=10))
+    host.agent.run(2)
+    host.agent.perceive([percept("p", 1.0)])
+    host.agent.run(5)
+    assert len(host.agent.incoming.percepts) == 1
+    host.agent.run(6)
+    assert len(host.agent.incoming.percepts) == 0
+    host.run()
+    assert "p" in host.printed
+
+
+def test_a_goal_without_a_plan_inside_one_that_is_tried_again_is_told_to_an_observer_of_goals() -> None:
+    host = mind("!start. +!start <- !g[retry(2)]. +!g <- !h. -!start <- .print(handled).")
+    states: list[tuple[str, str]] = []
+    observe_goals(
+        host.agent, lambda state, goal, number, intention, why: states.append((goal[0].functor.name, state))
+    )
+    host.run()
+    assert host.printed == ["handled"]
+    assert [state for name, state in states if name == "h"] == ["failed", "finished"] * 3
+
+
+def test_a_signal_is_no_change_of_a_belief_to_an_observer() -> None:
+    class Observer:
+        changes: list[str] = []  # noqa: RUF012 - one test has one observer
+
+        def __getattr__(self, name: str) -> object:
+            return lambda *arguments: None
+
+        def changed(self, operator: str, symbol: object, *rest: object) -> None:
+            del rest
+            self.changes.append(f"{operator}{symbol}")
+
+    host = mind("+p(_) <- .print(p). +s(_) <- .print(s).")
+    observe_mind(host.agent, Observer())  # type: ignore[arg-type]
+    host.agent.perceive([percept("p", 1.0), Percept("signal", structure("s", 1.0), (SOURCE_PERCEPT,))])
+    host.run()
+    assert host.printed == ["p", "s"]
+    assert Observer.changes == ["+p/1"]
+
+
+def test_what_is_no_literal_is_neither_told_nor_untold() -> None:
+    host = mind("")
+    assert not host.agent.tell(3.0)
+    assert not host.agent.untell(3.0)
+    assert host.agent.untell(structure("p", 1.0)) is False
+
+
+@pytest.mark.parametrize(
+    ("step", "error"), [("+X", "body_var_without_value"), ("+3", "body_var_not_literal")]
+)
+def test_a_belief_must_be_a_literal(step: str, error: str) -> None:
+    program = f"!g({'X' if 'X' in step else '3'}). +!g(X) <- +X. -!g(_)[error(E)] <- .print(E)."
+    assert printed(program) == [error]
+
+
+def test_a_goal_that_is_watched_is_achieved_when_its_plan_has_ended() -> None:
+    host = mind("+!g <- .wait(10).")
+    goal = WatchedGoal(host.agent, lower_value(parse_term("g")))
+    host.run(seconds=0.005)
+    assert not goal.achieved
+    host.run()
+    assert goal.achieved

@@ -28,7 +28,6 @@ from jacaros.agents.terms.values import (
     Var,
     arguments_of,
     atom,
-    bare,
     functor,
     functor_of,
 )
@@ -247,11 +246,7 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
 
 def operand_error(term: Term) -> str:
     """Return the error for a term that is added or deleted as a belief and is not a literal."""
-    return (
-        "body_var_without_value"
-        if free_variables(term) and bare(term) is not None
-        else "body_var_not_literal"
-    )
+    return "body_var_without_value" if free_variables(term) else "body_var_not_literal"
 
 
 # --- from outside ------------------------------------------------------------------------------------------
