@@ -37,7 +37,6 @@ RUNS: dict[str, list[list[str]]] = {
     "run": [["run", "a.asl", "--clock", "fast", "--world", "none", "--for", "2"], ["run", f"b{EVIL}.asl"]],
     "test": [["test", "tests.asl"], ["test", "tests.asl", "--color", "always"]],
     "check": [["check", "a.asl"], ["check", "w.yaml"], ["check", "m.yaml"], ["check", EVIL]],
-    "compile": [["compile", "a.asl"], ["compile", "broken.asl"]],
     "describe": [["describe", "a.asl"], ["describe", "a.asl", "--json"], ["describe", "m.yaml"]],
     "fmt": [["fmt", "--check", "a.asl"], ["fmt", "broken.asl"]],
     "metrics": [["metrics", "."], ["metrics", EVIL]],

@@ -153,7 +153,7 @@ def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
 
 def _host(frame: FrameType) -> AgentHost | None:
     """Return the host of the agent whose cycle a frame runs."""
-    mind = frame.f_locals.get("self") if frame.f_code is Mind.run.__code__ else None
+    mind = frame.f_locals.get("agent") if frame.f_code is Mind.run.__code__ else None
     return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 

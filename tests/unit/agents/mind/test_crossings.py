@@ -175,7 +175,7 @@ def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely() -> Non
     assert "p" in host.printed
 
 
-def test_a_goal_without_a_plan_inside_one_that_is_tried_again_is_told_to_an_observer_of_goals() -> None:
+def test_an_observer_hears_of_a_goal_without_a_plan_in_each_attempt_of_the_goal_around_it() -> None:
     host = mind("!start. +!start <- !g[retry(2)]. +!g <- !h. -!start <- .print(handled).")
     states: list[tuple[str, str]] = []
     observe_goals(
@@ -186,7 +186,7 @@ def test_a_goal_without_a_plan_inside_one_that_is_tried_again_is_told_to_an_obse
     assert [state for name, state in states if name == "h"] == ["failed", "finished"] * 3
 
 
-def test_a_signal_is_no_change_of_a_belief_to_an_observer() -> None:
+def test_an_observer_of_beliefs_does_not_hear_signals() -> None:
     class Observer:
         changes: list[str] = []  # noqa: RUF012 - one test has one observer
 
@@ -205,7 +205,7 @@ def test_a_signal_is_no_change_of_a_belief_to_an_observer() -> None:
     assert Observer.changes == ["+p/1"]
 
 
-def test_what_is_no_literal_is_neither_told_nor_untold() -> None:
+def test_a_number_can_be_neither_believed_nor_forgotten() -> None:
     host = mind("")
     assert not host.agent.tell(3.0)
     assert not host.agent.untell(3.0)
