@@ -45,9 +45,10 @@ def _assert(ctx: Context, term: Term, last: bool) -> None:
     if symbol is None:
         raise WrongArguments(f"expected a literal or a rule, found {text(term)}")
     own = own_annotations(annotations)
-    new = belief_update.insert(ctx.agent, symbol, row, own, last)
+    table = ctx.agent.beliefs[symbol]
+    new = belief_update.insert(table, row, own, last)
     if new is not None:
-        belief_update.external_change(ctx.agent, "+", symbol, row, new)
+        belief_update.raise_event(ctx.agent, table.added, row, new)
 
 
 @internal_action(".asserta", arity=1)

@@ -384,6 +384,10 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
         else action.direct(tuple(map(written, node.arguments)))
     )
     with fn.writer.block(head(name)):
+        if node.name == ".fail" and not node.arguments:
+            fn.line("return FAILED")
+            compiler.finish(fn)
+            return
         fn.load(compiler.frame, names_in(node))
         if direct is not None:
             function = fn.constant(direct)

@@ -1,7 +1,7 @@
 """A plan for a goal or event becomes part of an intention: rule AddIM."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import Names, lower
@@ -14,7 +14,6 @@ from jacaros.agents.mind.rules.deadlines import begin_guarded
 from jacaros.agents.mind.rules.failure import has_room, too_deep, unplanned
 from jacaros.agents.mind.rules.query import answers, interpret_rule
 from jacaros.agents.mind.rules.searching import run, unify_rows
-from jacaros.agents.mind.state.act import MindObserver
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -149,76 +148,104 @@ def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, 
     return [first, goal, annotations, serial, plan, *values, *([None] * body.extra)]
 
 
-def select_plan(
-    agent: Circumstance, goal: Goal, annotations: EventAnnotations, intention: Intention | None = None
-) -> Frame | None:
-    """Rules RelPl, ApplPl and SelAppl: return the frame of the selected plan; sub-plans of *intention* are tried first."""
-    trail, selections, frame = agent.trail, agent.selections, None
-    trail.serial += 1
-    if intention is not None and intention.frames and intention.frames[-1][PLAN].nested:
-        frame = forks.select_in_scope(agent, intention, goal, annotations)
-    if frame is not None:
-        pass
-    elif selections.chooses or selections.option_filter.rows:
-        frame = selections.select_option(goal, annotations, intention)
-    else:
-        select = agent.library.selects[goal[0]]
-        if select is not None:
-            frame = select(agent, goal, annotations)
-    if trail:
-        trail.clear()
-    return frame
-
-
-def select_for_reasons(
+def push(
     agent: Circumstance,
-    observer: MindObserver,
+    intention: Intention | None,
     goal: Goal,
     annotations: EventAnnotations,
-    intention: Intention | None,
-    cause: Cause | None,
-) -> tuple[Frame | None, Cause | None]:
-    """Select a plan and notify the observer; return also the cause of what the plan does."""
-    asked = apart(goal)  # heads of plans bind variables of the goal
-    frame = select_plan(agent, goal, annotations, intention)
-    return frame, observer.selected(asked, annotations, intention, frame, cause)
-
-
-def push(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
-    """Rule AddIM: put a plan for the goal on the intention; return False if the intention cannot continue now.
+    cause: Cause | None = None,
+) -> Intention | Literal[False] | None:
+    """Rules RelPl, ApplPl, SelAppl and AddIM: select a plan for an event, and put it on an intention.
 
     The plan replaces its caller if that has nothing left to do (tail call).
+
+    Args:
+        agent: that handles the event.
+        intention: whose event it is; None for an external event: a new intention begins.
+        goal, annotations: the event.
+        cause: why an external event came.
+
+    Returns:
+        the intention if it can continue now, and None if it cannot; False if an external event has no plan.
     """
-    observer = agent.observers.mind
-    if observer is None:
-        frame = select_plan(agent, goal, annotations, intention)
+    trail, kind = agent.trail, goal[0]
+    trail.serial += 1
+    if agent.unusual:
+        frame, cause = _consider(agent, intention, goal, annotations, cause)
     else:
-        frame, _ = select_for_reasons(agent, observer, goal, annotations, intention, None)
+        select = agent.library.selects[kind]
+        frame = None if select is None else select(agent, goal, annotations)
+    if trail:
+        trail.clear()
     if frame is None:
-        return go_without(agent, intention, goal, annotations, None)
-    frames, kind = intention.frames, goal[0]
-    if (
-        frames
-        and (caller := frames[-1])[STEP] is None
-        and caller[GOAL][0] is kind
-        and caller[PLAN].replaceable
-        and kind.on_fail is not None
-        and agent.options.tail_calls
-        and not (agent.waits.needs and any(need.is_of(caller) for need in agent.waits.needs.values()))
-    ):
-        frames[-1] = frame
-        if agent.features.meta:
-            meta_events.observe(agent, intention, caller, "replaced")
-        if agent.atomic is intention and not intention.is_atomic():
-            agent.atomic_over = True
+        return False if intention is None else go_without(agent, intention, goal, annotations, None)
+    if intention is None:
+        intention = Intention(agent, cause)
+        intention.frames.append(frame)
+        if kind.failing:
+            intention.handlers.append(0)
     else:
-        frames.append(frame)
-    usual = (annotations is BY_SELF or kind.failing) and len(frames) <= agent.options.goal_depth
-    return (usual and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame)
+        frames = intention.frames
+        if (
+            frames
+            and (caller := frames[-1])[STEP] is None
+            and caller[GOAL][0] is kind
+            and caller[PLAN].replaceable
+            and kind.on_fail is not None
+            and agent.options.tail_calls
+            and not (agent.waits.needs and any(need.is_of(caller) for need in agent.waits.needs.values()))
+        ):
+            frames[-1] = frame
+            if agent.unusual or agent.atomic is not None:
+                _note_replaced(agent, intention, caller)
+        else:
+            frames.append(frame)
+            if len(frames) > agent.options.goal_depth:
+                return begin_plan(agent, intention, frame)
+    if (
+        frame[PLAN].special
+        or agent.unusual
+        # Only a goal with annotations beside its source may name resources.
+        or not (annotations is BY_SELF or not kind.kind or kind.failing or len(annotations) == 1)  # type: ignore[arg-type]
+    ):
+        return begin_plan(agent, intention, frame)
+    return intention
 
 
-def begin_plan(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
-    """Do what comes before the first step of a plan on the stack; return False if the intention cannot continue now."""
+def _note_replaced(agent: Circumstance, intention: Intention, caller: Frame) -> None:
+    """A plan has taken the place of its caller on the stack."""
+    if agent.features.meta:
+        meta_events.observe(agent, intention, caller, "replaced")
+    if agent.atomic is intention and not intention.is_atomic():
+        agent.atomic_over = True
+
+
+def _consider(
+    agent: Circumstance,
+    intention: Intention | None,
+    goal: Goal,
+    annotations: EventAnnotations,
+    cause: Cause | None,
+) -> tuple[Frame | None, Cause | None]:
+    """Select a plan where sub-plans come first, the program or the project chooses, or an observer is told why."""
+    observer, selections, frame = agent.observers.mind, agent.selections, None
+    asked = goal if observer is None else apart(goal)  # heads of plans bind variables of the goal
+    if agent.holders and intention is not None:
+        frame = forks.select_in_scope(agent, intention, goal, annotations)
+    if frame is None:
+        if selections.chooses or selections.option_filter.rows:
+            frame = selections.select_option(goal, annotations, intention)
+        else:
+            select = agent.library.selects[goal[0]]
+            frame = None if select is None else select(agent, goal, annotations)
+    agent.trail.clear()
+    if observer is not None:
+        cause = observer.selected(asked, annotations, intention, frame, cause)
+    return frame, cause
+
+
+def begin_plan(agent: Circumstance, intention: Intention, frame: Frame) -> Intention | Literal[False] | None:
+    """Do what comes before the first step of a plan on the stack; return the intention if it can continue now."""
     plan: Plan = frame[PLAN]
     if plan.special:
         if plan.atomic:
@@ -230,29 +257,28 @@ def begin_plan(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
             meta_events.frame_state(agent, intention, frame, "executing")
     if len(intention.frames) > agent.options.goal_depth and not has_room(agent, intention):
         return go_without(agent, intention, frame[GOAL], frame[ANNOTATIONS], frame)
-    return needs.acquire(agent, intention)
+    return intention if needs.acquire(agent, intention) else None
 
 
 def go_without(
     agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations, frame: Frame | None
-) -> bool:
+) -> Intention | Literal[False] | None:
     """Handle a goal or event without a plan, or (if *frame* is given, and on the stack) without room for it.
 
-    Return False if the intention cannot continue now.
+    Return the intention if it can continue now.
     """
     if frame is None and goal[0].kind == "":
-        if agent.options.verbose > 1 and agent.library.selects[goal[0]] is not None:
-            log_inapplicable(agent, goal, annotations)
-        return True
+        log_inapplicable(agent, goal, annotations)
+        return intention
     posted = unplanned(agent, intention, goal, annotations) if frame is None else too_deep(agent, intention)
     if posted is None:
-        return False
+        return None
     event: Event = (posted.goal, intention, posted.annotations, None)
     if agent.conditioned or (
         agent.atomic is None and (agent.events or agent.intentions or agent.incoming.called)
     ):
         agent.post(event)
-        return False
+        return None
     agent.note(posted.goal[0])
     if agent.waits.events:
         agent.notify_listeners(event)
@@ -260,8 +286,9 @@ def go_without(
 
 
 def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
-    """Log why no plan was selected for an event, if the agent logs details."""
-    agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())
+    """Log why no plan was selected for an event that has relevant ones, if the agent logs details."""
+    if agent.options.verbose > 1 and agent.library.relevant(goal[0]):
+        agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())
 
 
 # Run plans and rules as the language defines them, without code made for speed.

@@ -15,7 +15,6 @@ from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import EVENT_GOAL, EVENT_INTENTION, GOAL, Intention, Posted, Raised
 from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import Trigger, resolve_all
-from jacaros.agents.mind.state.triggers import apart as with_own_variables
 from jacaros.agents.terms.collections import detached, holds_collection
 from jacaros.agents.terms.order import merge_annotations
 from jacaros.agents.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
@@ -41,7 +40,9 @@ _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+b``: the event belongs to the intention that made it."""
-    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations))
+    table = agent.beliefs[symbol]
+    new = insert(table, row, annotations)
+    return None if new is None else raise_event(agent, table.added, row, new, True)
 
 
 def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -50,85 +51,90 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
     The event of the first half is external.
     """
     table = agent.beliefs[symbol]
-    newest = next(reversed(table.rows)) if table.plain and table.rows else None
-    if newest is not None and annotations is BY_SELF is table.rows[newest]:
+    rows = table.rows
+    if annotations is BY_SELF and rows and table.plain and rows[newest := next(reversed(rows))] is BY_SELF:
         table.remove(newest)
-        external_change(agent, "-", symbol, newest, BY_SELF)
+        raise_event(agent, table.deleted, newest, BY_SELF)
     else:
         delete_any(agent, symbol, annotations)
-    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations))
+    new = insert(table, row, annotations)
+    return None if new is None else raise_event(agent, table.added, row, new, True)
 
 
 def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``+>b``: the belief answers last."""
-    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations, last=True))
+    table = agent.beliefs[symbol]
+    new = insert(table, row, annotations, last=True)
+    return None if new is None else raise_event(agent, table.added, row, new, True)
 
 
 def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
     """``++b``: the event is an external one."""
-    return _own_event(agent, "+", symbol, row, insert(agent, symbol, row, annotations), apart=True)
+    table = agent.beliefs[symbol]
+    new = insert(table, row, annotations)
+    return None if new is None else raise_event(agent, table.added, _copied(row), new)
 
 
-def _own_event(
+def _copied(row: Row) -> Row:
+    """The arguments of an external event of a step: they share no variable with the step."""
+    names: dict[Var, Var] = {}
+    return tuple(rename(argument, names) for argument in row)
+
+
+def raise_event(
     agent: Circumstance,
-    operator: str,
-    symbol: Functor,
+    kind: Trigger,
     row: Row,
-    annotations: Annotations | None,
-    apart: bool = False,
+    annotations: Annotations,
+    own: bool = False,
+    cause: Cause | None = None,
+    believed: bool = True,
 ) -> Raised:
-    """Raise the event of a belief that a step has changed: for the step's intention, or (*apart*) as an external one.
+    """Raise the event of a belief that changed, or (not *believed*) of a signal, if a plan or observer needs it.
 
     Args:
-        annotations: those that came or went; None if none did.
+        agent: whose belief it is.
+        kind: of the event.
+        row: the arguments of the belief.
+        annotations: those that came or went.
+        own: a step has changed it: the event is for its intention, and returned. Others are external, and queued.
+        cause: why it changed; None for what the agent is doing.
+        believed: whether there is such a belief.
     """
-    if annotations is None:
-        return None
-    table, waits = agent.beliefs[symbol], agent.waits
-    kind = table.added if operator == "+" else table.deleted
-    if waits.conditions:
-        note_change(agent, symbol, row)
+    options, waits = agent.options, agent.waits
     if agent.observers.hear_beliefs:
-        _tell_change(agent, operator, symbol, row, annotations, agent.cause_now())
-    apart = apart or agent.options.new_focus
-    if (apart or not (agent.events or agent.intentions)) and not _matters(agent, kind):
-        return None  # nothing comes in between: the event would only be taken up and skipped
-    goal = (kind, *row)
-    if apart:
-        agent.post((with_own_variables(goal), None, annotations, agent.cause_now()))
+        cause = cause or agent.cause_now()
+        _tell_change(agent, kind, row, annotations, cause, believed)
+    if waits.conditions:
+        note_change(agent, kind.functor, row)
+    if (
+        agent.library.selects[kind] is None
+        and options.events == "discard"
+        and not waits.events
+        # With nothing in between, the event would only be taken up and skipped.
+        and not (own and (agent.events or agent.intentions) and not options.new_focus)
+    ):
         return None
-    return goal if annotations is BY_SELF else Posted(goal, annotations)
+    if own and not options.new_focus:
+        return (kind, *row) if annotations is BY_SELF else Posted((kind, *row), annotations)
+    agent.post(((kind, *(_copied(row) if own else row)), None, annotations, cause))
+    return None
 
 
 def _tell_change(
     agent: Circumstance,
-    operator: str,
-    symbol: Functor,
+    kind: Trigger,
     row: Row,
     annotations: Annotations,
     cause: Cause | None,
-    believed: bool = True,
+    believed: bool,
 ) -> None:
     """Notify observers of a belief that changed, or (not *believed*) of a signal."""
-    observers, table = agent.observers, agent.beliefs[symbol]
+    observers = agent.observers
     if believed and observers.mind is not None:
-        observers.mind.changed(operator, symbol, row, annotations, cause)
-    kind = table.added if operator == "+" else table.deleted
+        observers.mind.changed(kind.operator, kind.functor, row, annotations, cause)
     if observers.step is not None and not agent.may_handle(kind):
         observers.step.notes_unhandled(agent, (kind, *row), annotations)
-
-
-def _matters(agent: Circumstance, kind: Trigger) -> bool:
-    """Return whether an event may have an effect: there are plans or sub-plans for it, something waits for events, or those
-    without a plan are kept.
-    """
-    library = agent.library
-    return bool(
-        library.selects[kind] is not None
-        or agent.waits.events
-        or (library.reactions.of and library.reactions[kind])
-        or agent.options.events != "discard"
-    )
 
 
 def is_quiet(agent: Circumstance) -> bool:
@@ -141,14 +147,11 @@ def is_quiet(agent: Circumstance) -> bool:
     )
 
 
-def insert(
-    agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, last: bool = False
-) -> Annotations | None:
+def insert(table: Table, row: Row, annotations: Annotations, last: bool = False) -> Annotations | None:
     """Add a belief; return its new annotations, or None (then there is no event)."""
-    table = agent.beliefs[symbol]
     for argument in row:  # most are numbers, strings and atoms
         if argument.__class__ not in ATOMIC and not is_key(argument):
-            return _insert_aside(table, symbol, row, annotations, last)
+            return _insert_aside(table, row, annotations, last)
     held = table.rows.get(row) if not table.late else table.get(row)
     return table.add(row, annotations, last) if held is None else _merge(table, row, held, annotations)
 
@@ -162,15 +165,13 @@ def _merge(table: Table, entry: Any, held: Annotations, annotations: Annotations
     return new
 
 
-def _insert_aside(
-    table: Table, symbol: Functor, row: Row, annotations: Annotations, last: bool
-) -> Annotations | None:
+def _insert_aside(table: Table, row: Row, annotations: Annotations, last: bool) -> Annotations | None:
     """Add a belief whose arguments are not keys (variables, annotations, very long lists): found by unification."""
     known = table.aside(row)
     if known is not None:
         held = table.get(known)
         return _merge(table, known, held or (), annotations)
-    return table.add(OpenFact(rename(literal(symbol, row)), annotations), annotations, last)
+    return table.add(OpenFact(rename(literal(table.functor, row)), annotations), annotations, last)
 
 
 def delete_belief(
@@ -182,7 +183,8 @@ def delete_belief(
     removed = _remove_first(agent, symbol, arguments, annotations, bind=not apart)
     if removed is None:
         return None
-    return _own_event(agent, "-", symbol, removed, annotations, apart)
+    deleted = agent.beliefs[symbol].deleted
+    return raise_event(agent, deleted, _copied(removed) if apart else removed, annotations, own=not apart)
 
 
 def _is_property(agent: Circumstance, symbol: Functor, arguments: Row, annotations: Annotations) -> bool:
@@ -241,7 +243,7 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
     arguments = tuple(Var() for _ in range(symbol.arity))
     removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
     if removed is not None:
-        external_change(agent, "-", symbol, removed, resolve_all(annotations))
+        raise_event(agent, agent.beliefs[symbol].deleted, removed, resolve_all(annotations))
 
 
 def operand_error(term: Term) -> str:
@@ -267,9 +269,10 @@ def believe(
     agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations, cause: Cause | None = None
 ) -> None:
     """The same for a literal in parts, with a source among its annotations."""
-    new = insert(agent, symbol, row, annotations)
+    table = agent.beliefs[symbol]
+    new = insert(table, row, annotations)
     if new is not None:
-        external_change(agent, "+", symbol, row, new, cause)
+        raise_event(agent, table.added, row, new, cause=cause)
 
 
 def untell(agent: Circumstance, term: Term) -> bool:
@@ -280,43 +283,20 @@ def untell(agent: Circumstance, term: Term) -> bool:
     annotations = with_source(annotations)
     removed = _remove_first(agent, symbol, row, annotations, bind=False)
     if removed is not None:
-        external_change(agent, "-", symbol, removed, annotations)
+        raise_event(agent, agent.beliefs[symbol].deleted, removed, annotations)
     return removed is not None
-
-
-def external_change(
-    agent: Circumstance,
-    operator: str,
-    symbol: Functor,
-    row: Row,
-    annotations: Annotations,
-    cause: Cause | None = None,
-    believed: bool = True,
-) -> None:
-    """Raise the external event of a belief change, or (not *believed*) of a signal, if a plan or observer needs it."""
-    if agent.observers.hear_beliefs:
-        cause = cause or agent.cause_now()
-        _tell_change(agent, operator, symbol, row, annotations, cause, believed)
-    table = agent.beliefs[symbol]
-    kind = table.added if operator == "+" else table.deleted
-    if _matters(agent, kind):
-        agent.post(((kind, *row), None, annotations, cause))
-    if agent.waits.conditions:
-        note_change(agent, symbol, row)
 
 
 def abolish(agent: Circumstance, pattern: Term) -> None:
     """``.abolish``: delete all matches, with all their sources, whichever of them the pattern names."""
     symbol, arguments, annotations = parts(pattern)
-    tables = list(agent.beliefs.items()) if symbol is None else [(symbol, agent.beliefs[symbol])]
-    for functor_, table in tables:
+    for table in list(agent.beliefs.values()) if symbol is None else [agent.beliefs[symbol]]:
         for entry, held in list(table.candidates(arguments) if symbol else table.entries()):
-            _abolish_entry(agent, functor_, table, entry, held, arguments if symbol else None, annotations)
+            _abolish_entry(agent, table, entry, held, arguments if symbol else None, annotations)
 
 
 def _abolish_entry(
     agent: Circumstance,
-    symbol: Functor,
     table: Table,
     entry: Any,
     held: Annotations,
@@ -334,7 +314,7 @@ def _abolish_entry(
     undo(trail, mark)
     if matches:
         table.remove(entry)
-        external_change(agent, "-", symbol, row, held)
+        raise_event(agent, table.deleted, row, held)
 
 
 def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None:
@@ -359,21 +339,23 @@ def take_percepts(agent: Circumstance) -> None:
     while agent.incoming.percepts:
         percepts = agent.incoming.percepts.popleft()
         try:
-            _take(agent, percepts, is_quiet(agent))
+            _take(agent, percepts)
         except InternalError:
             raise
         except Exception as fault:
             failure.report_skipped(agent, "percepts", fault)
 
 
-def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
-    """Add or remove the beliefs of percepts, and raise their events; of *quiet* ones only plans want to know.
+def _take(agent: Circumstance, percepts: list[Percept]) -> None:
+    """Add or remove the beliefs of percepts, and raise their events.
 
     Raises:
         InternalError: a literal of a percept is not a literal.
     """
-    beliefs, selects, reactions = agent.beliefs, agent.library.selects, agent.library.reactions
-    holders, reacts = beliefs.held_percepts, bool(reactions.of)
+    beliefs, selects = agent.beliefs, agent.library.selects
+    holders = beliefs.held_percepts
+    quiet = is_quiet(agent)
+    post = agent.events.append if quiet and agent.has_room_for(len(percepts)) else agent.post
     for percept in percepts:
         symbol, row, keyed = percept.kept or _keep(percept)
         kind, shown, annotations = percept.kind, percept.literal, percept.annotations
@@ -395,9 +377,9 @@ def _take(agent: Circumstance, percepts: list[Percept], quiet: bool) -> None:
             row = changed
         if not quiet:
             believed = kind != "signal"
-            external_change(agent, trigger.operator, symbol, row, annotations, percept.cause, believed)
-        elif selects[trigger] is not None or (reacts and reactions[trigger]):
-            agent.post(((trigger, *row), None, annotations, percept.cause))
+            raise_event(agent, trigger, row, annotations, cause=percept.cause, believed=believed)
+        elif selects[trigger] is not None:
+            post(((trigger, *row), None, annotations, percept.cause))
 
 
 def _take_unusual(
@@ -436,7 +418,8 @@ def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -
     known = agent.beliefs.held_percepts.get(percept.literal)
     if known is not None:
         return _believe_apart(agent, symbol, row, percept, known)
-    if insert(agent, symbol, row, percept.annotations) is None and agent.beliefs[symbol].get(row) is None:
+    table = agent.beliefs[symbol]
+    if insert(table, row, percept.annotations) is None and table.get(row) is None:
         return None
     agent.beliefs.held_percepts[percept.literal] = percept.annotations
     return row

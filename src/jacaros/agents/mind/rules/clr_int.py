@@ -22,7 +22,7 @@ from jacaros.errors import InternalError
 
 def pop_finished(agent: Circumstance, intention: Intention) -> bool:
     """Rule ClrInt: take finished plans off the stack; False when the intention goes no further now."""
-    frames = intention.frames
+    frames, handlers = intention.frames, intention.handlers
     while frames:
         frame = frames[-1]
         if frame[STEP] is not None:
@@ -30,15 +30,15 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         if frame[PLAN].special and frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
             Waiting(intention, GOAL_CONDITION).attach(frame, None)
             return False
-        trigger = frame[GOAL][0]
-        if trigger.failing:
-            index = intention.handlers.pop()
+        state = "achieved"
+        if handlers and frame[GOAL][0].failing:
+            state, index = "recovered", handlers.pop()
             frame = frames[index]
             del frames[index:]
         else:
             frames.pop()
-        if agent.features.meta and trigger.kind:
-            meta_events.observe(agent, intention, frame, "recovered" if trigger.failing else "achieved")
+        if agent.features.meta and frame[GOAL][0].kind:
+            meta_events.observe(agent, intention, frame, state)
             meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "achieved")
             meta_events.frame_state(agent, intention, frame, "finished")
         if agent.atomic is intention and not intention.is_atomic():

@@ -19,74 +19,78 @@ from jacaros.agents.mind.rules.sel_ev import (
     take_held_event,
     take_held_intention,
 )
-from jacaros.agents.mind.state.circumstance import INTERVAL, Circumstance, HeldEvent
+from jacaros.agents.mind.state.belief_base import MANY_NAMES
+from jacaros.agents.mind.state.circumstance import Circumstance, HeldEvent
 from jacaros.agents.mind.state.intention import Intention
 from jacaros.agents.terms.arithmetic import RUNNING
 from jacaros.errors import InternalError
 
 
-def run(agent: Circumstance, fuel: int) -> bool:
-    """Make at most *fuel* cycles; True when there is more to do."""
+def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - the whole cycle is here
+    """Sense, deliberate and act in at most *fuel* cycles; return whether there is more to do.
+
+    When nothing else needs a cycle, the next one would select the event and the intention of this one. So `execute`
+    stays with an intention until something does: another event or intention, or input (`Incoming.called`).
+    """
+    counts, incoming, always = agent.counts, agent.incoming, agent.options.percept_interval == 1
+    end = counts.cycles + fuel
     # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
     before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
     agent.running = True
     try:
         if agent.sleep == "asleep":
             meta_events.awake(agent)
-        return _cycles(agent, agent.counts.cycles + fuel)
+        while counts.cycles < end and not agent.stopped:
+            chosen: Intention | bool | None = None
+            if agent.held is None:
+                if incoming.called or not always:
+                    look_around(agent, counts.cycles)
+                if agent.events:
+                    if agent.atomic is None:
+                        chosen = handle_event(agent)
+                    else:
+                        handle_atomic_event(agent)
+            else:
+                chosen = _continue_held(agent)
+            if chosen is None:
+                chosen = _select(agent)
+            if chosen is False:
+                break
+            if chosen is not True:
+                try:
+                    counts.cycles = end - execute(agent, chosen, end - counts.cycles)
+                except Exception as fault:
+                    failure.drop_after_error(agent, agent.current or chosen, fault)
+                    counts.cycles += 1
+                if agent.waits.requeued:
+                    agent.events.extendleft(reversed(agent.waits.requeued))
+                    agent.waits.requeued.clear()
+            if not (agent.events or agent.intentions or incoming.called or agent.features.edges):
+                return False  # the next cycle would find nothing to do
+        # Without cycles left it was not seen yet that nothing is to be done: that takes another look.
+        return not agent.stopped and (counts.cycles >= end or has_work(agent))
     finally:
         agent.running = False
         RUNNING.reset(before)
-        if agent.counts.cycles >= agent.counts.next_check:
+        if len(agent.beliefs) > counts.many_names:
             agent.beliefs.forget_names()
-            agent.counts.next_check = agent.counts.cycles + max(INTERVAL, len(agent.beliefs))
+            counts.many_names = max(MANY_NAMES, 2 * len(agent.beliefs))
         if agent.waits.needs:
             needs.sweep(agent)
 
 
-def _cycles(agent: Circumstance, end: int) -> bool:  # noqa: C901 - the whole cycle is here
-    """Sense, deliberate and act until the cycle *end*; return whether there is more to do.
-
-    When nothing else needs a cycle, the next one would select the event and the intention of this one. So `execute`
-    stays with an intention until something does: another event or intention, or input (`Incoming.called`).
-    """
-    counts, incoming, always = agent.counts, agent.incoming, agent.options.percept_interval == 1
-    while counts.cycles < end and not agent.stopped:
-        chosen: Intention | bool | None = None
-        if agent.held is None:
-            if incoming.called or not always:
-                look_around(agent, counts.cycles)
-            if agent.events:
-                (handle_event if agent.atomic is None else handle_atomic_event)(agent)
-        else:
-            chosen = _continue_held(agent)
-        if chosen is None:
-            if agent.held is not None:
-                break
-            if agent.conditioned:
-                end_achieved_goals(agent)
-            chosen = select_intention(agent)
-            if chosen is None:
-                chosen = _waits(agent)
-            elif agent.observers.step is not None and is_held_before_step(agent, chosen):
-                break
-        if chosen is False:
-            break
-        if chosen is not True:
-            left = fuel = end - counts.cycles
-            try:
-                left = execute(agent, chosen, fuel)
-            except Exception as fault:
-                failure.drop_after_error(agent, agent.current or chosen, fault)
-                left -= 1
-            counts.cycles += fuel - left
-            if agent.waits.requeued:
-                agent.events.extendleft(reversed(agent.waits.requeued))
-                agent.waits.requeued.clear()
-        if not (agent.events or agent.intentions or incoming.called or agent.features.edges):
-            return False  # the next cycle would find nothing to do
-    # Without cycles left it was not seen yet that nothing is to be done: that takes another look.
-    return not agent.stopped and (counts.cycles >= end or has_work(agent))
+def _select(agent: Circumstance) -> Intention | bool:
+    """Select the intention that makes a step; without one, return whether there may be one in the next cycle."""
+    if agent.held is not None:
+        return False
+    if agent.conditioned:
+        end_achieved_goals(agent)
+    intention = select_intention(agent)
+    if intention is None:
+        return _waits(agent)
+    if agent.observers.step is not None and is_held_before_step(agent, intention):
+        return False
+    return intention
 
 
 def _continue_held(agent: Circumstance) -> Intention | bool | None:
@@ -123,7 +127,6 @@ def has_work(agent: Circumstance) -> bool:
 def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in new input: percepts, ends of waits, one message."""
     incoming, waits = agent.incoming, agent.waits
-    agent.counts.next_check -= 1  # what comes in may bring new names as any step does
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
     if looks and incoming.percepts:
         take_percepts(agent)
@@ -138,16 +141,17 @@ def look_around(agent: Circumstance, cycle: int) -> None:
         else:
             for message in agent.selections.select_messages():
                 read_message(agent, message)
-    incoming.called = bool(
+    incoming.called = True
+    if not (
         incoming.percepts
         or incoming.messages
         or incoming.tasks
-        or waits.due
-        or waits.restless
+        or (waits.conditions and (waits.due or waits.restless))
         or agent.conditioned
         or agent.observers.step is not None
         or not agent.selections.plain
-    )
+    ):
+        incoming.called = False
 
 
 def looks_now(agent: Circumstance, cycle: int) -> bool:

@@ -9,7 +9,7 @@ from jacaros.agents.mind.rules.clr_int import pop_finished
 from jacaros.agents.mind.rules.failure import fail_intention, note_lack_of_memory
 from jacaros.agents.mind.rules.sel_ev import is_held_before_event, is_ready
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import STEP, Frame, Intention
+from jacaros.agents.mind.state.intention import STEP, Event, Frame, Intention
 from jacaros.agents.mind.state.plan import FAILED, SUSPENDED, Fail
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.terms.unifier import undo
@@ -39,67 +39,72 @@ def execute(agent: Circumstance, intention: Intention, fuel: int) -> int:  # noq
     Return what is left of *fuel*, the number of steps that it may make. An atomic intention makes one.
     """
     agent.current = intention
-    last = 0 if agent.atomic is None else fuel - 1
-    if agent.atomic_over:
-        agent.atomic, agent.atomic_over = None, False
+    last = 0
+    if agent.atomic is not None:
+        last = fuel - 1
+        if agent.atomic_over:
+            agent.atomic, agent.atomic_over = None, False
     frames, trail = intention.frames, agent.trail
     events, intentions, incoming = agent.events, agent.intentions, agent.incoming
-    listened = agent.waits.events or agent.features.meta or agent.selections.urgencies is not None
     while True:
         fuel -= 1
         frame: Frame = frames[-1]
         step: Any = frame[STEP]
-        posted: Any = None
-        if step is not None:
+        posted: Any
+        if step is None:
+            posted = None  # the event of the last step had no plan
+        else:
             try:
                 posted = step(agent, frame)
             except Exception as fault:
                 posted = step_failed(agent, intention, fault)
-            if posted is FAILED:
-                posted = step_failed(agent, intention)
             if trail:
+                if posted is FAILED:
+                    undo(trail, 0)
                 trail.clear()
         if agent.stopped or intention.dropped:
             break
         if posted is None:
             # If it has suspended itself, its step, which may be the last one, is over once it is resumed.
-            if intention.suspended is not None or (
-                frame[STEP] is None and not pop_finished(agent, intention)
+            if frame[STEP] is None and (
+                intention.suspended is not None or not pop_finished(agent, intention)
             ):
                 break
-        elif posted is SUSPENDED:
-            tell_waiting(agent, intention)
-            break
-        else:
-            goal, annotations = (
-                (posted, BY_SELF) if posted.__class__ is tuple else (posted.goal, posted.annotations)
-            )
-            if listened:
-                announce(agent, intention, goal, annotations)
-            alone = not (fuel <= last or events or intentions or incoming.called)
-            if (push if alone else _post)(agent, intention, goal, annotations):
-                if alone and agent.atomic is None:
-                    continue  # the next cycle, which would handle this event alone, has begun
+            if fuel == last or events or intentions or incoming.called:
+                agent.make_ready(intention)
+                break
+            continue
+        goal, annotations = posted, BY_SELF
+        if posted.__class__ is not tuple:
+            if posted is FAILED:
+                posted = step_failed(agent, intention)
+            if posted is SUSPENDED:
+                tell_waiting(agent, intention)
+                break
+            goal, annotations = posted.goal, posted.annotations
+        if agent.unusual or agent.waits.events:
+            announce(agent, intention, goal, annotations)
+        if fuel == last or events or intentions or incoming.called:
+            if agent.atomic is None:
+                events.append((goal, intention, annotations, None))
+            elif _handle_now(agent, (goal, intention, annotations, None)):
                 agent.make_ready(intention)
             break
-        if fuel <= last or events or intentions or incoming.called:
+        # The next cycle, which would handle this event alone, begins.
+        if not push(agent, intention, goal, annotations):
+            break
+        if agent.atomic is not None:
             agent.make_ready(intention)
             break
     agent.current = None
     return fuel
 
 
-def _post(agent: Circumstance, intention: Intention, goal: Goal, annotations: EventAnnotations) -> bool:
-    """Queue a goal or event that a step has posted; that of an atomic intention is handled now.
-
-    Return whether the intention can continue.
-    """
-    event = (goal, intention, annotations, None)
-    if agent.atomic is not intention:
-        agent.events.append(event)
-        return False
-    return not is_held_before_event(agent, event, ends_cycle=True) and push(
-        agent, intention, goal, annotations
+def _handle_now(agent: Circumstance, event: Event) -> bool:
+    """Handle an event of the atomic intention, for which all others wait; return whether the intention can continue."""
+    goal, intention, annotations, _ = event
+    return not is_held_before_event(agent, event, ends_cycle=True) and bool(
+        push(agent, intention, goal, annotations)
     )
 
 

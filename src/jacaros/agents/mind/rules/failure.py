@@ -241,7 +241,7 @@ def handles_own(agent: Circumstance, intention: Intention, kind: Trigger) -> boo
 def _goal_below(intention: Intention, index: int, handlers: int) -> tuple[int, int]:
     """Return the index of the next goal down the stack that a running handler is not for, and the handlers below it."""
     index -= 1
-    while index >= 0 and intention.frames[index][GOAL][0].failing:
+    while handlers and index >= 0 and intention.frames[index][GOAL][0].failing:
         handlers -= 1
         index = intention.handlers[handlers] - 1
     return index, handlers

@@ -232,6 +232,7 @@ def suspend_intention(agent: Circumstance, intention: Intention, reason: Term = 
     if intention.suspended is not None and not is_preempted(intention):
         return
     intention.suspended = reason
+    agent.incoming.called = True  # an intention that suspends itself ends its turn
     agent.take_out(intention)
     if agent.features.meta:
         for frame in intention.frames:

@@ -140,6 +140,7 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     """
     agent.observers.goal = observer
     agent.features.meta = True
+    agent.look_at_observers()
 
 
 def observe_mind(agent: Circumstance, observer: MindObserver | None) -> None:

@@ -53,6 +53,7 @@ def look_at_plans(agent: Circumstance) -> None:
         # No plan would notice; an agent that gets such a plan later is awake then.
         agent.sleep = "awake"
     urgency.plans_changed(agent)
+    agent.look_at_observers()
     if agent.observers.mind is not None:
         agent.observers.mind.plans_changed()
 

@@ -49,7 +49,7 @@ from jacaros.agents.terms.values import (
 from jacaros.errors import InternalError
 
 ERROR = functor("error", 1)
-_IMMEDIATE = ("tell", "achieve", "signal")
+_IMMEDIATE = frozenset({"tell", "achieve", "signal"})
 """Performatives whose only effect is an event, which takes its place in the queue."""
 RECEIVED = trigger("+", "!", functor("kqml_received", 4))
 
@@ -257,7 +257,7 @@ def _signal(agent: Circumstance, message: SpeechAct) -> None:
             _refuse(agent, message)
         else:
             marked = annotation_set((*annotations, atom("signal")))
-            belief_update.external_change(agent, "+", symbol, row, marked, believed=False)
+            belief_update.raise_event(agent, trigger("+", "", symbol), row, marked, believed=False)
 
 
 def _refuse(agent: Circumstance, message: SpeechAct) -> None:

@@ -1,14 +1,9 @@
 """An event is handled: rule SelEv, and the intention that it begins or continues."""
 
-from collections.abc import Sequence
-
 from jacaros.agents.mind.rules import failure, forks
 from jacaros.agents.mind.rules.add_im import (
-    begin_plan,
     log_inapplicable,
     push,
-    select_for_reasons,
-    select_plan,
 )
 from jacaros.agents.mind.rules.clr_int import remove_event
 from jacaros.agents.mind.rules.failure import unplanned
@@ -20,11 +15,9 @@ from jacaros.agents.mind.state.intention import (
     EVENT_CAUSE,
     EVENT_GOAL,
     EVENT_INTENTION,
-    PLAN,
     Event,
     Intention,
 )
-from jacaros.agents.mind.state.plan import Plan
 from jacaros.errors import InternalError
 
 # An observer holds an agent in the middle of a reasoning cycle: before an event is handled, or before a step is made.
@@ -88,24 +81,27 @@ def take_held_intention(agent: Circumstance) -> Intention | None:
     return intention
 
 
-def handle_event(agent: Circumstance, event: Event | None = None) -> None:
+def handle_event(agent: Circumstance) -> Intention | None:
     """Rule SelEv and the rules after it: handle one event; external events without a plan are skipped.
 
-    *event* is the one before which an observer held the agent, if it did.
+    Return the intention that it begins if it is the only one that can run.
     """
-    while event is not None or agent.events:
-        if event is None:
-            event = agent.events.popleft() if agent.selections.plain else agent.selections.select_event()
-            if event is None or (agent.observers.step is not None and is_held_before_event(agent, event)):
-                return
+    while agent.events:
+        event = agent.events.popleft() if agent.selections.plain else agent.selections.select_event()
+        if event is None or (agent.observers.step is not None and is_held_before_event(agent, event)):
+            return None
         try:
-            if (begin_intention if event[EVENT_INTENTION] is None else _continue_intention)(agent, event):
-                return
-        except InternalError:
-            raise
+            handled = (
+                begin_intention(agent, event)
+                if event[EVENT_INTENTION] is None
+                else _continue_intention(agent, event)
+            )
         except Exception as fault:
             skip_event(agent, event, fault)
-        event = None
+            continue
+        if handled:
+            return None if handled is True else handled
+    return None
 
 
 def _continue_intention(agent: Circumstance, event: Event) -> bool:
@@ -120,11 +116,18 @@ def _continue_intention(agent: Circumstance, event: Event) -> bool:
 
 
 def handle_held_event(agent: Circumstance, event: Event) -> None:
-    """Handle the event before which the agent was held."""
+    """Handle the event before which the agent was held; the next one if that is skipped."""
     if agent.atomic is not None:
         _push_atomic(agent, agent.atomic, event)
-    else:
-        handle_event(agent, event)
+        return
+    try:
+        handled = (begin_intention if event[EVENT_INTENTION] is None else _continue_intention)(agent, event)
+    except Exception as fault:
+        skip_event(agent, event, fault)
+        handled = False
+    begun = handled if handled else handle_event(agent)
+    if isinstance(begun, Intention):
+        agent.make_ready(begun)
 
 
 def handle_atomic_event(agent: Circumstance) -> None:
@@ -142,8 +145,6 @@ def _push_atomic(agent: Circumstance, intention: Intention, event: Event) -> Non
     try:
         if push(agent, intention, goal, annotations):
             agent.make_ready(intention)
-    except InternalError:
-        raise
     except Exception as fault:
         skip_event(agent, event, fault)
 
@@ -162,7 +163,13 @@ def event_of(agent: Circumstance, intention: Intention) -> Event | None:
 
 
 def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
-    """Report an exception that escapes while an event is handled; the agent continues with the next event."""
+    """Report an exception that escapes while an event is handled; the agent continues with the next event.
+
+    Raises:
+        InternalError: that is what *fault* is.
+    """
+    if isinstance(fault, InternalError):
+        raise fault
     agent.current = None
     failure.report_skipped(agent, "event", fault)
     intention = event[EVENT_INTENTION]
@@ -170,29 +177,29 @@ def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
         failure.drop_after_error(agent, intention, fault)
 
 
-def begin_intention(agent: Circumstance, event: Event) -> bool:
-    """Begin an intention for an external event; False when it has no plan and is dropped silently."""
+def begin_intention(agent: Circumstance, event: Event) -> Intention | bool:
+    """Begin an intention for an external event; return False when it has no plan and is dropped silently.
+
+    Return the intention if no other can run: it need not be queued.
+    """
     goal, _, annotations, cause = event
-    kind, reactions, reacted = goal[0], agent.library.reactions, False
-    if reactions.of and kind.kind == "" and reactions[kind]:
-        reacted = _react(agent, event, reactions[kind])
-    if agent.observers.mind is None:
-        frame = select_plan(agent, goal, annotations)
-    else:
-        frame, cause = select_for_reasons(agent, agent.observers.mind, goal, annotations, None, cause)
-    if frame is None:
-        return _begin_without_plan(agent, (goal, None, annotations, cause), reacted)
-    intention = Intention(agent, cause)
-    intention.frames.append(frame)
-    if kind.failing:
-        intention.handlers.append(0)
-    # A goal that needs something has annotations beside its source.
-    plain = not kind.kind or (isinstance(annotations, tuple) and len(annotations) == 1)
-    if (plain and not (frame[PLAN].special or agent.features.meta)) or begin_plan(agent, intention, frame):
-        if agent.selections.urgencies is None:
-            agent.intentions.append(intention)
-        else:
-            agent.make_ready(intention)
+    kind = goal[0]
+    reacted = False
+    if agent.holders and kind.kind == "":
+        reacted = _react(agent, event)
+    begun = push(agent, None, goal, annotations, cause)
+    if begun is False:
+        return _begin_without_plan(agent, event, reacted)
+    if not begun:
+        return True  # it waits for what it needs
+    if not (
+        agent.intentions
+        or agent.conditioned
+        or agent.selections.urgencies is not None
+        or agent.observers.step is not None
+    ):
+        return begun
+    agent.make_ready(begun)
     return True
 
 
@@ -201,7 +208,7 @@ def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> boo
     goal, _, annotations, cause = event
     trigger = goal[0]
     if trigger.kind == "" or trigger.operator == "^":
-        if agent.options.verbose > 1 and not reacted and agent.library.selects[trigger] is not None:
+        if not reacted:
             log_inapplicable(agent, goal, annotations)
         if agent.options.events == "requeue" and not reacted and trigger.operator != "^":
             agent.waits.requeued.append(event)
@@ -214,10 +221,10 @@ def _begin_without_plan(agent: Circumstance, event: Event, reacted: bool) -> boo
     return True
 
 
-def _react(agent: Circumstance, event: Event, plans: Sequence[Plan]) -> bool:
-    """Every intention with one of *plans*, which have sub-plans for an external event, reacts to it."""
+def _react(agent: Circumstance, event: Event) -> bool:
+    """Every intention with a plan that has sub-plans for an external event reacts to it."""
     goal, _, annotations, cause = event
-    reactions = forks.react(agent, goal, annotations, plans)
+    reactions = forks.react(agent, goal, annotations, agent.library.reactions[goal[0]])
     for owner, outer, frame in reactions:
         if agent.observers.mind is not None:
             cause = agent.observers.mind.selected(goal, annotations, None, frame, event[EVENT_CAUSE])

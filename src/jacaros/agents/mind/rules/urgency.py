@@ -29,7 +29,7 @@ from jacaros.agents.mind.rules.proc_msg import RECEIVED
 from jacaros.agents.mind.rules.query import solve_formula
 from jacaros.agents.mind.rules.searching import run
 from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.belief_base import SELECT_OPTION
+from jacaros.agents.mind.state.belief_base import SELECT_OPTION, Table
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -48,7 +48,7 @@ from jacaros.agents.mind.state.triggers import trigger as event_kind
 from jacaros.agents.terms.plans import trigger
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import undo
-from jacaros.agents.terms.values import Term, Var, functor_of, is_list, list_items
+from jacaros.agents.terms.values import Functor, Term, Var, functor_of, is_list, list_items
 
 # The selection functions of a fair agent.
 #
@@ -58,16 +58,31 @@ from jacaros.agents.terms.values import Term, Var, functor_of, is_list, list_ite
 # first.
 
 
+class OptionFilter(Table):
+    """The beliefs and rules of an agent that filter applicable plans: from the first one on, they are asked."""
+
+    __slots__ = ("_agent",)
+
+    def __init__(self, functor: Functor, agent: Circumstance) -> None:
+        super().__init__(functor, agent.beliefs)
+        self._agent = agent
+
+    def add(self, row: Any, annotations: tuple[Term, ...], last: bool = False) -> tuple[Term, ...] | None:
+        """Put in an entry, see `Table.add`."""
+        self._agent.unusual = True
+        return super().add(row, annotations, last)
+
+
 class Fair:
     """See `jacaros.agents.mind.state.circumstance.Selections`."""
 
-    __slots__ = ("agent", "option_filter", "plain", "refused", "urgencies")
-
-    chooses = False
+    __slots__ = ("agent", "chooses", "option_filter", "plain", "refused", "urgencies")
 
     def __init__(self, agent: Circumstance) -> None:
         self.agent = agent
-        self.plain = True
+        self.plain, self.chooses = True, False
+        if SELECT_OPTION not in agent.beliefs:
+            agent.beliefs[SELECT_OPTION] = OptionFilter(SELECT_OPTION, agent)
         self.option_filter = agent.beliefs[SELECT_OPTION]
         self.refused = False
         self.urgencies: Mapping[Trigger, int] | None = None

@@ -69,7 +69,7 @@ class Table:
     """
 
     functor: Functor
-    _base: "BeliefTables | None" = None
+    _base: "BeliefTables" = field(default_factory=lambda: BeliefTables())  # noqa: PLW0108 - it is defined below
     added: Trigger = field(init=False)
     deleted: Trigger = field(init=False)
     rows: dict[Any, tuple[Term, ...]] = field(default_factory=dict)
@@ -158,12 +158,11 @@ class Table:
         Gives the annotations back, None when the base refuses.
         """
         base = self._base
-        if base is not None:
-            if base.room < 1 and not base.admits():
-                return None
-            base.room -= 1
-            if base.searching:
-                self._part(base.searching)
+        if base.room < 1 and not base.admits():
+            return None
+        base.room -= 1
+        if base.searching:
+            self._part(base.searching)
         if last:
             if not self.late:
                 self.late = OrderedDict()
@@ -210,17 +209,21 @@ class Table:
 
     def remove(self, row: Any) -> None:
         """Take out a row, rule or open belief that is held."""
-        if self._base is not None and self._base.searching:
-            self._part(self._base.searching)
-        if row in self.late:
+        searching = self._base.searching
+        if searching:
+            self._part(searching)
+        if not self.plain and row in self.late:
             del self.late[row]
             self._note_late(row, -1)
             return
         discard(self.rows, row)
-        if row.__class__ is not tuple:
+        if self.indexes and row.__class__ is tuple:
+            self._remove_from_indexes(row)
+        elif not self.plain and row.__class__ is not tuple:
             self.others -= 1
             self._note(row, -1)
-            return
+
+    def _remove_from_indexes(self, row: Row) -> None:
         for positions, index in self.indexes.items():
             key = key_of(row, positions)
             bucket = index[key]
@@ -232,7 +235,7 @@ class Table:
     def _changed(self) -> None:
         """Rules, or facts among them, came or went: another function searches for them from now on."""
         self.plain = not self.others and not self.late
-        engine = None if self.plain or self._base is None else self._base.engine
+        engine = None if self.plain else self._base.engine
         made = None if engine is None else engine.searches(self)
         self.searches, self.deep = (None, None) if made is None else made
 
@@ -369,13 +372,24 @@ class BeliefTables(dict[Functor, Table]):
         namespace_properties: properties that programs give to namespaces.
     """
 
-    budget: SearchBudget | None = None
+    __slots__ = (
+        "_limit",
+        "_refusing",
+        "budget",
+        "engine",
+        "held_percepts",
+        "namespace_properties",
+        "next_call",
+        "room",
+        "searching",
+    )
 
     def __init__(
         self, engine: Engine | None = None, limit: float = inf, refusing: Budget | None = None
     ) -> None:
         super().__init__()
         self.engine = engine
+        self.budget: SearchBudget | None = None
         self.room = self._limit = limit
         self._refusing = refusing
         self.searching = 0

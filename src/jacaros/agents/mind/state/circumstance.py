@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple, Protocol
 
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.state.act import Architecture, MindObserver, Percept, SpeechAct
-from jacaros.agents.mind.state.belief_base import BeliefTables, Table
+from jacaros.agents.mind.state.belief_base import MANY_NAMES, BeliefTables, Table
 from jacaros.agents.mind.state.budget import Budget, Options, budgets
 from jacaros.agents.mind.state.intention import (
     EVENT_GOAL,
@@ -78,10 +78,6 @@ class Selections(Protocol):
 
     def note_intention(self, intention: Intention) -> None:
         """An intention that waited, was suspended or is new is about to be queued."""
-
-
-INTERVAL = 1_000
-"""Reasoning cycles between two looks at the names that an agent uses; more when there are more names."""
 
 
 @dataclass(frozen=True)
@@ -193,14 +189,13 @@ class Counts:
     Attributes:
         cycles: number of reasoning cycles made.
         intentions: number of intentions so far.
-        next_check: number of the cycle after which beliefs are counted, and unused names dropped, next; a look at what
-            comes in counts as one.
+        many_names: with more names of beliefs, those without a belief are dropped.
         next_look: number of the cycle in which percepts and messages are looked at next.
     """
 
     cycles: int = 0
     intentions: int = 0
-    next_check: int = INTERVAL
+    many_names: int = MANY_NAMES
     next_look: int = 0
 
 
@@ -267,6 +262,8 @@ class Circumstance(_Rules):
             its queue meanwhile. None if the agent is not held.
         running: the agent has its turn: at its end, the host checks whether there is more to do.
         stopped: the agent is over.
+        unusual: events take more than the first applicable plan: there are sub-plans, urgent plans, or plans for goal
+            states, the program or the project chooses, or an observer is told. It may stay set when that has ended.
         sleep: ``drowsy``: it is idle since it last awoke, and has got the event for it; ``asleep``: its plans for it
             have run.
     """
@@ -301,18 +298,26 @@ class Circumstance(_Rules):
     held: HeldEvent | Intention | None = None
     running: bool = False
     stopped: bool = False
+    unusual: bool = False
 
     def __post_init__(self, plans: ProgramPlans) -> None:
         self.budgets = budgets(self)
         self.engine = plans.engine
         self.beliefs = BeliefTables(plans.engine, self.options.belief_limit, self.budgets["belief_limit"])
         self.library = PlanLibrary(plans)
-        self.look_at_observers()
 
     def look_at_observers(self) -> None:
-        """Note whether anything observes beliefs."""
+        """Note whether anything observes beliefs, or changes how plans are selected."""
         each = self.observers
         each.hear_beliefs = each.mind is not None or each.step is not None
+        self.unusual = bool(
+            each.mind is not None
+            or self.features.meta
+            or self.holders
+            or self.selections.urgencies is not None
+            or self.selections.chooses
+            or self.selections.option_filter.rows
+        )
 
     def warn_of_operand(self, what: str, value: Term) -> None:
         """Warn of an operand that is not a number."""
@@ -327,6 +332,7 @@ class Circumstance(_Rules):
         """Note a plan on the stack of an intention that is looked for from outside: by events, or in each cycle."""
         if plan.subplans:
             self.holders.setdefault(plan, {})[intention.id] = intention
+            self.unusual = True
         if plan.node.goal_condition is not None:
             self.conditioned[intention.id] = intention
             self.incoming.called = True
@@ -371,8 +377,7 @@ class Circumstance(_Rules):
 
     def may_handle(self, kind: Trigger) -> bool:
         """Return whether there may be a plan for an event kind (sub-plans are checked when the event is handled)."""
-        reactions = self.library.reactions
-        return self.library.selects[kind] is not None or bool(reactions.of and reactions[kind])
+        return self.library.selects[kind] is not None
 
     def do_soon(self, function: Callable[..., None], *arguments: object) -> None:
         """Call a function with the agent and the arguments at the beginning of the next cycle."""
@@ -389,6 +394,15 @@ class Circumstance(_Rules):
         urgencies = self.selections.urgencies
         if urgencies is not None and urgencies[kind]:
             self.selections.rank()
+
+    def has_room_for(self, number: int) -> bool:
+        """Return whether events that are all alike may simply be queued."""
+        options = self.options
+        return (
+            self.selections.urgencies is None
+            and len(self.events) + number <= options.event_limit
+            and len(self.alive) < options.intention_limit
+        )
 
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and resume the intentions that wait for it."""

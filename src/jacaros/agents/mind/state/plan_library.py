@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.agents.language import nodes
 from jacaros.agents.mind.state.belief_base import MANY_NAMES
 from jacaros.agents.mind.state.plan import Engine, Every, Plan, Select, every_plan, label_of, with_subplans
-from jacaros.agents.mind.state.triggers import Trigger
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.mind.state.triggers import trigger as trigger_of_kind
 from jacaros.agents.terms.values import SELF, Term, bare
 
@@ -83,6 +83,10 @@ class Reactions(dict[Trigger, Sequence[Plan]]):
         return self[kind]
 
 
+def _of_subplans(agent: Any, goal: Goal, annotations: EventAnnotations) -> None:
+    """None: only sub-plans are for a kind of event, and they are tried before all other plans."""
+
+
 class Selects(dict[Trigger, Select | None]):
     """What chooses a plan for each kind of event, made at its first event; None when no plan concerns it.
 
@@ -109,7 +113,8 @@ class Selects(dict[Trigger, Select | None]):
         """Make what chooses for a kind of event; kinds that no plan names share it for their number of arguments."""
         engine = self._program.engine
         if not plans:
-            return None
+            # Changes of beliefs are external events, to which sub-plans react whatever goal they are part of.
+            return _of_subplans if trigger.kind == "" and self._plans.reactions[trigger] else None
         if _name(plans, trigger):
             return engine.select(trigger, plans)
         key = (trigger.functor.arity, *plans)
@@ -131,7 +136,7 @@ class Selects(dict[Trigger, Select | None]):
     def forget(self, plan: Plan) -> None:
         """A plan came or went: the functions it concerns are made anew."""
         self._general.clear()
-        for trigger in [each for each in self if concerns(plan, each)]:
+        for trigger in [each for each in self if any(concerns(one, each) for one in every_plan([plan]))]:
             del self[trigger]
 
 
@@ -266,8 +271,7 @@ class PlanLibrary:
         """Whether the plans of an event kind are those of the program."""
         if not self.own and not self.removed:
             return True
-        changed = (*self.own, *self.removed)
-        return not any(concerns(plan, trigger) for plan in changed)
+        return not any(concerns(plan, trigger) for plan in every_plan((*self.own, *self.removed)))
 
     def every_option(self, trigger: Trigger) -> Every | None:
         """A generator function of the frames of all applicable plans of an event kind; None without relevant plans."""
