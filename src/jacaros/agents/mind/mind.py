@@ -299,8 +299,6 @@ class Mind(Circumstance):
 
     add_belief = belief_update.add_belief
     replace_belief = belief_update.replace_belief
-    add_belief_last = belief_update.add_belief_last
-    add_belief_apart = belief_update.add_belief_apart
     delete_belief = belief_update.delete_belief
     tell = belief_update.tell
     believe = belief_update.believe
@@ -322,15 +320,14 @@ class Mind(Circumstance):
             return None
         symbol, row, annotations = parts(term)
         if symbol is None:
-            raise Failure((ERROR, atom(belief_update.operand_error(term))))
+            error = "body_var_without_value" if free_variables(term) else "body_var_not_literal"
+            raise Failure((ERROR, atom(error)))
         own = own_annotations(annotations)
         if operator in ("-", "--"):
             return self.delete_belief(symbol, row, own, operator == "--")
         if operator == "-+":
             return self.replace_belief(symbol, row, BY_SELF if own == BY_SELF else own)
-        if operator == "++":
-            return self.add_belief_apart(symbol, row, own)
-        return (self.add_belief_last if operator == "+>" else self.add_belief)(symbol, row, own)
+        return self.add_belief(symbol, row, own, operator == "+>", operator != "++")
 
     def annotated_goal(
         self, goal: Goal, items: tuple[Term, ...], tail: Term, separate: bool = False

@@ -152,7 +152,8 @@ class Writer(pickle.Pickler):
         number = self._numbers.get(id(value))
         if number is not None:
             return number
-        shared = self._shared and _is_shared(value)
+        # Two minds of a program may share these.
+        shared = self._shared and (isinstance(value, _SHARED) or callable(value))
         form = () if shared else self._form(value)
         if form is None:
             return None
@@ -202,9 +203,7 @@ def _items_and_tail(term: Value) -> tuple[list[Value], Value]:
     return items, term
 
 
-def _is_shared(value: Value) -> bool:
-    """Return whether two minds of a program may share this object."""
-    return isinstance(value, Cause | Plan | Reference | Rule | nodes.Node) or callable(value)
+_SHARED = (Cause, Plan, Reference, Rule, nodes.Node)
 
 
 def _name_of(value: Value) -> tuple[str, str]:

@@ -116,7 +116,7 @@ class Chosen(Urgent):
 
     def __init__(self, mind: Mind, choose: Callable[..., object]) -> None:
         super().__init__(mind)
-        self.chooses = True
+        self.chooses = mind.unusual = True
         self._mind, self._choose = mind, choose
         self.look_anew()
 
@@ -155,7 +155,6 @@ def begin_as(mind: Mind, face: Agent) -> None:
     select_option = overridden(face, Agent, "select_option")
     if select_option is not None:
         mind.selections = Chosen(mind, select_option)
-        mind.look_at_observers()
 
 
 def ask(

@@ -384,10 +384,6 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
         else action.direct(tuple(map(written, node.arguments)))
     )
     with fn.writer.block(head(name)):
-        if node.name == ".fail" and not node.arguments:
-            fn.line("return FAILED")
-            compiler.finish(fn)
-            return
         fn.load(compiler.frame, names_in(node))
         if direct is not None:
             function = fn.constant(direct)
@@ -415,13 +411,7 @@ def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_na
     compiler.finish(fn)
 
 
-_ADDITIONS = {
-    "+": "add_belief(agent, ",
-    "+<": "add_belief(agent, ",
-    "+>": "agent.add_belief_last(",
-    "++": "agent.add_belief_apart(",
-    "-+": "replace_belief(agent, ",
-}
+_HOW_ADDED = {"+>": ", True", "++": ", False, False"}
 
 
 def _belief_change(compiler: BodyCompiler, step: nodes.BeliefChange, name: str, next_name: str) -> None:
@@ -449,7 +439,8 @@ def _literal_change(fn: FunctionBuilder, operator: str, operand: nodes.Literal) 
         fn.line(f"posted = delete_belief(agent, {symbol}, {arguments}, {annotations}, {operator == '--'})")
         return
     row = tuple_of([resolved(fn, build(fn, a)) for a in operand.arguments])
-    fn.line(f"posted = {_ADDITIONS[operator]}{symbol}, {row}, {annotations})")
+    function = "replace_belief" if operator == "-+" else "add_belief"
+    fn.line(f"posted = {function}(agent, {symbol}, {row}, {annotations}{_HOW_ADDED.get(operator, '')})")
 
 
 def _external(compiler: BodyCompiler, step: nodes.ExternalAction, name: str, next_name: str) -> None:

@@ -103,9 +103,10 @@ def comparison(fn: FunctionBuilder, node: nodes.Relation) -> str:
     written = BINARY[node.operator]
     left, right = as_name(fn, build(fn, node.left)), as_name(fn, build(fn, node.right))
     tests = [f"{o}.__class__ is float" for o in dict.fromkeys((left, right)) if not is_number(o)]
-    known = (f"compare({left}, {right})", "0") if written.orders else (f"equal({left}, {right})", "True")
-    plain, general = written.code_for(left, right), written.code_for(*known)
-    return f"({plain} if {' and '.join(tests)} else {general})" if tests else f"({plain})"
+    plain = written.code_for(left, right)
+    if not tests:
+        return f"({plain})"
+    return f"({plain} if {' and '.join(tests)} else related({node.operator!r}, {left}, {right}))"
 
 
 def _unification(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
@@ -318,16 +319,11 @@ def _result(fn: FunctionBuilder, target: nodes.Node, value: str, then: Then) -> 
 
 def _collecting(fn: FunctionBuilder, action: InternalAction, node: nodes.InternalAction, then: Then) -> None:
     template, formula, target = (nodes.Number(0.0), *node.arguments)[-3:]
-    if _is_question(fn, formula):
+    if not isinstance(formula, (nodes.Variable, nodes.Constant)):  # a variable stands for what is known later
         _result(fn, target, f"{fn.constant(action.function)}({collect(fn, template, formula)})", then)
     else:
         arguments = tuple_of([build(fn, a) for a in node.arguments])
         undoing(fn, f"agent.collect_formula({fn.constant(action)}, {arguments}, t)", names_in(node), then)
-
-
-def _is_question(fn: FunctionBuilder, formula: nodes.Node) -> bool:
-    """Whether a formula can be compiled here; a variable without annotations stands for one known later."""
-    return not isinstance(formula, (nodes.Variable, nodes.Constant))
 
 
 # --- which code is written for which formula ---------------------------------------------------------------

@@ -47,8 +47,8 @@ from jacaros.agents.mind.state.triggers import (
 )
 from jacaros.agents.terms.arithmetic import calculated
 from jacaros.agents.terms.operators import OPERATORS, qualify
-from jacaros.agents.terms.order import annotation_set, compare
-from jacaros.agents.terms.substitution import ATOMIC, equal, free_variables, rename, resolve
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.substitution import ATOMIC, equal, free_variables, related, rename, resolve
 from jacaros.agents.terms.unifier import Trail, undo, unify, unify_annotations
 from jacaros.agents.terms.values import (
     BY_SELF,
@@ -80,7 +80,7 @@ _FUNCTIONS = (
     values_of,
     calculated,
     cannot_wait,
-    compare,
+    related,
     constructed,
     deconstruct,
     deconstruct_in,

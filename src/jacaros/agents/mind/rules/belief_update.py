@@ -17,7 +17,7 @@ from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import Trigger, resolve_all
 from jacaros.agents.terms.collections import detached, holds_collection
 from jacaros.agents.terms.order import merge_annotations
-from jacaros.agents.terms.substitution import ATOMIC, free_variables, is_key, rename, resolve
+from jacaros.agents.terms.substitution import ATOMIC, is_key, rename, resolve
 from jacaros.agents.terms.unifier import undo, unify_annotations
 from jacaros.agents.terms.values import (
     BY_SELF,
@@ -38,11 +38,21 @@ Annotations = tuple[Term, ...]
 _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 
 
-def add_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
-    """``+b``: the event belongs to the intention that made it."""
+def add_belief(
+    agent: Circumstance,
+    symbol: Functor,
+    row: Row,
+    annotations: Annotations,
+    last: bool = False,
+    own: bool = True,
+) -> Raised:
+    """``+b``, and ``+>b`` (*last*), which answers last: the event belongs to the intention that made it.
+
+    That of ``++b`` (not *own*) is an external one.
+    """
     table = agent.beliefs[symbol]
-    new = insert(table, row, annotations)
-    return None if new is None else raise_event(agent, table.added, row, new, True)
+    new = insert(table, row, annotations, last)
+    return None if new is None else raise_event(agent, table.added, row if own else _copied(row), new, own)
 
 
 def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
@@ -59,20 +69,6 @@ def replace_belief(agent: Circumstance, symbol: Functor, row: Row, annotations: 
         delete_any(agent, symbol, annotations)
     new = insert(table, row, annotations)
     return None if new is None else raise_event(agent, table.added, row, new, True)
-
-
-def add_belief_last(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
-    """``+>b``: the belief answers last."""
-    table = agent.beliefs[symbol]
-    new = insert(table, row, annotations, last=True)
-    return None if new is None else raise_event(agent, table.added, row, new, True)
-
-
-def add_belief_apart(agent: Circumstance, symbol: Functor, row: Row, annotations: Annotations) -> Raised:
-    """``++b``: the event is an external one."""
-    table = agent.beliefs[symbol]
-    new = insert(table, row, annotations)
-    return None if new is None else raise_event(agent, table.added, _copied(row), new)
 
 
 def _copied(row: Row) -> Row:
@@ -101,10 +97,13 @@ def raise_event(
         cause: why it changed; None for what the agent is doing.
         believed: whether there is such a belief.
     """
-    options, waits = agent.options, agent.waits
-    if agent.observers.hear_beliefs:
+    options, waits, observers = agent.options, agent.waits, agent.observers
+    if observers.hear_beliefs:
         cause = cause or agent.cause_now()
-        _tell_change(agent, kind, row, annotations, cause, believed)
+        if believed and observers.mind is not None:
+            observers.mind.changed(kind.operator, kind.functor, row, annotations, cause)
+        if observers.step is not None and agent.library.selects[kind] is None:
+            observers.step.notes_unhandled(agent, (kind, *row), annotations)
     if waits.conditions:
         note_change(agent, kind.functor, row)
     if (
@@ -119,32 +118,6 @@ def raise_event(
         return (kind, *row) if annotations is BY_SELF else Posted((kind, *row), annotations)
     agent.post(((kind, *(_copied(row) if own else row)), None, annotations, cause))
     return None
-
-
-def _tell_change(
-    agent: Circumstance,
-    kind: Trigger,
-    row: Row,
-    annotations: Annotations,
-    cause: Cause | None,
-    believed: bool,
-) -> None:
-    """Notify observers of a belief that changed, or (not *believed*) of a signal."""
-    observers = agent.observers
-    if believed and observers.mind is not None:
-        observers.mind.changed(kind.operator, kind.functor, row, annotations, cause)
-    if observers.step is not None and not agent.may_handle(kind):
-        observers.step.notes_unhandled(agent, (kind, *row), annotations)
-
-
-def is_quiet(agent: Circumstance) -> bool:
-    """Return whether nothing but plans for its event needs to know of a belief that changes."""
-    return not (
-        agent.waits.events
-        or agent.waits.conditions
-        or agent.observers.hear_beliefs
-        or agent.options.events != "discard"
-    )
 
 
 def insert(table: Table, row: Row, annotations: Annotations, last: bool = False) -> Annotations | None:
@@ -244,11 +217,6 @@ def delete_any(agent: Circumstance, symbol: Functor, annotations: Annotations = 
     removed = _remove_first(agent, symbol, arguments, annotations, bind=False)
     if removed is not None:
         raise_event(agent, agent.beliefs[symbol].deleted, removed, resolve_all(annotations))
-
-
-def operand_error(term: Term) -> str:
-    """Return the error for a term that is added or deleted as a belief and is not a literal."""
-    return "body_var_without_value" if free_variables(term) else "body_var_not_literal"
 
 
 # --- from outside ------------------------------------------------------------------------------------------
@@ -354,8 +322,17 @@ def _take(agent: Circumstance, percepts: list[Percept]) -> None:
     """
     beliefs, selects = agent.beliefs, agent.library.selects
     holders = beliefs.held_percepts
-    quiet = is_quiet(agent)
-    post = agent.events.append if quiet and agent.has_room_for(len(percepts)) else agent.post
+    # Often nothing but plans for its event needs to know of a belief that changes.
+    waits, options, post = agent.waits, agent.options, agent.post
+    quiet = options.events == "discard" and not (
+        waits.events or waits.conditions or agent.observers.hear_beliefs
+    )
+    few = (
+        len(agent.events) + len(percepts) <= options.event_limit
+        and len(agent.alive) < options.intention_limit
+    )
+    if quiet and few and agent.selections.urgencies is None:
+        post = agent.events.append  # type: ignore[assignment]
     for percept in percepts:
         symbol, row, keyed = percept.kept or _keep(percept)
         kind, shown, annotations = percept.kind, percept.literal, percept.annotations

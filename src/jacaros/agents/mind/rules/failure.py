@@ -157,12 +157,6 @@ def no_plan(
     return FailureReason(terms() if at_once else terms, Place(caller, unplanned=(goal, annotations)))
 
 
-def depth_exceeded(goal: Goal, annotations: EventAnnotations, caller: Frame, depth: int) -> FailureReason:
-    """Return the reason of a goal whose plan would exceed the maximum stack of its intention."""
-    message = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
-    return FailureReason(error_terms("too_deep", message), Place(caller, unplanned=(goal, annotations)))
-
-
 _MAY_BE_BOUND = frozenset({Var, tuple, List})
 
 
@@ -224,7 +218,7 @@ def has_handler(agent: Circumstance, intention: Intention, above: int) -> bool:
     found = _handler_index(agent, intention)
     index, handlers = _goal_below(intention, len(intention.frames), len(intention.handlers))
     while found <= above < index:
-        if supervision.has_attempt(intention, index):
+        if any(each.failed < each.retries for each in supervisions_below(intention, index)):
             return True
         index, handlers = _goal_below(intention, index, handlers)
     return found > above
@@ -349,7 +343,10 @@ def too_deep(agent: Circumstance, intention: Intention) -> Posted | None:
     frame = intention.frames.pop()
     goal, annotations = frame[GOAL], frame[ANNOTATIONS]
     release_bindings(goal, frame[SERIAL])
-    reason = depth_exceeded(goal, annotations, caller_of(intention) or frame, agent.options.goal_depth)
+    depth = agent.options.goal_depth
+    told = f"more than {depth} plans are on the stack of the intention (option goal_depth)"
+    place = Place(caller_of(intention) or frame, unplanned=(goal, annotations))
+    reason = FailureReason(error_terms("too_deep", told), place)
     if goal[0].failing:
         # Handlers of handlers without end: no handler is left that could deal with it.
         intention.handlers.clear()

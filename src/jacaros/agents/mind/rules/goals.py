@@ -507,16 +507,12 @@ def resume(agent: Circumstance, number: int) -> None:
     reason, owners = known
     for intention in owners:
         if not intention.dropped and is_preempted(intention):
-            other = _other_reason(agent, intention)
+            others = agent.waits.preempted.values()
+            other = next((lost for lost, of in others if intention in of), None)
             if other is None:
                 resume_intention(agent, intention, by=reason)
             else:
                 intention.suspended = other
-
-
-def _other_reason(agent: Circumstance, intention: Intention) -> Term:
-    """Return the reason for another resource that an intention has lost."""
-    return next((reason for reason, owners in agent.waits.preempted.values() if intention in owners), None)
 
 
 def _owners(agent: Circumstance, number: int) -> list[Intention]:

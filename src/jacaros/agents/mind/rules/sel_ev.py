@@ -11,9 +11,7 @@ from jacaros.agents.mind.rules.plan_changes import look_at_plans
 from jacaros.agents.mind.rules.proc_msg import RECEIVED, receive_event
 from jacaros.agents.mind.state.circumstance import Circumstance, HeldEvent, StepObserver
 from jacaros.agents.mind.state.intention import (
-    EVENT_ANNOTATIONS,
     EVENT_CAUSE,
-    EVENT_GOAL,
     EVENT_INTENTION,
     Event,
     Intention,
@@ -91,11 +89,7 @@ def handle_event(agent: Circumstance) -> Intention | None:
         if event is None or (agent.observers.step is not None and is_held_before_event(agent, event)):
             return None
         try:
-            handled = (
-                begin_intention(agent, event)
-                if event[EVENT_INTENTION] is None
-                else _continue_intention(agent, event)
-            )
+            handled = _handle(agent, event)
         except Exception as fault:
             skip_event(agent, event, fault)
             continue
@@ -104,30 +98,18 @@ def handle_event(agent: Circumstance) -> Intention | None:
     return None
 
 
-def _continue_intention(agent: Circumstance, event: Event) -> bool:
-    intention = event[EVENT_INTENTION]
-    if intention is None or intention.dropped:
-        return False
-    agent.current = intention  # contexts may ask for it
-    if push(agent, intention, event[EVENT_GOAL], event[EVENT_ANNOTATIONS]):
-        agent.make_ready(intention)
-    agent.current = None
-    return True
-
-
 def handle_held_event(agent: Circumstance, event: Event) -> None:
     """Handle the event before which the agent was held; the next one if that is skipped."""
     if agent.atomic is not None:
         _push_atomic(agent, agent.atomic, event)
         return
     try:
-        handled = (begin_intention if event[EVENT_INTENTION] is None else _continue_intention)(agent, event)
+        handled = _handle(agent, event)
     except Exception as fault:
         skip_event(agent, event, fault)
         handled = False
-    begun = handled if handled else handle_event(agent)
-    if isinstance(begun, Intention):
-        agent.make_ready(begun)
+    if not handled:
+        handle_event(agent)
 
 
 def handle_atomic_event(agent: Circumstance) -> None:
@@ -177,15 +159,23 @@ def skip_event(agent: Circumstance, event: Event, fault: Exception) -> None:
         failure.drop_after_error(agent, intention, fault)
 
 
-def begin_intention(agent: Circumstance, event: Event) -> Intention | bool:
-    """Begin an intention for an external event; return False when it has no plan and is dropped silently.
+def _handle(agent: Circumstance, event: Event) -> Intention | bool:
+    """Continue the intention of an event, or begin one for an external event.
 
-    Return the intention if no other can run: it need not be queued.
+    Return an intention that has begun if no other can run: it need not be queued. Return False for an external event
+    without a plan, which is dropped silently, and for one whose intention is over.
     """
-    goal, _, annotations, cause = event
-    kind = goal[0]
+    goal, intention, annotations, cause = event
+    if intention is not None:
+        if intention.dropped:
+            return False
+        agent.current = intention  # contexts may ask for it
+        if push(agent, intention, goal, annotations):
+            agent.make_ready(intention)
+        agent.current = None
+        return True
     reacted = False
-    if agent.holders and kind.kind == "":
+    if agent.holders and goal[0].kind == "":
         reacted = _react(agent, event)
     begun = push(agent, None, goal, annotations, cause)
     if begun is False:

@@ -52,11 +52,6 @@ def end_above(agent: Circumstance, intention: Intention, index: int) -> None:
                 end(agent, frame[SUPERVISION])
 
 
-def has_attempt(intention: Intention, index: int) -> bool:
-    """Return whether the goal at *index* is to be tried again when it fails."""
-    return any(each.failed < each.retries for each in supervisions_below(intention, index))
-
-
 def fails(agent: Circumstance, intention: Intention, index: int, reason: FailureReason) -> bool:
     """Handle the failure of the goal or plan at *index*; return True if the goal is to be tried again."""
     for supervision in supervisions_below(intention, index):

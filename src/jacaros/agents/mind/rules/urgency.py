@@ -342,11 +342,11 @@ class CalmQueue(deque[Item], Generic[Item]):
         items: the first ones.
     """
 
-    __slots__ = ("_urgency",)
+    __slots__ = ("urgency",)
 
     def __init__(self, urgency: Callable[[Item], int], items: Iterable[Item] = ()) -> None:
         super().__init__(sorted(items, key=urgency, reverse=True))
-        self._urgency = urgency
+        self.urgency = urgency
 
 
 class UrgentQueue(CalmQueue[Item]):
@@ -354,29 +354,23 @@ class UrgentQueue(CalmQueue[Item]):
 
     __slots__ = ()
 
-    def first_urgency(self) -> int:
-        """Return the urgency of the first item, which is the greatest; 0 without any."""
-        return self._urgency(self[0]) if self else 0
-
     def append(self, item: Item) -> None:
         """Put an item after those that are as urgent or more."""
-        urgency = self._urgency(item)
+        urgency = self.urgency(item)
         # Nothing is below 0, so items that are not urgent need no comparison.
-        if urgency == 0 or not self or self._urgency(self[-1]) >= urgency:
+        if urgency == 0 or not self or self.urgency(self[-1]) >= urgency:
             super().append(item)
         else:
-            self.insert(bisect_right(self, -urgency, key=lambda other: -self._urgency(other)), item)
+            self.insert(bisect_right(self, -urgency, key=lambda other: -self.urgency(other)), item)
 
     def extendleft(self, items: Iterable[Item]) -> None:
         """Put items back before those that are as urgent."""
         for item in items:
-            self.insert(
-                bisect_left(self, -self._urgency(item), key=lambda other: -self._urgency(other)), item
-            )
+            self.insert(bisect_left(self, -self.urgency(item), key=lambda other: -self.urgency(other)), item)
 
 
 def _holds_urgent(queue: "deque[Event] | deque[Intention]") -> bool:
-    return isinstance(queue, UrgentQueue) and queue.first_urgency() > 0
+    return isinstance(queue, UrgentQueue) and bool(queue) and queue.urgency(queue[0]) > 0
 
 
 def has_urgent_plans(agent: Circumstance) -> bool:

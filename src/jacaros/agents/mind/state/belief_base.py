@@ -278,7 +278,8 @@ class Table:
         """The entries that may unify with the arguments, in order, until something changes; an index is used where one
         helps."""
         if self.plain:
-            return self._rows_for(arguments)
+            held = self.rows
+            return ((row, held[row]) for row in self.rows_like(arguments))
         if len(self) < FEW or (sides := self._sides()) is None:
             return self.entries()
         before, after = sides
@@ -286,11 +287,6 @@ class Table:
         held = self.rows
         entries = ((entry, held[entry]) for entry in itertools.chain(before, facts, after))
         return itertools.chain(entries, self.late.items())
-
-    def _rows_for(self, arguments: Row) -> Iterable[Item]:
-        """The rows that may unify with the arguments, with their annotations; perhaps others too."""
-        held = self.rows
-        return ((row, held[row]) for row in self.rows_like(arguments))
 
     def rows_like(self, arguments: Row) -> Iterable[Row]:
         """The rows that may unify with the arguments, newest first, until something changes."""

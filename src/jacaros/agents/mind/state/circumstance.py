@@ -395,15 +395,6 @@ class Circumstance(_Rules):
         if urgencies is not None and urgencies[kind]:
             self.selections.rank()
 
-    def has_room_for(self, number: int) -> bool:
-        """Return whether events that are all alike may simply be queued."""
-        options = self.options
-        return (
-            self.selections.urgencies is None
-            and len(self.events) + number <= options.event_limit
-            and len(self.alive) < options.intention_limit
-        )
-
     def post(self, event: Event) -> None:
         """Put an event at the end of the queue, and resume the intentions that wait for it."""
         if (
