@@ -102,7 +102,10 @@ def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
     """``.get_src_info(L, R)``: *R* is the literal *L* with ``code_line(N)`` and ``code_src("file:…")``: the place of the
     step that asks. Fails if *L* is not a literal.
     """
-    inner = _only_operand(term)
+    steps = list(body_steps(term)) if is_body(term) else []
+    inner = (
+        step_parts(steps[0])[1][0] if len(steps) == 1 else term
+    )  # of a plan body with one step, its operand
     if functor_of(inner) is None:
         return False
     current = ctx.intention
@@ -113,12 +116,6 @@ def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
             line, file = info.node.span.line, info.node.span.file.name
             place = ((CODE_LINE, float(line)), (CODE_SRC, String(f"file:{file}")))
     return ctx.unify(annotated(inner, place), result)
-
-
-def _only_operand(term: Term) -> Term:
-    """Return the operand of a plan body with one step; any other term is returned unchanged."""
-    steps = list(body_steps(term)) if is_body(term) else []
-    return step_parts(steps[0])[1][0] if len(steps) == 1 else term
 
 
 @internal_action(".string", arity=1, pure=True)

@@ -85,15 +85,12 @@ class Searches(dict[int, Search]):
         self.before = False
 
     def __missing__(self, pattern: int) -> Search:
-        new = self._new_rules()
+        around = self.predicate.around()
+        # Rules that do not stem from the program came at run time, and others may follow.
+        new = 0 if around is None else sum(not entry.of_program for side in around for entry in side)
         search = None if new else self._compiled(pattern)
         self[pattern] = search = search or self._by_unification(pattern, _TIMES_ASKED * new)
         return search
-
-    def _new_rules(self) -> int:
-        """How many rules do not stem from the program: they came at run time, and others may follow."""
-        around = self.predicate.around()
-        return 0 if around is None else sum(not entry.of_program for side in around for entry in side)
 
     def _by_unification(self, pattern: int, patience: int) -> Search:
         """The general way: facts, rules and beliefs with variables in any order.

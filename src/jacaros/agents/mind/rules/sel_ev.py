@@ -100,16 +100,16 @@ def handle_event(agent: Circumstance) -> Intention | None:
 
 def handle_held_event(agent: Circumstance, event: Event) -> None:
     """Handle the event before which the agent was held; the next one if that is skipped."""
-    if agent.atomic is not None:
-        _push_atomic(agent, agent.atomic, event)
-        return
+    if not _try(agent, event) and agent.atomic is None:
+        handle_event(agent)
+
+
+def _try(agent: Circumstance, event: Event) -> Intention | bool:
     try:
-        handled = _handle(agent, event)
+        return _handle(agent, event)
     except Exception as fault:
         skip_event(agent, event, fault)
-        handled = False
-    if not handled:
-        handle_event(agent)
+        return False
 
 
 def handle_atomic_event(agent: Circumstance) -> None:
@@ -119,16 +119,7 @@ def handle_atomic_event(agent: Circumstance) -> None:
     if intention is not None and event is not None:
         remove_event(agent, event)
         if not is_held_before_event(agent, event):
-            _push_atomic(agent, intention, event)
-
-
-def _push_atomic(agent: Circumstance, intention: Intention, event: Event) -> None:
-    goal, _, annotations, _ = event
-    try:
-        if push(agent, intention, goal, annotations):
-            agent.make_ready(intention)
-    except Exception as fault:
-        skip_event(agent, event, fault)
+            _try(agent, event)
 
 
 def is_ready(agent: Circumstance, intention: Intention) -> bool:

@@ -282,7 +282,8 @@ class Table:
             return ((row, held[row]) for row in self.rows_like(arguments))
         if len(self) < FEW or (sides := self._sides()) is None:
             return self.entries()
-        before, after = sides
+        known = list(zip(*_known(arguments), strict=True))
+        before, after = ([entry for entry in side if _may_match(entry, known)] for side in sides)
         facts = (row for row in self.rows_like(arguments) if row.__class__ is tuple)
         held = self.rows
         entries = ((entry, held[entry]) for entry in itertools.chain(before, facts, after))
@@ -318,6 +319,16 @@ def _known(arguments: Row) -> tuple[list[int], list[Term]]:
         places.append(place)
         keys.append(argument)
     return places, keys
+
+
+def _may_match(entry: Entry, known: list[tuple[int, Term]]) -> bool:
+    """Whether a rule or a belief with variables may unify with the *known* arguments, by their places."""
+    if isinstance(entry, OpenFact):
+        own = arguments_of(entry.literal)
+        for place, value in known:
+            if own[place].__class__ in ATOMIC and own[place] != value:
+                return False
+    return True
 
 
 Key = TypeVar("Key")
