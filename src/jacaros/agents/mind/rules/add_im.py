@@ -227,7 +227,7 @@ def _consider(
     annotations: EventAnnotations,
     cause: Cause | None,
 ) -> tuple[Frame | None, Cause | None]:
-    """Select a plan where sub-plans come first, the program or the project chooses, or an observer is told why."""
+    """Select a plan where sub-plans come first, the program or the project chooses, or an observer hears why."""
     observer, selections, frame = agent.observers.mind, agent.selections, None
     asked = goal if observer is None else apart(goal)  # heads of plans bind variables of the goal
     if agent.holders and intention is not None:

@@ -263,7 +263,7 @@ class Circumstance(_Rules):
         running: the agent has its turn: at its end, the host checks whether there is more to do.
         stopped: the agent is over.
         unusual: events take more than the first applicable plan: there are sub-plans, urgent plans, or plans for goal
-            states, the program or the project chooses, or an observer is told. It may stay set when that has ended.
+            states, the program or the project chooses, or an observer listens. It may stay set when that has ended.
         sleep: ``drowsy``: it is idle since it last awoke, and has got the event for it; ``asleep``: its plans for it
             have run.
     """
