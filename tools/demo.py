@@ -48,7 +48,7 @@ def show() -> None:
 def summarise(recording: Recording, took: float) -> None:
     """Print what the robot did, according to the ground truth."""
     frames = recording.frames
-    levels = [frame.robots[0][3] for frame in frames]
+    levels = [frame.robots[0].battery for frame in frames]
     # A robot that turns on the spot in the dock stays a moment longer, nearly full: this does not count as a recharge.
     charges = sum(1 for _, kind, data in recording.events if kind == "charging" and data["level"] < 50)
     bumps = sum(1 for _, kind, _ in recording.events if kind in ("bump", "collision"))
@@ -61,8 +61,8 @@ replay           {REPLAY}  (open it in a browser)""")
 
 def driven(frames: Iterable[Frame]) -> float:
     """Return the distance that the first robot drove, in metres."""
-    places = [frame.robots[0][:2] for frame in frames]
-    return sum(hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(places))
+    states = [frame.robots[0] for frame in frames]
+    return sum(hypot(after.x - before.x, after.y - before.y) for before, after in pairwise(states))
 
 
 if __name__ == "__main__":

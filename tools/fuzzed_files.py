@@ -21,6 +21,7 @@ from jacaros.errors import JacarosError
 from jacaros.inspector.page import replay_html
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
+from jacaros.inspector.scene import RobotView
 from jacaros.mas.checking import check_files
 from jacaros.mas.loading import load_deployment
 from jacaros.ros.drivers.rosbridge.link import Link
@@ -319,7 +320,7 @@ def _recordings() -> list[bytes]:
     recorder = Recorder(Path("seed.jsonl"))
     recorder.world(load_world("patrol").drawing())
     for t in range(5):
-        recorder.frame(float(t), [("turtlebot", 0.1 * t, 0.0, 0.0, 90.0, False, False)])
+        recorder.frame(float(t), [RobotView("turtlebot", 0.1 * t, 0.0, 0.0, 90.0)])
         recorder.text(float(t), "patrol", f"corner {t}")
         recorder.event(float(t), "goal", {"agent": "patrol", "goal": "patrol", "at": t})
     recorder.close()

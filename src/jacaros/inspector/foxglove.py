@@ -4,6 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from jacaros.sim.ground_truth import RobotState
+
 TRANSFORMS, SCENE, LOG = "foxglove.FrameTransforms", "foxglove.SceneUpdate", "foxglove.Log"
 WORLD = "map"
 """Frame of the world; the frame of each robot has the robot's name."""
@@ -25,17 +27,17 @@ def _point(x: float, y: float, z: float = 0.0) -> dict[str, float]:
     return {"x": x, "y": y, "z": z}
 
 
-def transforms(names: Sequence[str], rows: Sequence[Sequence[float]], t: float) -> dict[str, Any]:
+def transforms(names: Sequence[str], robots: Sequence[RobotState], t: float) -> dict[str, Any]:
     """Return the poses of robots; *names* of robots discovered late may be missing."""
     found = []
-    for index, (x, y, yaw, *_) in enumerate(rows):
+    for index, robot in enumerate(robots):
         found.append(
             {
                 "timestamp": _time(t),
                 "parent_frame_id": WORLD,
                 "child_frame_id": names[index] if index < len(names) else f"robot {index}",
-                "translation": _point(x, y),
-                "rotation": {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2), "w": math.cos(yaw / 2)},
+                "translation": _point(robot.x, robot.y),
+                "rotation": {"x": 0.0, "y": 0.0, "z": math.sin(robot.yaw / 2), "w": math.cos(robot.yaw / 2)},
             }
         )
     return {"transforms": found}

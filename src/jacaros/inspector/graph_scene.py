@@ -81,7 +81,9 @@ class SeenRobot:
         """Return the robot as shown."""
         pose = self.pose(backend)
         x, y, _ = pose.translation
-        return RobotView(self.name, x, y, pose.yaw, self._percent(), self._charging())
+        return RobotView(
+            self.name, x=x, y=y, yaw=pose.yaw, battery=self._percent(), charging=self._charging()
+        )
 
     def _percent(self) -> float:
         return UNKNOWN if self._share is None else min(100.0, 100.0 * self._share)

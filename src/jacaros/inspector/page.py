@@ -27,6 +27,9 @@ _PLACES = re.compile(
     r'<title>[^<]*</title>|<link rel="stylesheet" href="(\w+)\.css">|<script type="module" src="live\.js"></script>'
 )
 
+_SCALES = {"x": 1000, "y": 1000, "yaw": 1000, "battery": 10, "charging": 1, "touching": 1}
+"""Integers per unit of each field of `jacaros.sim.ground_truth.RobotState`."""
+
 
 def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:
     """Write the page; *title* is the name of the project or the world by default. A page is written whole or not at all.
@@ -111,21 +114,17 @@ def frames(recording: Recording) -> dict[str, Any]:
     rows = [frame.robots for frame in recording.frames]
     robots = []
     for index in range(max(map(len, rows), default=0)):
-        x, y, yaw, battery, charging, touching = zip(
-            *(row[index] for row in rows if len(row) > index), strict=True
-        )
+        states = [row[index] for row in rows if len(row) > index]
         robots.append(
             {
-                "x": _differences(x, 1000),
-                "y": _differences(y, 1000),
-                "yaw": _differences(yaw, 1000),
-                "battery": _differences(battery, 10),
-                "flags": [int(bool(c)) + 2 * int(bool(b)) for c, b in zip(charging, touching, strict=True)],
+                name: _differences((getattr(state, name) for state in states), scale)
+                for name, scale in _SCALES.items()
             }
         )
     return {
         "kind": "frames",
         "t": _differences((frame.t for frame in recording.frames), 1000),
+        "scales": _SCALES,
         "robots": robots,
     }
 

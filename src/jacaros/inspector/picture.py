@@ -11,6 +11,8 @@ from typing import Any
 
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.recording import Recording
+from jacaros.sim.description import Pose
+from jacaros.sim.ground_truth import RobotState
 
 _STYLE = """
   .floor{fill:#fdfcf9;stroke:#dedbd2} .grid{stroke:#eceae2} .wall{stroke:#3c434b;fill:none} .box{fill:#e6e2d8}
@@ -76,9 +78,9 @@ class _Sheet:
     def __init__(self, recording: Recording, width: int) -> None:
         left, bottom, right, top = recording.drawing["bounds"]
         for frame in recording.frames:
-            for x, y, *_ in frame.robots:
-                left, right = min(left, x - 0.3), max(right, x + 0.3)
-                bottom, top = min(bottom, y - 0.3), max(top, y + 0.3)
+            for robot in frame.robots:
+                left, right = min(left, robot.x - 0.3), max(right, robot.x + 0.3)
+                bottom, top = min(bottom, robot.y - 0.3), max(top, robot.y + 0.3)
         self.left: float = left - _MARGIN
         self.top: float = top + _MARGIN
         self.scale: float = width / (right - left + 2 * _MARGIN)
@@ -205,7 +207,7 @@ def _paths(sheet: _Sheet, recording: Recording) -> Iterator[str]:
     for first in range(0, length - 1, step):
         red, green, blue = colour_at(first / length)
         for number, rows in enumerate(robots):
-            points = [(sheet.x(x), sheet.y(y)) for x, y, *_ in rows[first : first + step + 1]]
+            points = [(sheet.x(row.x), sheet.y(row.y)) for row in rows[first : first + step + 1]]
             if any(point != points[0] for point in points):
                 colour = (
                     f"rgb({red},{green},{blue})" if count == 1 else _PATH_COLOURS[number % len(_PATH_COLOURS)]
@@ -238,7 +240,7 @@ def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> 
         (sheet.x(x - r), sheet.y(y + r), sheet.x(x + r), sheet.y(y - r))
         for (x, y, _), r in ((dock["pose"], dock["radius"]) for dock in recording.drawing["docks"])
     ]
-    points = [(sheet.x(row[0]), sheet.y(row[1])) for frame in recording.frames[::3] for row in frame.robots]
+    points = [(sheet.x(row.x), sheet.y(row.y)) for frame in recording.frames[::3] for row in frame.robots]
 
     def covered(x: float, y: float) -> float:
         x_max, y_min, y_max = x + width + 4, y - 14, y + 6
@@ -252,12 +254,12 @@ def _place_for(sheet: _Sheet, recording: Recording, area: Any, width: float) -> 
 
 def _robots(sheet: _Sheet, recording: Recording) -> Iterator[str]:
     described = recording.drawing["robots"]
-    rows: Sequence[tuple[Any, ...]] = [robot["pose"] for robot in described if "pose" in robot]
+    rows: Sequence[Pose | RobotState] = [Pose(*robot["pose"]) for robot in described if "pose" in robot]
     if recording.frames:
         rows = recording.frames[-1].robots
     for number, (robot, row) in enumerate(zip(described, rows, strict=False)):
-        x, y, size = sheet.x(row[0]), sheet.y(row[1]), sheet.size(robot.get("radius", _RADIUS))
-        turn = round(-math.degrees(row[2]), 1)
+        x, y, size = sheet.x(row.x), sheet.y(row.y), sheet.size(robot.get("radius", _RADIUS))
+        turn = round(-math.degrees(row.yaw), 1)
         colour = _PATH_COLOURS[number % len(_PATH_COLOURS)]
         edge, inside = (
             (f' style="stroke:{colour}"', f' style="fill:{colour}"') if len(described) > 1 else ("", "")

@@ -4,7 +4,6 @@ The format is described in ``docs/reference/recordings.md``.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,9 @@ from jacaros.errors import UsageError
 from jacaros.inspector.line_format import CompressedLines, Lines
 from jacaros.inspector.recording import VERSION, Frame, Recording
 from jacaros.inspector.recording_file import Format, RecordingFile
-from jacaros.inspector.scene import RobotView
+from jacaros.inspector.scene import RobotView, row_of
 from jacaros.ros.message import type_of
+from jacaros.sim.ground_truth import RobotState
 
 MCAP = ".mcap"
 LIMIT = 500_000_000
@@ -74,7 +74,7 @@ class Recorder:
         if self.path is not None:
             self._file = RecordingFile(self.path, format_of(self.path), warn, limit)
         self._seen: tuple[RobotView, ...] | None = None
-        self._last: tuple[tuple[Any, ...], ...] | None = None
+        self._last: tuple[RobotState, ...] | None = None
         self._rested: float | None = None
         """Time at which the robots were last seen at the poses in `_last`."""
 
@@ -92,7 +92,7 @@ class Recorder:
             self._rested = t
             return
         self._seen = robots
-        rows = tuple(map(_row, robots))
+        rows = tuple(map(row_of, robots))
         if rows == self._last:
             self._rested = t
             return
@@ -105,7 +105,7 @@ class Recorder:
             self._take(self._rested, self._last)
         self._rested = None
 
-    def _take(self, t: float, rows: tuple[tuple[Any, ...], ...]) -> None:
+    def _take(self, t: float, rows: tuple[RobotState, ...]) -> None:
         self._last, t = rows, round(t, 3)
         if self._keep:
             self.recording.frames.append(Frame(t, rows))
@@ -143,15 +143,3 @@ class Recorder:
     def _write(self, record: dict[str, Any]) -> None:
         if self._file is not None:
             self._file.write(record)
-
-
-def _row(robot: RobotView) -> tuple[Any, ...]:
-    """Round to millimetres: enough for a picture, and a third of the bytes."""
-    _, x, y, yaw, battery, charging, touching = robot
-    return _short(x), _short(y), _short(yaw), _short(battery), int(charging), int(touching)
-
-
-def _short(value: float) -> float:
-    """Return a number with three decimals."""
-    # `round` with digits takes five times as long.
-    return round(value * 1e3) / 1e3 if isfinite(value) else value

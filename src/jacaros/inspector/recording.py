@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from jacaros.errors import JacarosError
 from jacaros.files.texts import LARGEST, file_bytes, printable, text_of
 from jacaros.inspector.line_format import MAGIC, unpacked
-from jacaros.sim.ground_truth import FIELDS, present_kind
+from jacaros.sim.ground_truth import FIELDS, RobotState, present_kind
 
 VERSION = 2
 """Version of the written format; older versions are read completely, and known records of newer ones."""
@@ -17,15 +17,15 @@ LARGEST_RECORDING = 2**32
 LARGEST_RATIO = 32
 """A compressed recording contains at most this number of times its size, or `LARGEST` bytes: runs reach 8 to 15 times."""
 
-_COLUMNS = 6
+_COLUMNS = len(RobotState._fields)
 _LARGEST = 1e15
 
 
 class Frame(NamedTuple):
-    """The robots at a time: rows of x, y, yaw, battery, charging, touching."""
+    """The robots at a time."""
 
     t: float
-    robots: tuple[tuple[Any, ...], ...]
+    robots: tuple[RobotState, ...]
 
 
 _NOWHERE: dict[str, Any] = {
@@ -85,7 +85,7 @@ class Recording:
         """The drawing of the world, with everything that viewers expect."""
         return {**_NOWHERE, **self.world}
 
-    def rows(self) -> list[list[tuple[Any, ...]]]:
+    def rows(self) -> list[list[RobotState]]:
         """The rows of each robot, one per frame; before its discovery, a robot stays where it was discovered."""
         found = []
         for index in range(max((len(frame.robots) for frame in self.frames), default=0)):
@@ -189,12 +189,12 @@ def _mapping(value: Any) -> dict[str, Any]:
     return value
 
 
-def _row(values: Any, width: int | None = _COLUMNS) -> tuple[Any, ...]:
+def _row(values: Any, width: int | None = _COLUMNS) -> RobotState:
     """Return a robot's row of a frame; without *width*, further columns are dropped."""
     row = tuple(map(_number, values))
     if len(row) < _COLUMNS or (width is not None and len(row) != width):
         raise TypeError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
-    return row[:_COLUMNS]
+    return RobotState._make(row[:_COLUMNS])
 
 
 def _world(drawing: Any) -> dict[str, Any]:

@@ -81,6 +81,20 @@ def present_kind(kind: str, data: Mapping[str, Any]) -> str:
     return "robot_placed" if kind == "placed" and "object" not in data else kind
 
 
+class RobotState(NamedTuple):
+    """A robot at a time: pose (metres, radians), battery (percent), and whether it charges and touches something.
+
+    Its fields are the columns of a robot's row in recordings, in this order.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    battery: float
+    charging: bool = False
+    touching: bool = False
+
+
 class Sample(NamedTuple):
     """A point of a robot's path; ``odometer`` is the true distance driven so far, in metres."""
 

@@ -22,8 +22,8 @@ def test_a_recording_has_the_map_and_the_robot(
         except (FileNotFoundError, JacarosError):  # no world in it yet: the graph has not told of one
             return False
         rows = [frame.robots[0] for frame in seen.frames if frame.robots]
-        places = {row[:2] for row in rows}
-        return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5 and rows[-1][3] > 0
+        places = {(row.x, row.y) for row in rows}
+        return seen.world.get("bounds") == [-1, -1, 4, 2] and len(places) > 5 and rows[-1].battery > 0
 
     agents.until(has_seen_it_drive, "the robot's way is recorded")
     # The page looks for topics every three seconds; a robot whose scan comes late is seen without it until then.
@@ -35,7 +35,7 @@ def test_a_recording_has_the_map_and_the_robot(
     truth = world.close()
     recording = Recording.read(record)
     assert recording.robots == ["robot"]
-    x, y, _, battery, *_ = recording.frames[-1].robots[0]
-    assert min(math.hypot(x - sample.x, y - sample.y) for sample in truth.path()) < 0.3
-    assert 0 < battery <= 100
+    robot = recording.frames[-1].robots[0]
+    assert min(math.hypot(robot.x - sample.x, robot.y - sample.y) for sample in truth.path()) < 0.3
+    assert 0 < robot.battery <= 100
     assert replay.read_text(encoding="utf-8").startswith("<!doctype html>")

@@ -64,7 +64,7 @@ def test_a_resting_robot_costs_two_frames_and_then_starts_sharply() -> None:
         recorder.frame(step * 0.1, at(1.0))
     recorder.frame(10.0, at(1.5))
     recorder.close()
-    assert [(frame.t, frame.robots[0][0]) for frame in recorder.recording.frames] == [
+    assert [(frame.t, frame.robots[0].x) for frame in recorder.recording.frames] == [
         (0.0, 1.0),
         (9.9, 1.0),
         (10.0, 1.5),
@@ -193,7 +193,7 @@ def test_a_watch_records_frames_and_prints() -> None:
     recorder, world = watched_run()
     recording = recorder.recording
     assert recording.frames[0].t == 0.0
-    assert recording.frames[-1].robots[0][0] == pytest.approx(world.robot().x, abs=6e-4)
+    assert recording.frames[-1].robots[0].x == pytest.approx(world.robot().x, abs=6e-4)
     assert recording.texts == [(pytest.approx(2.0), "cleaner", "here I am")]
 
 

@@ -22,6 +22,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import RobotView
 from jacaros.sim import World
+from jacaros.sim.ground_truth import RobotState
 
 Test = Callable[[Page], Awaitable[None]]
 
@@ -37,7 +38,7 @@ def recording(world: str = "house") -> Recording:
                 RobotView(
                     robot["name"], 0.04 * step - index, 0.5 * index, 0.1 * step, 100.0 - step, step > 40
                 )
-                for index, robot in enumerate(drawing["robots"])  # type: ignore[arg-type, var-annotated]
+                for index, robot in enumerate(drawing["robots"])
             ],
         )
     recorder.text(1.0, "cleaner", "</script><b>mop & vacuum</b>")
@@ -76,13 +77,22 @@ def test_the_page_holds_all_records_in_time_order() -> None:
     assert held[0]["world"]["name"] == "house"
     assert list(itertools.accumulate(columns["t"])) == [round(frame.t * 1000) for frame in run.frames]
     (robot,) = columns["robots"]
-    xs = [round(frame.robots[0][0] * 1000) for frame in run.frames]
+    xs = [round(frame.robots[0].x * 1000) for frame in run.frames]
     assert list(itertools.accumulate(robot["x"])) == xs
-    assert robot["flags"][-1] == 1, "charging at the end"
+    assert sum(robot["charging"]) == 1, "charging at the end"
+    assert sum(robot["touching"]) == 0
+    assert tuple(columns["scales"]) == tuple(robot) == RobotState._fields
     (text,) = (record for record in held if record["kind"] == "text")
     assert (text["agent"], text["text"]) == ("cleaner", "</script><b>mop & vacuum</b>")
     times = [record.get("t", 0.0) for record in held]
     assert times == sorted(times)
+
+
+def test_the_page_has_the_fields_of_a_robot_in_the_order_of_its_row() -> None:
+    script = (STATIC / "world.js").read_text(encoding="utf-8")
+    listed = re.search(r"ROBOT_STATE = (\[.*\]);", script)
+    assert listed is not None
+    assert tuple(json.loads(listed[1])) == RobotState._fields
 
 
 def test_the_page_loads_nothing() -> None:

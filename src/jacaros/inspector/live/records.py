@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jacaros.inspector.scene import RobotView
+from jacaros.inspector.scene import RobotView, row_of
 
 LONGEST = 200_000
 """Maximum length of a record in characters; the strings of a longer one are cut to `_CUT` characters."""
@@ -54,14 +54,9 @@ class FrameRecord(LiveRecord):
     def text(self) -> str:
         """The record as JSON."""
         if self._text is None:
-            rows = [_row(robot) for robot in self.robots]
+            rows = [row_of(robot) for robot in self.robots]
             self._text = json_text({"kind": "frame", "t": round(self.t, 3), "robots": rows})
         return self._text
-
-
-def _row(robot: RobotView) -> list[Any]:
-    _, x, y, yaw, battery, charging, touching = robot
-    return [round(x, 4), round(y, 4), round(yaw, 4), round(battery, 2), int(charging), int(touching)]
 
 
 def json_text(data: Any) -> str:

@@ -1,4 +1,5 @@
 import { NO_COMMANDS, fragment, startPage } from "./main.js";
+import { ROBOT_STATE } from "./world.js";
 
 /** The records inside the page: lines of JSON, gzipped, in base64. The first line has the frames, as columns. */
 async function records() {
@@ -9,20 +10,18 @@ async function records() {
   return merged(frames(lines[0]), lines.slice(1));
 }
 
-/** Frames of columns of differences, in milliseconds, millimetres, milliradians and tenths of a percent. */
-function frames({ t, robots }) {
-  const times = sums(t, 0.001);
-  const columns = robots.map(({ x, y, yaw, battery, flags }) => ({
-    first: times.length - x.length, x: sums(x, 0.001), y: sums(y, 0.001), yaw: sums(yaw, 0.001), battery: sums(battery, 0.1), flags,
-  }));
-  return times.map((moment, i) => ({ kind: "frame", t: moment, robots: columns.filter(({ first }) => first <= i).map((c) => row(c, i - c.first)) }));
+/** Frames of columns of differences: whole milliseconds, and for each field of a robot's state, `scales` to its unit. */
+function frames({ t, scales, robots }) {
+  const times = sums(t, 1000), columns = robots.map((robot) => ROBOT_STATE.map((name) => sums(robot[name], scales[name])));
+  return times.map((moment, i) => {
+    const known = columns.filter(([{ length }]) => times.length - length <= i);
+    return { kind: "frame", t: moment, robots: known.map((robot) => robot.map((values) => values[i - times.length + values.length])) };
+  });
 }
 
-function row({ x, y, yaw, battery, flags }, i) { return [x[i], y[i], yaw[i], battery[i], flags[i] & 1, flags[i] & 2]; }
-
-function sums(differences, unit) {
+function sums(differences, scale) {
   let sum = 0;
-  return differences.map((difference) => (sum += difference) * unit);
+  return differences.map((difference) => (sum += difference) / scale);
 }
 
 /** Two sequences of records as one, in the order of time; what has no time comes first. */

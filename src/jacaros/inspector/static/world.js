@@ -4,6 +4,9 @@ import { Track, indexAt } from "./track.js";
 const SCANS = 20000;  // of all robots
 const ROWS = 2000000;  // of frames: one for each robot
 
+/** The fields of `jacaros.sim.ground_truth.RobotState`, in the order of a robot's row. */
+export const ROBOT_STATE = ["x", "y", "yaw", "battery", "charging", "touching"];
+
 const EMPTY = {
   name: "", bounds: null, walls: [], boxes: [], furniture: [], rooms: [], docks: [], doors: [], cliffs: [], robots: [],
   people: [], objects: [],
@@ -14,7 +17,7 @@ export class World {
   constructor() {
     this.drawings = new Track();
     this.times = [];  // of frames
-    this.columns = [];  // by robot: x, y, yaw, battery, flags, and `first`, the frame in which it appeared
+    this.columns = [];  // by robot: the values of each field of its state, and `first`, the frame in which it appeared
     this.names = [];
     this.version = 0;  // grows when the drawing changes
     this.lasers = new Map();
@@ -59,7 +62,7 @@ export class World {
     const mix = (values) => values[i] + (values[j] - values[i]) * part;
     return {
       frame: i, x: mix(robot.x), y: mix(robot.y), yaw: robot.yaw[i] + turn(robot.yaw[i], robot.yaw[j]) * part,
-      battery: mix(robot.battery), charging: (robot.flags[i] & 1) !== 0, touching: (robot.flags[i] & 2) !== 0,
+      battery: mix(robot.battery), charging: Boolean(robot.charging[i]), touching: Boolean(robot.touching[i]),
     };
   }
 
@@ -141,15 +144,12 @@ function track(tracks, key, limit) {
   return tracks.get(key);
 }
 
-function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
-  const last = world.times.length - 1, flags = (charging ? 1 : 0) | (touching ? 2 : 0);
-  if (!world.columns[index]) {
-    // It was found late: until then it is where it was found, so that every column has one value for each frame.
-    const fill = (value) => new Array(last).fill(value);
-    world.columns[index] = { first: last, x: fill(x), y: fill(y), yaw: fill(yaw), battery: fill(battery), flags: fill(flags) };
-  }
-  const robot = world.columns[index];
-  robot.x[last] = x; robot.y[last] = y; robot.yaw[last] = yaw; robot.battery[last] = battery; robot.flags[last] = flags;
+function addRow(world, index, row) {
+  const last = world.times.length - 1;
+  // A robot that is found late is where it was found until then, so that every column has one value for each frame.
+  const robot = world.columns[index] ??= { first: last, ...Object.fromEntries(ROBOT_STATE.map((name, i) => [name, new Array(last).fill(row[i])])) };
+  ROBOT_STATE.forEach((name, i) => { robot[name][last] = row[i]; });
+  const x = robot.x[last], y = robot.y[last];
   world.visited = joined([x, y, x, y], world.visited);
 }
 
@@ -157,7 +157,7 @@ function addRow(world, index, [x, y, yaw, battery, charging, touching]) {
 function forget(world, count) {
   world.times.splice(0, count);
   for (const robot of world.columns) {
-    for (const values of [robot.x, robot.y, robot.yaw, robot.battery, robot.flags]) values.splice(0, count);
+    for (const name of ROBOT_STATE) robot[name].splice(0, count);
     robot.first = Math.max(0, robot.first - count);
   }
   world.version += 1;

@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.sim.contact import WallIndex, push_out, push_out_rectangle
 from jacaros.sim.description import BatterySettings, Dock, Pose, Rectangle, RobotDescription
-from jacaros.sim.ground_truth import Sample
+from jacaros.sim.ground_truth import RobotState, Sample
 from jacaros.sim.robot.motion import Odometry, advance, ramp
 from jacaros.sim.trigonometry import sine_cosine
 
@@ -77,17 +77,12 @@ class Robot:
 
     def sample(self, time: float) -> Sample:
         """Return the state as a point of the path."""
+        return Sample(time, *self.state(), self.odometer)
+
+    def state(self) -> RobotState:
+        """Return the true pose, the battery and the contacts."""
         battery = self.battery
-        return Sample(
-            time,
-            self.x,
-            self.y,
-            self.yaw,
-            battery.level,
-            battery.charging,
-            bool(self.touching),
-            self.odometer,
-        )
+        return RobotState(self.x, self.y, self.yaw, battery.level, battery.charging, bool(self.touching))
 
     def command(self, speed: float, turn_rate: float) -> None:
         """Set a velocity command (m/s, rad/s) for the next step; numbers that are not finite mean stop."""
