@@ -18,11 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.inspector.modules import bundle
-from jacaros.inspector.recording import Recording
+from jacaros.inspector.recording import Recording, event_record, text_record, world_record
 
 STATIC = Path(__file__).parent / "static"
 """The page and its modules; a server serves this folder unchanged."""
-_VERSION = 2
 _PLACES = re.compile(
     r'<title>[^<]*</title>|<link rel="stylesheet" href="(\w+)\.css">|<script type="module" src="live\.js"></script>'
 )
@@ -91,19 +90,10 @@ def packed(recording: Recording) -> str:
 
 def records(recording: Recording) -> Iterator[dict[str, Any]]:
     """Yield the records of a recording except frames, in time order, as in its file."""
-    yield {"kind": "world", "version": _VERSION, "world": recording.world}
-    moments = [
-        *(
-            (t, {"kind": "text", "t": _short(t), "agent": agent, "text": text})
-            for t, agent, text in recording.texts
-        ),
-        *(
-            (t, {"kind": "event", "t": _short(t), "event": kind, "data": data})
-            for t, kind, data in recording.events
-        ),
-    ]
-    for _, record in sorted(moments, key=itemgetter(0)):
-        yield record
+    yield world_record(recording.world)
+    texts = (text_record(*text) for text in recording.texts)
+    events = (event_record(*event) for event in recording.events)
+    yield from sorted((*texts, *events), key=itemgetter("t"))
 
 
 def frames(recording: Recording) -> dict[str, Any]:
@@ -132,10 +122,6 @@ def frames(recording: Recording) -> dict[str, Any]:
 def _differences(values: Iterable[float], scale: int) -> list[int]:
     whole = [round(value * scale) for value in values]
     return [after - before for before, after in pairwise([0, *whole])]
-
-
-def _short(t: float) -> float:
-    return round(t, 3)
 
 
 def _hash(text: str) -> str:

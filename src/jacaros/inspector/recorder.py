@@ -9,7 +9,7 @@ from typing import Any
 
 from jacaros.errors import UsageError
 from jacaros.inspector.line_format import CompressedLines, Lines
-from jacaros.inspector.recording import VERSION, Frame, Recording
+from jacaros.inspector.recording import Frame, Recording, event_record, text_record, world_record
 from jacaros.inspector.recording_file import Format, RecordingFile
 from jacaros.inspector.scene import RobotView, row_of
 from jacaros.ros.message import type_of
@@ -81,7 +81,7 @@ class Recorder:
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Record the world (see `jacaros.sim.WorldDescription.drawing`), before everything else; the last call wins."""
         self.recording.world = dict(drawing)
-        self._write({"kind": "world", "version": VERSION, "world": self.recording.world})
+        self._write(world_record(self.recording.world))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Record the robots at a time, in the order of the world."""
@@ -106,24 +106,22 @@ class Recorder:
         self._rested = None
 
     def _take(self, t: float, rows: tuple[RobotState, ...]) -> None:
-        self._last, t = rows, round(t, 3)
+        self._last, frame = rows, Frame(round(t, 3), rows)
         if self._keep:
-            self.recording.frames.append(Frame(t, rows))
-        if self._file is not None:
-            self._file.write({"kind": "frame", "t": t, "robots": rows})
+            self.recording.frames.append(frame)
+        self._write(frame.record())
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Record a line of an agent's output."""
         if self._keep:
             self.recording.texts.append((t, agent, text))
-        self._write({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
+        self._write(text_record(t, agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Record an event at a whole millisecond; *data* is plain JSON data that must not change afterwards."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
-        if self._file is not None:
-            self._file.write({"kind": "event", "t": t, "event": kind, "data": data})
+        self._write(event_record(t, kind, data))
 
     def message(self, t: float, topic: str, message: Any) -> None:
         """Record a ROS message that had an effect."""

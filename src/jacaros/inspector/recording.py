@@ -1,6 +1,7 @@
 """A recorded run in memory, read from a recorder's file."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,6 +27,25 @@ class Frame(NamedTuple):
 
     t: float
     robots: tuple[RobotState, ...]
+
+    def record(self) -> dict[str, Any]:
+        """Return the record of the frame."""
+        return {"kind": "frame", **self._asdict()}
+
+
+def world_record(world: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the record of a world: its drawing, see `jacaros.sim.WorldDescription.drawing`."""
+    return {"kind": "world", "version": VERSION, "world": world}
+
+
+def text_record(t: float, agent: str, text: str) -> dict[str, Any]:
+    """Return the record of a line of an agent's output."""
+    return {"kind": "text", "t": round(t, 3), "agent": agent, "text": text}
+
+
+def event_record(t: float, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the record of an event; *t* is a whole millisecond."""
+    return {"kind": "event", "t": t, "event": event, "data": data}
 
 
 _NOWHERE: dict[str, Any] = {

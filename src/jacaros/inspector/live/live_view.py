@@ -6,11 +6,10 @@ from typing import Any
 from jacaros.inspector.live.commands import Commands
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.past import Past
-from jacaros.inspector.live.records import FrameRecord, LiveRecord
+from jacaros.inspector.live.records import FrameRecord, LiveRecord, hello
+from jacaros.inspector.recording import event_record, text_record, world_record
 from jacaros.inspector.scene import RobotView
 
-VERSION = 2
-"""Version of the records."""
 _NEWEST = ("laser", "believed")
 """Events of which only the newest for each robot matters."""
 
@@ -37,7 +36,7 @@ class LiveView:
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
-        self._take({"kind": "world", "version": VERSION, "world": drawing})
+        self._take(world_record(drawing))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Show the robots at a time."""
@@ -54,12 +53,12 @@ class LiveView:
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
-        self._take({"kind": "text", "t": round(t, 3), "agent": agent, "text": text})
+        self._take(text_record(t, agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Show an event."""
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
-        self._take({"kind": "event", "t": round(t, 3), "event": kind, "data": data}, newest)
+        self._take(event_record(t, kind, data), newest)
 
     def commands_changed(self) -> None:
         """Tell the pages which commands are available from now on."""
@@ -86,14 +85,7 @@ class LiveView:
 
     def begin(self) -> Delivery:
         """Start delivering to another page."""
-        hello = {
-            "kind": "hello",
-            "version": VERSION,
-            "title": self._title,
-            "live": self._live,
-            "can": self._commands.names,
-        }
-        delivery = Delivery(self._past, hello)
+        delivery = Delivery(self._past, hello(self._title, self._live, self._commands.names))
         self._deliveries.append(delivery)
         return delivery
 

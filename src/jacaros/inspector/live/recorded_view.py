@@ -6,8 +6,7 @@ from typing import Any
 
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
 from jacaros.inspector.live.delivery import Delivery
-from jacaros.inspector.live.live_view import VERSION
-from jacaros.inspector.live.records import LiveRecord
+from jacaros.inspector.live.records import LiveRecord, hello
 from jacaros.inspector.page import records, title_of
 from jacaros.inspector.recording import Recording
 from jacaros.mas.history.why import explain
@@ -26,13 +25,7 @@ class RecordedView:
         self._records = [LiveRecord(number, each) for number, each in enumerate(_all_records(recording))]
         self._commands = Commands()
         self._commands.add({"why": self._why})
-        self._hello: dict[str, Any] = {
-            "kind": "hello",
-            "version": VERSION,
-            "title": title or title_of(recording),
-            "live": False,
-            "can": self._commands.names,
-        }
+        self._hello = hello(title or title_of(recording), live=False, can=self._commands.names)
 
     def records(self) -> list[LiveRecord]:
         """Return all records."""
@@ -58,5 +51,5 @@ def _all_records(recording: Recording) -> Iterator[Mapping[str, Any]]:
     """Yield the records of a recording in time order; at equal times frames come first."""
     world, *others = records(recording)
     yield world
-    frames = ({"kind": "frame", "t": frame.t, "robots": frame.robots} for frame in recording.frames)
+    frames = (frame.record() for frame in recording.frames)
     yield from merge(frames, others, key=lambda record: record["t"])

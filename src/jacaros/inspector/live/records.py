@@ -5,6 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from jacaros.inspector.recording import VERSION, Frame
 from jacaros.inspector.scene import RobotView, row_of
 
 LONGEST = 200_000
@@ -54,9 +55,14 @@ class FrameRecord(LiveRecord):
     def text(self) -> str:
         """The record as JSON."""
         if self._text is None:
-            rows = [row_of(robot) for robot in self.robots]
-            self._text = json_text({"kind": "frame", "t": round(self.t, 3), "robots": rows})
+            rows = tuple(map(row_of, self.robots))
+            self._text = json_text(Frame(round(self.t, 3), rows).record())
         return self._text
+
+
+def hello(title: str, live: bool, can: Sequence[str]) -> dict[str, Any]:
+    """Return the first message to a page: its title, whether the run continues, and the available commands."""
+    return {"kind": "hello", "version": VERSION, "title": title, "live": live, "can": can}
 
 
 def json_text(data: Any) -> str:
