@@ -80,7 +80,8 @@ def made(seconds: float) -> list[Sample]:
 
 def patterns(samples: list[Sample]) -> Go:
     """The operators alone."""
-    from jacaros.artifacts.streams.pattern import Pattern, Spec
+    from jacaros.artifacts.streams.declarations import Spec
+    from jacaros.artifacts.streams.pattern import Pattern
 
     outputs = 0
 

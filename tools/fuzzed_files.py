@@ -25,7 +25,7 @@ from jacaros.inspector.scene import RobotView
 from jacaros.mas.checking import check_files
 from jacaros.mas.loading import load_deployment
 from jacaros.ros.drivers.rosbridge.link import Link
-from jacaros.ros.parameter_store import checked_value
+from jacaros.ros.parameter import checked_value
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.sim.files.world import load_world

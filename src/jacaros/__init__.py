@@ -5,7 +5,6 @@ on first use, so ``import jacaros`` costs nothing.
 """
 
 from jacaros.exports import exported
-from jacaros.version import VERSION
 
 TYPE_CHECKING = False  # True for type checkers; importing the typing module takes longer than all of this
 
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from jacaros.mas.embedding.run import run
     from jacaros.mas.options import RunOptions
 
-__version__ = VERSION
+__version__: str
 
 __all__ = [
     "ActionError",
@@ -74,6 +73,7 @@ _MODULES = {
     "jacaros.mas.embedding.mas": "Mas",
     "jacaros.mas.embedding.run": "run",
     "jacaros.mas.options": "RunOptions",
+    "jacaros.version": "__version__=VERSION",
 }
 """Where the names are defined; views of the mind's objects have other names there."""
 

@@ -9,7 +9,7 @@ from types import FrameType
 import pytest
 
 from jacaros.agents.language.goal_patterns import PATTERNS
-from jacaros.artifacts.streams.pattern import OPERATORS
+from jacaros.artifacts.streams.declarations import OPERATORS
 from jacaros.testing import AgentHarness
 
 ROOT = Path(__file__).parents[2]

@@ -6,7 +6,6 @@ Python, use a `Session`. Each name is loaded on first use. No artifact depends o
 
 from typing import TYPE_CHECKING
 
-from jacaros.artifacts.env.operation import operation  # now: the module of this name would hide it
 from jacaros.exports import exported
 
 if TYPE_CHECKING:

@@ -98,7 +98,7 @@ class GraphAddress:
                 "parameters; run on the robot itself, with --ros ros2 or --ros ros1"
             )
         from jacaros.ros.errors import ParameterRefused
-        from jacaros.ros.parameter_store import checked_value
+        from jacaros.ros.parameter import checked_value
 
         for name, value in self.parameters.items():
             try:

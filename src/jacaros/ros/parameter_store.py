@@ -1,14 +1,9 @@
 """The declared parameters of one node, with ROS 2's rules: fixed types, ranges, and refusals."""
 
-import math
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue
-
-_NAMES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "text", bytes: "bytes"}
-_WIDEST = 2**63
+from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue, checked_value, fault_of
 
 
 class DeclaredParameters:
@@ -99,70 +94,3 @@ class DeclaredParameters:
     def _unknown(self, name: str) -> str:
         known = f"it has {', '.join(self.names())}" if self._values else "it has none"
         return f"node {self._node} has no parameter {name}; {known}"
-
-
-def fault_of(value: ParameterValue, declaration: Declaration) -> str | None:
-    """Return what is wrong with *value* for a declared parameter: its type or its range; None if nothing is."""
-    wanted, given = kind_of(declaration.default), kind_of(value)
-    if wanted != given and not _is_empty_of(wanted, given):
-        told = f"of type {wanted}; {value!r} is of type {given}"
-        if wanted == "float" and given == "int":
-            told += f"; write {value!r}.0"
-        return told
-    low, high = declaration.minimum, declaration.maximum
-    if isinstance(value, int | float) and (
-        (low is not None and value < low) or (high is not None and value > high)
-    ):
-        return f"{_range(low, high)}, not {value!r}"
-    return None
-
-
-def _is_empty_of(wanted: str, given: str) -> bool:
-    """Return whether one of two kinds is an empty list, which matches the other; alone it is a list of texts, as on
-    ROS 1."""
-    return (given == "empty list" and wanted.startswith("list")) or (wanted, given) == (
-        "empty list",
-        "list of text",
-    )
-
-
-def checked_value(value: Any) -> ParameterValue:
-    """Return *value* in plain types that a parameter can hold.
-
-    Raises:
-        ParameterRefused: a parameter cannot hold it; the text lists what it can hold.
-    """
-    if isinstance(value, list | tuple):
-        elements = [checked_value(element) for element in value]
-        kinds = {type(element) for element in elements}
-        if len(kinds) <= 1 and kinds <= {bool, int, float, str}:
-            return elements  # type: ignore[return-value]  # of one kind each
-    elif isinstance(value, str):
-        return str.__str__(value)  # subclasses, such as atoms of the agents' language, become plain texts
-    elif isinstance(value, bytes | bytearray):
-        return bytes(value)
-    elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
-        # Python writes no integer of more than 4,300 digits.
-        number = value if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
-        raise ParameterRefused(f"{number} is too large for a parameter, which has 64 bits")
-    elif isinstance(value, bool | int) or (isinstance(value, float) and not math.isnan(value)):
-        return value
-    raise ParameterRefused(
-        f"expected a bool, a number, a text, bytes, or a list of bools, ints, floats or texts, found {value!r}"
-    )
-
-
-def kind_of(value: ParameterValue) -> str:
-    """Return the type of a value: ``bool``, ``int``, ``float``, ``text``, ``bytes``, ``list of int``…, ``empty
-    list``."""
-    if isinstance(value, list):
-        return f"list of {_NAMES[type(value[0])]}" if value else "empty list"
-    return _NAMES[type(value)]
-
-
-def _range(low: float | None, high: float | None) -> str:
-    if low is None:
-        return f"at most {high:g}"
-    if high is None:
-        return f"at least {low:g}"
-    return f"from {low:g} to {high:g}"

@@ -14,12 +14,12 @@ from jacaros.artifacts.kit.sensing_artifact import RangeOfView
 from jacaros.artifacts.map.cells import OBSTACLE
 from jacaros.artifacts.map.localisation import Localisation
 from jacaros.artifacts.map.occupancy import HIT, OccupancyCells
-from jacaros.artifacts.mapping.declared import Conversion
+from jacaros.artifacts.mapping.declared import Conversion, Line
 from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.artifacts.mapping.read_fields import conversion
 from jacaros.artifacts.mapping.rows import extractor
-from jacaros.artifacts.mapping.units import Line, conversion
 from jacaros.artifacts.robots.control import Pose
 from jacaros.runtime.clock import VirtualClock, run
 

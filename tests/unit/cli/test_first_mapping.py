@@ -5,11 +5,10 @@ from pathlib import Path
 import pytest
 
 from jacaros.artifacts.mapping.checking import check_mapping
-from jacaros.artifacts.mapping.declared import FieldPart, Place
+from jacaros.artifacts.mapping.declared import FieldPart, Place, read_path
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import StoredInterfaces, stored_interfaces
 from jacaros.artifacts.mapping.manual import word_for_field
-from jacaros.artifacts.mapping.paths import read_path
 from jacaros.cli.graph.standard_topics import robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.cli.graph.values import values_of

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue
-from jacaros.ros.parameter_store import DeclaredParameters, checked_value, kind_of
+from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue, checked_value, kind_of
+from jacaros.ros.parameter_store import DeclaredParameters
 
 
 class Store:

@@ -19,15 +19,15 @@ The range of view, for messages with many elements, is in `sensing_artifact`.
 
 import asyncio
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from jacaros.artifacts.kit.options import Reader, bands, one_of, positive, yes_or_no
+from jacaros.artifacts.streams.declarations import ReadingPolicy as ReadingPolicy
+from jacaros.artifacts.streams.declarations import Values as Values
 from jacaros.ros.waiting import within
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
-
-Values = tuple[object, ...]
 
 READING_OPTIONS: dict[str, Reader] = {
     "mode": one_of("verbose", "on_demand"),
@@ -48,65 +48,6 @@ LOOK_AGAIN = 0.005
 LONGEST_WAIT = 1.0
 """Seconds after which a held value is delivered although the previous one was not processed: an observer may never do
 so."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReadingPolicy:
-    """When values are delivered.
-
-    Attributes:
-        on_demand: only on request, by `Reading.passed`.
-        rate: updates per second at most; None: no limit.
-        dead_band: a value is delivered if a number differs by more than this from the one delivered before; one
-            number for all fields or one for each. 0 drops equal values only.
-        latest_only: while observers have not processed the previous value, nothing is delivered; then the newest is.
-            For states, such as poses; not for messages that all count.
-        expire: seconds without a message after which values are withdrawn; None: never.
-        finite: refuse messages with NaN or an infinite number.
-    """
-
-    on_demand: bool = False
-    rate: float | None = None
-    dead_band: float | tuple[float, ...] = 0.0
-    latest_only: bool = False
-    expire: float | None = None
-    finite: bool = True
-
-    @classmethod
-    def from_options(
-        cls, options: Mapping[str, object], on_demand: bool = False, latest_only: bool = True
-    ) -> "ReadingPolicy":
-        """Make the policy from `READING_OPTIONS`; *on_demand* and *latest_only* are the defaults."""
-        mode = options.get("mode", "on_demand" if on_demand else "verbose")
-        rate, band = options.get("rate"), options.get("dead_band", 0.0)
-        expire = options.get("expire")
-        assert rate is None or isinstance(rate, float)
-        assert expire is None or isinstance(expire, float)
-        assert isinstance(band, float | tuple)
-        return cls(mode == "on_demand", rate, band, bool(options.get("latest_only", latest_only)), expire)
-
-    def differ(self, old: Values, new: Values) -> bool:
-        """Return whether *new* differs enough from *old* to be delivered."""
-        if old == new:
-            return False
-        if self.dead_band == 0.0 and self.finite:
-            return True
-        if len(old) != len(new):
-            return True
-        for index, value in enumerate(new):  # noqa: SIM110 - most differ in the first field: no generator for that
-            if self._field_differs(index, old[index], value):
-                return True
-        return False
-
-    def _field_differs(self, index: int, old: object, new: object) -> bool:
-        if isinstance(old, int | float) and isinstance(new, int | float):
-            return abs(new - old) > self._band(index) or math.isnan(old) != math.isnan(new)
-        return old != new
-
-    def _band(self, index: int) -> float:
-        if isinstance(self.dead_band, tuple):
-            return self.dead_band[index] if index < len(self.dead_band) else 0.0
-        return self.dead_band
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,10 @@
 ============================================== =======================================================================
 file                                           content
 ============================================== =======================================================================
-`declared`                                     the content of a file, as data
-`file`, `read_*`                               reading it
+`declared`                                     the content of a file, as data: parts, paths, conversions
+`file`, `read_*`                               reading it; needs neither artifacts nor a middleware
 `interfaces`, `checking`, `manual`             message types; checking a mapping against them; documentation
-`paths`, `units`, `decoding`, `encoding`       reading values from messages, and building messages
+`paths`, `decoding`, `encoding`                reading values from messages, and building messages
 `rows`                                         values of a message, or of each element of an array
 `artifact`, `host`, `operation_methods`        the class made from a file
 `topic_multiplexer`, `frames`, `parameters`    properties and signals

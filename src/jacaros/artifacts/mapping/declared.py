@@ -1,14 +1,12 @@
 """The content of a mapping file, as plain data with positions. Whether types and fields exist is not known here."""
 
+import re
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path as FilePath
 from typing import NamedTuple
 
-from jacaros.artifacts.kit.reading import ReadingPolicy
-from jacaros.artifacts.mapping.paths import Path
-from jacaros.artifacts.mapping.units import Line
-from jacaros.artifacts.streams.pattern import Spec
+from jacaros.artifacts.streams.declarations import ReadingPolicy, Spec
 from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS
@@ -42,6 +40,96 @@ class Written:
 
 NOTHING = Written("", START)
 
+# Paths into messages: ``pose.pose.position.x``, ``ranges[0]``, ``transforms[*].child_frame_id``.
+
+ALL = "*"
+"""Stands for all elements of an array."""
+HERE = "i"
+"""Stands for the index of the current element, where there is one property for each."""
+
+_PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
+_INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
+
+Step = str | int
+"""The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
+
+
+class WrongPath(ValueError):
+    """Raised for an invalid path, with what to write."""
+
+    def __init__(self, message: str, help: str = "") -> None:
+        super().__init__(message)
+        self.help = help
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path.
+
+    Attributes:
+        text: as written.
+        steps: names, numbers, `ALL` and `HERE`; names have a dot in front so that ``"*"`` is not a name.
+        of_message: whether it begins at the message although its neighbours begin at an element.
+    """
+
+    text: str
+    steps: tuple[Step, ...]
+    of_message: bool = False
+
+    @property
+    def lists(self) -> int:
+        """Nesting depth of lists caused by `ALL`."""
+        return self.steps.count(ALL)
+
+
+WHOLE = Path(".", ())
+
+
+def read_path(text: str) -> Path:
+    """Read a path.
+
+    Raises:
+        WrongPath: it is invalid.
+    """
+    of_message = text.startswith("/")
+    rest = text.removeprefix("/")
+    if rest in (".", ""):
+        if not text:
+            raise WrongPath("empty path", "write the path of a field, or . for the whole message")
+        return Path(text, (), of_message)
+    steps: list[Step] = []
+    for part in rest.split("."):
+        found = _PART.fullmatch(part)
+        if found is None:
+            raise WrongPath(
+                f"`{text}` is not a path: `{part}` is not a field",
+                "write it like pose.position.x or ranges[0]",
+            )
+        steps.append(f".{found['name']}")
+        for index in _INDEX.findall(found["indices"]):
+            steps.append(index if index in (ALL, HERE) else int(index))
+    return Path(text, tuple(steps), of_message)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """``factor * value + shift``, from the message's number to the agent's."""
+
+    factor: float = 1.0
+    shift: float = 0.0
+
+    def there(self, value: float) -> float:
+        """Convert to the agent's number."""
+        return self.factor * value + self.shift
+
+    def back(self, value: float) -> float:
+        """Convert to the message's number."""
+        return (value - self.shift) / self.factor
+
+    def then(self, other: "Line") -> "Line":
+        """Return this conversion followed by *other*."""
+        return Line(self.factor * other.factor, self.shift * other.factor + other.shift)
+
 
 @dataclass(frozen=True, slots=True)
 class Conversion:
@@ -67,6 +155,11 @@ class Conversion:
     unit: str = ""
     knows_message_unit: bool = False
     floor: bool = False
+
+    @property
+    def needs_number(self) -> bool:
+        """Whether only a number can be converted."""
+        return self.line is not None or self.digits is not None
 
 
 AS_IT_IS = Conversion()
@@ -96,6 +189,15 @@ class FieldPart:
     def count(self) -> int:
         """Number of values that the field yields."""
         return 1 if self.shares is None else len(self.shares)
+
+
+def value_names(fields: tuple[FieldPart, ...]) -> list[str]:
+    """Return a word for each value of the fields."""
+    return [
+        field.name or "value" if field.shares is None else f"{field.name}{place + 1}"
+        for field in fields
+        for place in range(field.count)
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,6 +422,13 @@ class OperationPart:
     description: str = ""
     uses: tuple[str, ...] = ()
 
+    @property
+    def is_switch(self) -> bool:
+        """Whether it can pause and resume goals of others: it sends a request and ends."""
+        if self.kind is OperationKind.PUBLISH:
+            return self.rate is None
+        return self.kind in (OperationKind.SERVICE, OperationKind.SET)
+
 
 @dataclass(frozen=True, slots=True)
 class ArtifactPart:
@@ -356,6 +465,19 @@ class ArtifactPart:
     def signals(self) -> tuple[TopicPart, ...]:
         """All signals."""
         return tuple(part for part in self.topics if part.signal)
+
+    def arity(self, operation: OperationPart) -> int:
+        """Return the number of arguments of an operation, including outputs."""
+        return len(operation.parameters) + len(self.output_names(operation))
+
+    def output_names(self, operation: OperationPart) -> list[str]:
+        """Return names for the output parameters of an operation."""
+        if operation.kind is not OperationKind.READ:
+            return value_names(operation.outputs)
+        wanted = operation.properties[0].text if operation.properties else ""
+        fields = {each.name: each.fields or () for each in self.properties}
+        fields |= {each.name: each.fields for each in self.frames}
+        return value_names(fields.get(wanted, ()))
 
 
 @dataclass(frozen=True, slots=True)

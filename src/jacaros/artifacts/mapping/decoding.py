@@ -8,10 +8,10 @@ from functools import lru_cache
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.mapping.declared import Conversion, FieldPart
+from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Path, WrongPath, read_path
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
-from jacaros.artifacts.mapping.paths import Path, WrongPath, follow, getter, read_path
+from jacaros.artifacts.mapping.paths import follow, getter
 from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES, to_seconds
@@ -272,6 +272,13 @@ def converted(conversion: Conversion) -> Convert:
         return found if isinstance(found, Atom) else number(found)
 
     return named
+
+
+def perceived(value: object) -> object:
+    """Return a constant of a mapping file as agents perceive it: lower-case words are atoms."""
+    if isinstance(value, list):
+        return [perceived(each) for each in value]
+    return Atom(value) if isinstance(value, str) and value.isidentifier() and value[0].islower() else value
 
 
 def _in_turn(steps: list[Convert]) -> Convert:

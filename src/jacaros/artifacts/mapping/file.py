@@ -14,13 +14,16 @@ from jacaros.artifacts.mapping.declared import (
     Place,
     TopicPart,
 )
-from jacaros.artifacts.mapping.operation_methods import arity, is_switch
-from jacaros.artifacts.mapping.read_derived import derived_problems, read_derived
-from jacaros.artifacts.mapping.read_fields import place_of
-from jacaros.artifacts.mapping.read_names import UNNAMED, namespace
+from jacaros.artifacts.mapping.read_fields import UNNAMED, each_of, namespace, place_of
 from jacaros.artifacts.mapping.read_operations import read_operation
-from jacaros.artifacts.mapping.read_parameters import read_parameter
-from jacaros.artifacts.mapping.read_topics import read_frame, read_property, read_signal
+from jacaros.artifacts.mapping.read_properties import (
+    derived_problems,
+    read_derived,
+    read_frame,
+    read_parameter,
+    read_property,
+    read_signal,
+)
 from jacaros.files.texts import is_file
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 
@@ -142,7 +145,7 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
 def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
     """Return the folders with definitions of types; relative paths start at the file's folder."""
     found = []
-    for item in node.sequence() if isinstance(node.value, list) else [node]:
+    for item in each_of(node):
         path = (folder / item.text()).resolve()
         if path.is_dir():
             found.append(path)
@@ -247,7 +250,7 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations that agents cannot tell apart: same name, same number of arguments."""
     seen: dict[tuple[str, int], Place] = {}
     for operation in part.operations:
-        key = (operation.name, arity(part, operation))
+        key = (operation.name, part.arity(operation))
         before = seen.setdefault(key, operation.place)
         if before is not operation.place and operation.name != UNNAMED:
             yield operation.place.problem(
@@ -258,8 +261,8 @@ def _arities(part: ArtifactPart) -> Iterator[Problem]:
 
 def _switches(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations that are named to pause and resume others, but do not exist or are not able to."""
-    plain = {each.name: each for each in part.operations if arity(part, each) == 0}
-    able = [name for name, each in plain.items() if is_switch(each)]
+    plain = {each.name: each for each in part.operations if part.arity(each) == 0}
+    able = [name for name, each in plain.items() if each.is_switch]
     for operation in part.operations:
         for wanted in (operation.pause, operation.resume):
             if wanted is NOTHING or not wanted.text or wanted.text in able:

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.artifacts.env.values import text
-from jacaros.artifacts.kit.reading import ReadingPolicy
 from jacaros.artifacts.mapping.checking import message_types
 from jacaros.artifacts.mapping.declared import (
     ArtifactPart,
@@ -18,9 +17,12 @@ from jacaros.artifacts.mapping.declared import (
     OperationKind,
     OperationPart,
     ParameterPart,
+    Path,
     Source,
     TopicPart,
     ValuePart,
+    WrongPath,
+    value_names,
 )
 from jacaros.artifacts.mapping.decoding import octet, owner_of
 from jacaros.artifacts.mapping.encoding import builder, fitting
@@ -32,17 +34,17 @@ from jacaros.artifacts.mapping.interfaces import (
     stored_interfaces,
 )
 from jacaros.artifacts.mapping.message_units import UNIT_WORDS, unit_at
-from jacaros.artifacts.mapping.operation_methods import unlike, values_of
-from jacaros.artifacts.mapping.paths import Path, WrongPath, follow
+from jacaros.artifacts.mapping.operation_methods import unlike
+from jacaros.artifacts.mapping.paths import follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.rows import fields_of
-from jacaros.artifacts.streams.pattern import OPERATORS, VALUE, Spec
+from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.message import TIMES
-from jacaros.ros.parameter_store import kind_of
+from jacaros.ros.parameter import kind_of
 
 _TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
 
@@ -64,7 +66,7 @@ class Documentation:
         interfaces = stored_interfaces(part.interfaces)
         for title, lines in (
             ("Properties", list(_properties(part, interfaces))),
-            ("Signals", list(_signals(part, interfaces))),
+            ("Signals", [_from_topic(topic, interfaces) for topic in part.signals]),
         ):
             if lines:
                 sections.append("\n".join([f"{title}:", *(f"    {line}" for line in lines)]))
@@ -106,11 +108,6 @@ def _of_parameter(part: ParameterPart) -> str:
         "read-only" if declaration.read_only else "",
     ]
     return f"{told}. Value: {', '.join(filter(None, words))}"
-
-
-def _signals(part: ArtifactPart, interfaces: Interfaces) -> Iterator[str]:
-    for topic in part.signals:
-        yield _from_topic(topic, interfaces)
 
 
 def _derived(part: DerivedPart, spec: Spec) -> str:
@@ -184,7 +181,7 @@ def variables(fields: tuple[FieldPart, ...]) -> list[str]:
     """Return variable names for the values of fields."""
     return [
         "".join(part[:1].upper() + part[1:] for part in word.split("_"))
-        for word in unlike((), values_of(fields))
+        for word in unlike((), value_names(fields))
     ]
 
 
@@ -203,7 +200,7 @@ def parameter_words(artifact: ArtifactPart, part: OperationPart) -> dict[str, st
     types = message_types(part.kind, type_name) if type_name else ()
     words = _inputs(part, types, interfaces)
     if len(types) > 1 and all(each.count == 1 for each in part.outputs):
-        names = unlike(part.parameters, values_of(part.outputs))
+        names = unlike(part.parameters, value_names(part.outputs))
         for field, name in zip(part.outputs, names, strict=True):
             words[name] = word_for_field(field, FieldType(types[1]), None, interfaces)
     return {name: word for name, word in words.items() if word}

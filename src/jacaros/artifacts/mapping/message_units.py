@@ -2,11 +2,9 @@
 
 from collections.abc import Mapping
 
-from jacaros.artifacts.mapping.declared import Conversion
+from jacaros.artifacts.mapping.declared import Conversion, Path, WrongPath
 from jacaros.artifacts.mapping.interfaces import Interfaces
-from jacaros.artifacts.mapping.paths import Path, WrongPath
-from jacaros.artifacts.mapping.read_fields import ANGLES
-from jacaros.artifacts.mapping.units import UNITS
+from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
 from jacaros.ros.fields import FieldType
 from jacaros.ros.message import TIMES
 
@@ -127,7 +125,7 @@ def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: 
     kinds, wanted = _kinds(there), UNITS[conversion.unit].kind
     if not there or wanted in kinds:
         return
-    listed = ", ".join(name for name, each in UNITS.items() if each.kind in kinds)
+    listed = ", ".join(units_of(*kinds))
     units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave `unit` out, or"
     raise WrongPath(
         f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}",

@@ -9,13 +9,19 @@ from jacaros.artifacts.env.values import Atom, plain
 from jacaros.artifacts.kit.acting import error_code, error_text
 from jacaros.artifacts.kit.services import MESSAGES, failure_reason
 from jacaros.artifacts.mapping.checking import check_answer, message_types
-from jacaros.artifacts.mapping.declared import FieldPart, OperationKind, OperationPart, Source, Success
+from jacaros.artifacts.mapping.declared import (
+    FieldPart,
+    OperationKind,
+    OperationPart,
+    Source,
+    Success,
+    read_path,
+)
 from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
-from jacaros.artifacts.mapping.operation_methods import arity
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
-from jacaros.artifacts.mapping.paths import getter, read_path
+from jacaros.artifacts.mapping.paths import getter
 from jacaros.artifacts.mapping.publishing import Publishing
 from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.mapping.type_search import ask_type
@@ -60,7 +66,7 @@ class Operations:
         plain = {
             part.name: runner
             for part, runner in zip(parts, self._runners, strict=True)
-            if arity(host.part, part) == 0
+            if host.part.arity(part) == 0
         }
         for part, runner in zip(parts, self._runners, strict=True):
             if isinstance(runner, _ActionOperation) and part.suspend == "pause":

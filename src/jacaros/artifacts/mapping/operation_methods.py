@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.artifacts.env.artifact import Out, operation
-from jacaros.artifacts.mapping.declared import ArtifactPart, FieldPart, OperationKind, OperationPart
+from jacaros.artifacts.mapping.declared import ArtifactPart, OperationKind, OperationPart
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.ros.guarded import VELOCITIES
 
@@ -26,7 +26,7 @@ def _method(artifact: ArtifactPart, number: int, words: Words) -> Callable[..., 
         outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
         await self.operating.run(number, arguments[:inputs], outs)
 
-    names = [*part.parameters, *unlike(part.parameters, output_names(artifact, part))]
+    names = [*part.parameters, *unlike(part.parameters, artifact.output_names(part))]
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
     run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # read by inspect.signature
         [inspect.Parameter(name, kind) for name in ("self", *names)]
@@ -55,37 +55,6 @@ def motion_uses(artifact: ArtifactPart) -> tuple[str, ...]:
         for part in artifact.operations
     )
     return (WHEELS,) if moves else ()
-
-
-def is_switch(part: OperationPart) -> bool:
-    """Return whether it can pause and resume goals of others: it sends a request and ends."""
-    if part.kind is OperationKind.PUBLISH:
-        return part.rate is None
-    return part.kind in (OperationKind.SERVICE, OperationKind.SET)
-
-
-def arity(artifact: ArtifactPart, part: OperationPart) -> int:
-    """Return the number of arguments of an operation, including outputs."""
-    return len(part.parameters) + len(output_names(artifact, part))
-
-
-def output_names(artifact: ArtifactPart, part: OperationPart) -> list[str]:
-    """Return names for the output parameters."""
-    if part.kind is not OperationKind.READ:
-        return values_of(part.outputs)
-    wanted = part.properties[0].text if part.properties else ""
-    fields = {each.name: each.fields or () for each in artifact.properties}
-    fields |= {each.name: each.fields for each in artifact.frames}
-    return values_of(fields.get(wanted, ()))
-
-
-def values_of(fields: tuple[FieldPart, ...]) -> list[str]:
-    """Return a word for each value of the fields."""
-    return [
-        field.name or "value" if field.shares is None else f"{field.name}{place + 1}"
-        for field in fields
-        for place in range(field.count)
-    ]
 
 
 def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:

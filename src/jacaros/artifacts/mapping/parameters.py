@@ -23,8 +23,7 @@ from jacaros.ros.errors import (
     RosError,
     ServiceUnavailable,
 )
-from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_store import fault_of
+from jacaros.ros.parameter import Declaration, ParameterValue, fault_of
 
 PATIENCE = 2.0
 """Seconds to wait for a parameter: for the master of ROS 1 before the default applies, for a node before the next
@@ -168,11 +167,14 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
     if conversion == AS_IT_IS:
         return convert
     named = {value for value, _ in conversion.names}
-    wants_number = conversion.line is not None or conversion.digits is not None
 
     def element(value: ParameterValue) -> object:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if wants_number and not is_number and not (isinstance(value, str | bool) and value in named):
+        if (
+            conversion.needs_number
+            and not is_number
+            and not (isinstance(value, str | bool) and value in named)
+        ):
             told = f"parameter `{name}`: expected a number, found {text(value, quoted=True)}"
             raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
         # Infinity has no integer; the receiver of the value refuses it.

@@ -1,84 +1,15 @@
-"""Paths into messages: ``pose.pose.position.x``, ``ranges[0]``, ``transforms[*].child_frame_id``."""
+"""Follow paths through message types and messages."""
 
 import keyword
-import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from jacaros.artifacts.mapping.declared import ALL, HERE, Path, Step, WrongPath
 from jacaros.files.texts import suggestion
 from jacaros.ros.fields import FieldType
 
-ALL = "*"
-"""Stands for all elements of an array."""
-HERE = "i"
-"""Stands for the index of the current element, where there is one property for each."""
-
-_PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
-_INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
-
-Step = str | int
-"""The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
-
 Fields = Callable[[str], Mapping[str, FieldType]]
 """Returns the fields of a message type, given in full form."""
-
-
-class WrongPath(ValueError):
-    """Raised for an invalid path, with what to write."""
-
-    def __init__(self, message: str, help: str = "") -> None:
-        super().__init__(message)
-        self.help = help
-
-
-@dataclass(frozen=True, slots=True)
-class Path:
-    """A path.
-
-    Attributes:
-        text: as written.
-        steps: names, numbers, `ALL` and `HERE`; names have a dot in front so that ``"*"`` is not a name.
-        of_message: whether it begins at the message although its neighbours begin at an element.
-    """
-
-    text: str
-    steps: tuple[Step, ...]
-    of_message: bool = False
-
-    @property
-    def lists(self) -> int:
-        """Nesting depth of lists caused by `ALL`."""
-        return self.steps.count(ALL)
-
-
-WHOLE = Path(".", ())
-
-
-def read_path(text: str) -> Path:
-    """Read a path.
-
-    Raises:
-        WrongPath: it is invalid.
-    """
-    of_message = text.startswith("/")
-    rest = text.removeprefix("/")
-    if rest in (".", ""):
-        if not text:
-            raise WrongPath("empty path", "write the path of a field, or . for the whole message")
-        return Path(text, (), of_message)
-    steps: list[Step] = []
-    for part in rest.split("."):
-        found = _PART.fullmatch(part)
-        if found is None:
-            raise WrongPath(
-                f"`{text}` is not a path: `{part}` is not a field",
-                "write it like pose.position.x or ranges[0]",
-            )
-        steps.append(f".{found['name']}")
-        for index in _INDEX.findall(found["indices"]):
-            steps.append(index if index in (ALL, HERE) else int(index))
-    return Path(text, tuple(steps), of_message)
 
 
 def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:

@@ -1,12 +1,24 @@
-"""Read ``fields``: the parts of a message that an agent perceives, and their conversion."""
+"""Read ``fields``: the parts of a message that an agent perceives, and their conversion; and names."""
 
+import re
+from dataclasses import dataclass
 from typing import Any
 
-from jacaros.artifacts.mapping.declared import Conversion, FieldPart, Place
-from jacaros.artifacts.mapping.paths import WHOLE, Path, WrongPath, read_path
-from jacaros.artifacts.mapping.units import UNITS, Line, conversion, usual
+from jacaros.artifacts.mapping.declared import (
+    WHOLE,
+    Conversion,
+    FieldPart,
+    Line,
+    Path,
+    Place,
+    Written,
+    WrongPath,
+    read_path,
+)
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Node
+from jacaros.ros.errors import NameInvalid
+from jacaros.ros.names import action_type, message_type, service_type
 
 ANGLES = ("yaw", "pitch", "roll")
 LISTS = ("count", "min", "max", "mean")
@@ -15,6 +27,48 @@ CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset"
 DOWN = "down"
 """Value of ``round: down``, the next lower integer, so that a battery at 99.7 % does not count as full."""
 FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
+
+
+_DEGREE = 3.141592653589793 / 180.0
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit: its factor to the usual unit of its kind, and its zero."""
+
+    kind: str
+    size: float
+    zero: float = 0.0
+
+
+UNITS: dict[str, Unit] = {
+    "radians": Unit("angle", 1.0),
+    "degrees": Unit("angle", _DEGREE),
+    "metres": Unit("length", 1.0),
+    "centimetres": Unit("length", 0.01),
+    "millimetres": Unit("length", 0.001),
+    "metres_per_second": Unit("speed", 1.0),
+    "kilometres_per_hour": Unit("speed", 1.0 / 3.6),
+    "seconds": Unit("time", 1.0),
+    "milliseconds": Unit("time", 0.001),
+    "minutes": Unit("time", 60.0),
+    "celsius": Unit("temperature", 1.0),
+    "kelvin": Unit("temperature", 1.0, -273.15),
+    "share": Unit("share", 1.0),
+    "percent": Unit("share", 0.01),
+}
+"""All units by name; the first of a kind is the usual one in messages."""
+
+
+def units_of(*kinds: str) -> list[str]:
+    """Return the units of some kinds; the first of a kind is the usual one in messages."""
+    return [name for name, each in UNITS.items() if each.kind in kinds]
+
+
+def conversion(of_message: str, of_agent: str) -> Line:
+    """Return the conversion from one unit to another of the same kind."""
+    here, there = UNITS[of_message], UNITS[of_agent]
+    return Line(here.size / there.size, (here.zero - there.zero) / there.size)
 
 
 def place_of(node: Node) -> Place:
@@ -46,11 +100,14 @@ def shown(value: Any) -> str:
     return "nothing" if value is None else repr(value)
 
 
+def each_of(node: Node) -> list[Node]:
+    """Return the items of a list; a single one needs no brackets."""
+    return list(node.sequence()) if isinstance(node.value, list) else [node]
+
+
 def read_fields(node: Node) -> tuple[FieldPart, ...]:
-    """Read a list of fields; a single one needs no brackets."""
-    if isinstance(node.value, list):
-        return tuple(read_field(item) for item in node.sequence())
-    return (read_field(node),)
+    """Read a list of fields."""
+    return tuple(map(read_field, each_of(node)))
 
 
 def read_field(node: Node) -> FieldPart:
@@ -154,7 +211,7 @@ def _units(entries: dict[str, Node], kind: str) -> Line | None:
     wanted = _unit(there)
     if wanted is None:
         return None
-    given = usual(wanted) if here is None else _unit(here)
+    given = units_of(UNITS[wanted].kind)[0] if here is None else _unit(here)
     if given is None:
         return None
     asked, of_message = UNITS[wanted].kind, UNITS[given].kind
@@ -168,7 +225,7 @@ def _units(entries: dict[str, Node], kind: str) -> Line | None:
 
 
 def _of_kind(kind: str) -> str:
-    return f"units of {kind} are {', '.join(name for name, each in UNITS.items() if each.kind == kind)}"
+    return f"units of {kind} are {', '.join(units_of(kind))}"
 
 
 def _unit(node: Node) -> str | None:
@@ -194,3 +251,117 @@ def _otherwise(node: Node) -> float | Path:
     if isinstance(node.value, str):
         return path_of(node)
     return node.number()
+
+
+def constant(node: Node, expected: str = "a number, a text or a list", help: str = "") -> object:
+    """Read a constant: a number, truth value, text, or a list of them."""
+    value = node.value
+    if isinstance(value, list):
+        return [constant(item, expected, help) for item in node.sequence()]
+    if isinstance(value, bool):
+        return value
+    for kind in (int, float, str):
+        if isinstance(value, kind):
+            return kind(value)
+    node.wrong(f"{node.what} must be {expected}, found {shown(value)}", help)
+    return 0
+
+
+UNNAMED = "unnamed"
+"""Replaces an invalid name."""
+
+RESERVED = ("true", "false", "not", "div", "mod", "if", "else", "elif", "for", "while")
+"""Words with another meaning in agent programs."""
+
+_BELIEF = re.compile(r"[a-z][A-Za-z0-9_]*")
+_ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_GLUED = re.compile(r"([a-z_]+):(\S+)")
+_TYPE = re.compile(r"[a-z]\w*/(msg/)?[A-Z]\w*")
+NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?")
+_READERS = {"msg": message_type, "srv": service_type, "action": action_type}
+_EXAMPLES = {
+    "msg": "nav_msgs/msg/Odometry",
+    "srv": "std_srvs/srv/Trigger",
+    "action": "nav2_msgs/action/NavigateToPose",
+}
+
+
+def belief_name(node: Node) -> str:
+    """Read the name of a property, signal or operation."""
+    if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
+        if isinstance(node.value, bool):
+            node.wrong(
+                f"{str(node.value).lower()} is not a valid name in agent programs", "write another name"
+            )
+            return UNNAMED
+        near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
+        help = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
+        node.wrong(f"{shown(node.value)} is not a valid name in agent programs", help)
+        return UNNAMED
+    if node.value in RESERVED:
+        node.wrong(
+            f"`{node.value}` is a reserved word in agent programs",
+            f"write {node.value}_value or another name",
+        )
+        return UNNAMED
+    return str(node.value)
+
+
+def ros_name(node: Node) -> Written:
+    """Read the name of a topic, service, action or node."""
+    value = node.value
+    if not isinstance(value, str) or not _ROS.fullmatch(value):
+        glued = _GLUED.fullmatch(value) if isinstance(value, str) else None
+        help = f"write a space after the colon: {glued[1]}: {glued[2]}" if glued else ""
+        node.wrong(f"{shown(value)} is not a ROS name", help or "write it like cmd_vel or /robot/cmd_vel")
+        return Written("unnamed", place_of(node))
+    return Written(str(value), place_of(node))
+
+
+def namespace(node: Node) -> str:
+    """Read a namespace; empty if none exists."""
+    value = node.value
+    if value in (None, "", "/"):
+        return ""
+    if not isinstance(value, str) or not NAMESPACE.fullmatch(value):
+        node.wrong(f"{shown(value)} is not a ROS namespace", "write it like r1 or fleet/r1")
+        return ""
+    return str(value).strip("/")
+
+
+def type_written(node: Node, kind: str) -> Written | None:
+    """Read a type in full form; *kind* is ``msg``, ``srv`` or ``action``. None after a mistake."""
+    full = _full_type(node.value, kind)
+    if full is None:
+        node.wrong(*_wrong_type(node.value, kind))
+        return None
+    return Written(full, place_of(node))
+
+
+def _full_type(value: object, kind: str) -> str | None:
+    try:
+        full = _READERS[kind](value) if isinstance(value, str) else None
+    except NameInvalid:
+        return None
+    return full if full is not None and full.split("/")[1] == kind else None
+
+
+_OF = {"msg": "messages", "srv": "a service", "action": "an action"}
+
+
+def _wrong_type(value: object, kind: str) -> tuple[str, str]:
+    """Return the problem with a type, and what to write."""
+    for other, of in _OF.items():
+        if other != kind and isinstance(value, str) and value.count("/") == 2 and _full_type(value, other):
+            return (
+                f"{value} is the type of {of}, not of {_OF[kind]}",
+                f"write a type such as {_EXAMPLES[kind]}",
+            )
+    slashed = value.replace(".", "/").replace("::", "/") if isinstance(value, str) else ""
+    near = slashed if slashed and _full_type(slashed, kind) else f"it like {_EXAMPLES[kind]}"
+    return f"{shown(value)} is not a type of {_OF[kind]}", f"write {near}"
+
+
+def is_type(value: object) -> bool:
+    """Return whether a value has the form of a message type, and not that of a usual topic."""
+    return isinstance(value, str) and _TYPE.fullmatch(value) is not None

@@ -6,28 +6,35 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from jacaros.artifacts.mapping.declared import (
+    ALL,
+    HERE,
+    WHOLE,
     Conversion,
     FieldPart,
     OperationKind,
     OperationPart,
+    Path,
     Source,
     Success,
     ValuePart,
     Written,
 )
-from jacaros.artifacts.mapping.paths import ALL, HERE, WHOLE, Path
 from jacaros.artifacts.mapping.read_fields import (
     ANGLES,
     CONVERSION,
+    NAMESPACE,
+    UNNAMED,
+    belief_name,
+    constant,
+    each_of,
     path_of,
     place_of,
     read_conversion,
     read_fields,
-    shown,
+    ros_name,
+    type_written,
 )
-from jacaros.artifacts.mapping.read_names import UNNAMED, belief_name, ros_name, type_written
-from jacaros.artifacts.mapping.read_topics import is_misplaced, read_feedback, read_qos
-from jacaros.artifacts.resources.arbiter import read_uses
+from jacaros.artifacts.mapping.read_properties import is_misplaced, positive, read_feedback, read_qos
 from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.files.yaml import Node, Problem
 
@@ -45,7 +52,6 @@ KEYS: dict[str, tuple[str, ...]] = {
 _ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for keys in KEYS.values() for key in keys))))
 
 _SUSPEND = ("go_on", "cancel")
-_UNMATCHED = ("warn", "fail")
 
 _PARAMETER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 CALL_TIMEOUT = 10.0
@@ -62,13 +68,15 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     kinds = [kind for kind in KEYS if isinstance(node.value, dict) and kind in node.value]
     if len(kinds) != 1:
         found = f"has {' and '.join(kinds)}" if kinds else "does not name what it does"
-        unknown = [] if kinds else [key for key in _keys(node) if key not in _ALL_KEYS]
-        near = [each for key in unknown for each in close_matches(key, KEYS)]
+        written = map(str, node.value) if isinstance(node.value, dict) and not kinds else ()
+        near = [each for key in written if key not in _ALL_KEYS for each in close_matches(key, KEYS)]
         help = did_you_mean(near[:1], f"write one of {', '.join(KEYS)}")
         name.wrong(f"the operation `{part.name}` {found}", help)
         return part
     kind = OperationKind(kinds[0])
-    entries = node.mapping(kind.value, *_COMMON, *KEYS[kind.value], required=_required(kind))
+    entries = node.mapping(
+        kind.value, *_COMMON, *KEYS[kind.value], required=("value",) if kind is OperationKind.SET else ()
+    )
     part = dataclasses.replace(
         part,
         kind=kind,
@@ -84,20 +92,17 @@ def read_operation(name: Node, node: Node) -> OperationPart:
 def _uses(node: Node) -> tuple[str, ...]:
     """Read the resources that an operation holds."""
     found: list[str] = []
-    for item in node.sequence() if isinstance(node.value, list) else (node,):
-        if not isinstance(item.value, str):
-            item.wrong(
-                f"{item.what} must be the name of a resource, found {item.value!r}", "write uses: wheels"
-            )
-            continue
-        try:
-            (name,) = read_uses(item.value)
-        except ValueError as wrong:
-            item.wrong(str(wrong), "write uses: wheels, or uses: [base, arm]")
-            continue
-        if name in found:
+    for item in each_of(node):
+        name = item.value
+        if not isinstance(name, str):
+            item.wrong(f"{item.what} must be the name of a resource, found {name!r}", "write uses: wheels")
+        elif not NAMESPACE.fullmatch(name):
+            help = "write uses: wheels, or uses: [base, arm]"
+            item.wrong(f"invalid resource `{name}`; write a name, such as wheels", help)
+        elif name in found:
             item.wrong(f"duplicate resource `{name}`", "leave one of them out")
-        found.append(name)
+        else:
+            found.append(name)
     return tuple(found)
 
 
@@ -116,14 +121,6 @@ def _forgotten(part: OperationPart) -> Iterator[Problem]:
             yield each.place.problem(
                 f"`{each.value}` is a text here, not the parameter", f"write ${each.value}"
             )
-
-
-def _keys(node: Node) -> list[str]:
-    return [str(key) for key in node.value] if isinstance(node.value, dict) else []
-
-
-def _required(kind: OperationKind) -> tuple[str, ...]:
-    return ("value",) if kind is OperationKind.SET else ()
 
 
 def _parameters(node: Node) -> tuple[str, ...]:
@@ -155,7 +152,7 @@ def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         duration.wrong("`duration` needs `rate`", "write messages per second: rate: 10")
     if rate is not None and duration is None:
         rate.wrong("`rate` needs `duration`", "write seconds: duration: 2, or duration: $seconds")
-    spell = whole(duration, part.parameters) if duration is not None else None
+    spell = read_value(duration, WHOLE, part.parameters) if duration is not None else None
     if spell is not None and spell.source is Source.CONSTANT and not _is_positive(spell.value):
         assert duration is not None
         duration.wrong("`duration` must be a number of seconds above zero", "write duration: 2")
@@ -165,22 +162,12 @@ def _publish(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
         type_name=_type(entries, "msg"),
         **_filled(entries.get("fields"), part.parameters),
         qos=read_qos(entries["qos"]) if "qos" in entries else None,
-        rate=_seconds(rate) if rate is not None else None,
+        rate=positive(rate) if rate is not None else None,
         duration=spell,
         at_end=read_values(entries["at_end"], part.parameters) if "at_end" in entries else None,
         match_timeout=_timeout(entries, None, "match_timeout"),
-        unmatched=_unmatched(entries["unmatched"]) if "unmatched" in entries else None,
+        unmatched=entries["unmatched"].choice("warn", "fail") if "unmatched" in entries else None,
     )
-
-
-def _unmatched(node: Node) -> str | None:
-    if node.value in _UNMATCHED:
-        return str(node.value)
-    node.wrong(
-        f"`unmatched` must be {' or '.join(_UNMATCHED)}, found {node.value!r}",
-        f"write {' or '.join(_UNMATCHED)}",
-    )
-    return None
 
 
 def _service(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
@@ -276,7 +263,7 @@ def _success(node: Node) -> Success:
 def _set(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     return dataclasses.replace(
         _of_node(part, entries, "set_parameter"),
-        values=(whole(entries["value"], part.parameters),) if "value" in entries else (),
+        values=(read_value(entries["value"], WHOLE, part.parameters),) if "value" in entries else (),
     )
 
 
@@ -284,7 +271,7 @@ def _get(part: OperationPart, entries: dict[str, Node]) -> OperationPart:
     outputs = entries.get("outputs")
     field = FieldPart(WHOLE, place_of(entries["get_parameter"]), name="value")
     if outputs is not None:
-        listed = list(outputs.sequence()) if isinstance(outputs.value, list) else [outputs]
+        listed = each_of(outputs)
         if len(listed) != 1:
             outputs.wrong("a parameter has one value, so it has one output", "write outputs: [value]")
         elif isinstance(listed[0].value, str):
@@ -308,7 +295,7 @@ def _of_properties(part: OperationPart, entries: dict[str, Node]) -> OperationPa
     node = entries[part.kind.value]
     if "parameters" in entries:
         entries["parameters"].wrong(f"`{part.kind}` takes no parameters", "leave `parameters` out")
-    items = list(node.sequence()) if isinstance(node.value, list) else [node]
+    items = each_of(node)
     if part.kind is OperationKind.READ and len(items) != 1:
         node.wrong("`read` reads one property", "write an operation for each")
     named = tuple(Written(item.text(), place_of(item)) for item in items)
@@ -331,15 +318,7 @@ def _type(entries: dict[str, Node], kind: str) -> Written | None:
 
 
 def _timeout(entries: dict[str, Node], usual: float | None, key: str = "timeout") -> float | None:
-    return _seconds(entries[key]) if key in entries else usual
-
-
-def _seconds(node: Node) -> float:
-    value = node.number(default=1.0)
-    if value <= 0.0:
-        node.wrong(f"{node.what} is {value:g}, but must be above zero")
-        return 1.0
-    return value
+    return positive(entries[key]) if key in entries else usual
 
 
 def _is_positive(value: object) -> bool:
@@ -413,7 +392,8 @@ def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple
         return Source.PARAMETER, None, _parameter(node, str(value)[1:], parameters, within_list)
     if value == "now":
         return Source.NOW, None, 0
-    return Source.CONSTANT, constant(node), 0
+    help = "for a nested field write its path, as in linear.x: 0.5"
+    return Source.CONSTANT, constant(node, "a number, a text, $parameter or now", help), 0
 
 
 def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: bool) -> int:
@@ -432,25 +412,3 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
     help = did_you_mean(near, f"add it to `parameters`: [{', '.join((*parameters, name))}]")
     node.wrong(f"the operation has no parameter `{name}`", help)
     return 0
-
-
-def constant(node: Node) -> object:
-    """Read a constant: a number, truth value, text, or a list of them."""
-    value = node.value
-    if isinstance(value, list):
-        return [constant(item) for item in node.sequence()]
-    if isinstance(value, bool):
-        return value
-    for kind in (int, float, str):
-        if isinstance(value, kind):
-            return kind(value)
-    node.wrong(
-        f"{node.what} must be a number, a text, $parameter or now, found {shown(value)}",
-        "for a nested field write its path, as in linear.x: 0.5",
-    )
-    return 0
-
-
-def whole(node: Node, parameters: tuple[str, ...]) -> ValuePart:
-    """Read the value of a node's parameter, or a duration."""
-    return read_value(node, WHOLE, parameters)

@@ -6,10 +6,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.artifacts.mapping.declared import FieldPart, RangeOfView, TopicPart, Written
+from jacaros.artifacts.mapping.declared import (
+    WHOLE,
+    FieldPart,
+    Path,
+    RangeOfView,
+    TopicPart,
+    Written,
+    WrongPath,
+    read_path,
+)
 from jacaros.artifacts.mapping.decoding import Read, reader
 from jacaros.artifacts.mapping.interfaces import Interfaces
-from jacaros.artifacts.mapping.paths import WHOLE, Getter, Path, WrongPath, follow, getter, read_path
+from jacaros.artifacts.mapping.paths import Getter, follow, getter
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType

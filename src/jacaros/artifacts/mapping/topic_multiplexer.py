@@ -12,7 +12,7 @@ from jacaros.artifacts.kit.faults import Faults, Stamps
 from jacaros.artifacts.kit.reading import Outlet, Reading
 from jacaros.artifacts.kit.sensing_artifact import RangeOfView
 from jacaros.artifacts.mapping.declared import TopicPart, Written
-from jacaros.artifacts.mapping.decoding import Unshowable
+from jacaros.artifacts.mapping.decoding import Unshowable, perceived
 from jacaros.artifacts.mapping.deriving import stamp_of
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.rows import Extract, Row, extractor
@@ -119,7 +119,7 @@ class Updater:
         if part.each is not None and not part.signal:
             host.elements[part.name] = Elements(host, part)
         elif not part.signal:
-            self._reading = host.reading_of(part.name, part.policy, *(part.initial or ()))
+            self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
         self._view = self._range_of_view()
         self._frame = host.frame(part.frame.text) if part.frame is not None else None
 

@@ -5,8 +5,8 @@ docs/reference/derived_events.md defines them.
 ============================================== =======================================================================
 file                                           what it holds
 ============================================== =======================================================================
-`pattern`                                      one derived event: puts late events in order, drives an operator; the
-                                               operators with their options, and checks of declarations
+`declarations`                                 the operators with their options, their checks; policies of readings
+`pattern`                                      one derived event: puts late events in order, drives an operator
 `operators`                                    sliding windows, hysteresis, conditions held for a while, absence, samples
                                                with nearby stamps
 ============================================== =======================================================================

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-Values = tuple[object, ...]
+from jacaros.artifacts.streams.declarations import Values
 
 SHOW, HIDE = "show", "hide"
 """Kinds of output: the derived state begins or changes its values; it ends."""

@@ -1,5 +1,7 @@
 """Mapping files: reading them, and mistakes that are found without message types."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -475,3 +477,11 @@ def test_a_file_that_is_not_text(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_bytes(b"\xff\xfe")
     with pytest.raises(MappingError, match="the file is in UTF-16"):
         load_mapping(tmp_path / "m.yaml")
+
+
+def test_reading_a_mapping_loads_neither_artifacts_nor_a_middleware() -> None:
+    script = "import sys, jacaros.artifacts.mapping.file; print(*sys.modules)"
+    output = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    loaded = [name for name in output.split() if name.startswith("jacaros")]
+    assert len(loaded) <= 20, loaded
+    assert not [name for name in loaded if name.startswith(("jacaros.artifacts.env", "jacaros.runtime"))]

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from jacaros.artifacts.streams.operators import Values
-from jacaros.artifacts.streams.pattern import Spec
+from jacaros.artifacts.streams.declarations import Spec, Values
 
 Event = tuple[int, float, Values | None]
 """Number of the stream, time, values."""

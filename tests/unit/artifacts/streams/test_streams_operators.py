@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive import Event, shown
 
-from jacaros.artifacts.streams.operators import Values
-from jacaros.artifacts.streams.pattern import Pattern, Spec
+from jacaros.artifacts.streams.declarations import Spec, Values
+from jacaros.artifacts.streams.pattern import Pattern
 
 STEP = 0.25
 """Times are multiples of it, so that sums of them are exact."""

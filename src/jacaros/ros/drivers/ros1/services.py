@@ -21,8 +21,7 @@ from jacaros.ros.errors import (
     ServiceUnavailable,
 )
 from jacaros.ros.handoff import LoopEnded, ask, in_thread, post
-from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_store import checked_value
+from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
 

@@ -19,10 +19,9 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
-from jacaros.ros.parameter import Declaration, ParameterValue
+from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
-from jacaros.ros.parameter_store import checked_value
 from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import within
