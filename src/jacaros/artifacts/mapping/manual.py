@@ -33,10 +33,11 @@ from jacaros.artifacts.mapping.interfaces import (
     constants_by_field,
     stored_interfaces,
 )
-from jacaros.artifacts.mapping.message_units import UNIT_WORDS, unit_at
+from jacaros.artifacts.mapping.message_units import unit_at, words_of
 from jacaros.artifacts.mapping.operation_methods import unlike
 from jacaros.artifacts.mapping.paths import follow
-from jacaros.artifacts.mapping.read_fields import ANGLES
+from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
+from jacaros.artifacts.mapping.read_properties import TRANSFORM
 from jacaros.artifacts.mapping.rows import fields_of
 from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
@@ -45,8 +46,6 @@ from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.message import TIMES
 from jacaros.ros.parameter import kind_of
-
-_TRANSFORM = {"x": "metres", "y": "metres", "z": "metres", "stamp": "seconds"}
 
 
 class Documentation:
@@ -155,9 +154,8 @@ def _when(policy: ReadingPolicy) -> str:
 
 
 def _of_transform(field: FieldPart) -> str:
-    place = field.path.text
-    unit = field.conversion.unit.replace("_", " ") or _TRANSFORM.get(place, "radians")
-    return with_unit("number", unit, field.conversion.digits)
+    unit = field.conversion.unit or units_of(TRANSFORM[field.path.text])[0]
+    return with_unit("number", UNITS[unit].words, field.conversion.digits)
 
 
 def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
@@ -230,8 +228,8 @@ def _inputs(part: OperationPart, types: tuple[str, ...], interfaces: Interfaces)
 
 def _of_unit(value: ValuePart) -> str:
     """Return what is known without a type: the unit in the mapping."""
-    unit = value.conversion.unit.replace("_", " ")
-    return with_unit("number", unit, None) if unit else ""
+    unit = value.conversion.unit
+    return with_unit("number", UNITS[unit].words, None) if unit else ""
 
 
 _SMALL = ("byte", "char", "int8", "uint8", "int16", "uint16")
@@ -298,8 +296,7 @@ def _converted(
         return "atom"
     if kind == "count":
         return "whole number"
-    unit = "radians" if kind in ANGLES else unit_at(path, root, interfaces)
-    unit = UNIT_WORDS.get(unit, unit)
+    unit = "radians" if kind in ANGLES else words_of(unit_at(path, root, interfaces))
     word = _kind(leaf.base, conversion, "number" if kind in (*ANGLES, "mean") else "", unit)
     limited = not kind and not unit and conversion.line is None and not leaf.is_message
     return word + _limits(path, leaf, root, interfaces) if limited else word
@@ -346,7 +343,7 @@ def _shown_unit(conversion: Conversion, unit: str) -> str:
     """Return the agent's unit: that of the mapping, or else that of the message, unless the mapping scales it."""
     if conversion.unit:
         per_second = unit == "radians per second" and conversion.unit == "degrees"
-        return "degrees per second" if per_second else conversion.unit.replace("_", " ")
+        return "degrees per second" if per_second else UNITS[conversion.unit].words
     return unit if conversion.line is None else ""
 
 

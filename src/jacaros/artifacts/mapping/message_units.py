@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from jacaros.artifacts.mapping.declared import Conversion, Path, WrongPath
 from jacaros.artifacts.mapping.interfaces import Interfaces
-from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
+from jacaros.artifacts.mapping.read_fields import ANGLES, SYMBOLS, UNITS, units_of
 from jacaros.ros.fields import FieldType
 from jacaros.ros.message import TIMES
 
@@ -53,27 +53,9 @@ _UNITS: Mapping[str, Mapping[str, str]] = {
 """Units of fields, from the comments of the definitions and REP 103; the parts of a vector have its unit."""
 
 
-UNIT_WORDS: Mapping[str, str] = {
-    "m": "metres",
-    "rad or m": "radians or metres",
-    "rad/s or m/s": "radians or metres per second",
-    "N m": "newton metres",
-    "N m or N": "newton metres or newtons",
-    "T": "teslas",
-    "Ah": "ampere hours",
-    "s": "seconds",
-    "m/s": "metres per second",
-    "m/s²": "metres per second squared",
-    "rad": "radians",
-    "rad/s": "radians per second",
-    "N": "newtons",
-    "V": "volts",
-    "A": "amperes",
-    "Pa": "pascals",
-    "lx": "lux",
-    "°C": "degrees Celsius",
-}
-"""Names of message units; others stay unchanged."""
+def words_of(unit: str) -> str:
+    """Return the name of a unit of messages; of alternatives, all names."""
+    return " or ".join(SYMBOLS[each].words for each in unit.split(" or "))
 
 
 def unit_of(type_name: str, field: str) -> str:
@@ -93,22 +75,9 @@ def unit_at(path: Path, root: FieldType, interfaces: Interfaces) -> str:
     return "s" if here.base in TIMES else unit
 
 
-_KINDS = {
-    "m": "length",
-    "rad": "angle",
-    "rad/s": "angle",
-    "m/s": "speed",
-    "s": "time",
-    "degrees": "angle",
-    "°C": "temperature",
-    "0 to 1": "share",
-}
-"""Kinds of the message units that mappings convert."""
-
-
 def _kinds(unit: str) -> set[str]:
     """Return the possible kinds of values in a message unit: angle and length for "rad or m", none for volts."""
-    return {_KINDS[each] for each in unit.split(" or ") if each in _KINDS}
+    return {SYMBOLS[each].kind for each in unit.split(" or ")} - {""}
 
 
 def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: Interfaces) -> None:

@@ -29,35 +29,60 @@ DOWN = "down"
 FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
 
 
-_DEGREE = 3.141592653589793 / 180.0
-
-
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit: its factor to the usual unit of its kind, and its zero."""
+    """A unit of messages, of agents, or of both.
 
-    kind: str
-    size: float
+    Attributes:
+        symbol: as in tables and messages; empty for numbers without a unit.
+        words: its name in texts.
+        kind: what it measures; empty for units that are not converted.
+        size: factor to the usual unit of its kind; 0: only messages have it.
+        zero: its zero in the usual unit.
+        key: its name in mapping files; empty: its words, with underscores.
+    """
+
+    symbol: str
+    words: str
+    kind: str = ""
+    size: float = 0.0
     zero: float = 0.0
+    key: str = ""
 
 
-UNITS: dict[str, Unit] = {
-    "radians": Unit("angle", 1.0),
-    "degrees": Unit("angle", _DEGREE),
-    "metres": Unit("length", 1.0),
-    "centimetres": Unit("length", 0.01),
-    "millimetres": Unit("length", 0.001),
-    "metres_per_second": Unit("speed", 1.0),
-    "kilometres_per_hour": Unit("speed", 1.0 / 3.6),
-    "seconds": Unit("time", 1.0),
-    "milliseconds": Unit("time", 0.001),
-    "minutes": Unit("time", 60.0),
-    "celsius": Unit("temperature", 1.0),
-    "kelvin": Unit("temperature", 1.0, -273.15),
-    "share": Unit("share", 1.0),
-    "percent": Unit("share", 0.01),
-}
-"""All units by name; the first of a kind is the usual one in messages."""
+_UNITS = (
+    Unit("", ""),
+    Unit("rad", "radians", "angle", 1.0),
+    Unit("degrees", "degrees", "angle", 3.141592653589793 / 180.0),
+    Unit("rad/s", "radians per second", "angle"),
+    Unit("rad/s²", "radians per second squared"),
+    Unit("m", "metres", "length", 1.0),
+    Unit("cm", "centimetres", "length", 0.01),
+    Unit("mm", "millimetres", "length", 0.001),
+    Unit("m/s", "metres per second", "speed", 1.0),
+    Unit("km/h", "kilometres per hour", "speed", 1.0 / 3.6),
+    Unit("m/s²", "metres per second squared"),
+    Unit("s", "seconds", "time", 1.0),
+    Unit("ms", "milliseconds", "time", 0.001),
+    Unit("min", "minutes", "time", 60.0),
+    Unit("°C", "degrees Celsius", "temperature", 1.0, key="celsius"),
+    Unit("K", "kelvin", "temperature", 1.0, -273.15),
+    Unit("0 to 1", "0 to 1", "share", 1.0, key="share"),
+    Unit("%", "percent", "share", 0.01),
+    Unit("N", "newtons"),
+    Unit("N m", "newton metres"),
+    Unit("V", "volts"),
+    Unit("A", "amperes"),
+    Unit("Ah", "ampere hours"),
+    Unit("T", "teslas"),
+    Unit("Pa", "pascals"),
+    Unit("lx", "lux"),
+)
+"""All units; the first of a kind is the usual one in messages."""
+UNITS = {each.key or each.words.replace(" ", "_"): each for each in _UNITS if each.size}
+"""The units that agents can have, by their names in mapping files."""
+SYMBOLS = {each.symbol: each for each in _UNITS}
+"""The units of messages, by their symbols."""
 
 
 def units_of(*kinds: str) -> list[str]:

@@ -285,7 +285,7 @@ def read_frame(name: Node, node: Node) -> FramePart:
     )
 
 
-_KINDS = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES, "angle"), "stamp": "time"}
+TRANSFORM = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES, "angle"), "stamp": "time"}
 """Kinds of the parts of a transform."""
 
 
@@ -296,10 +296,10 @@ def _of_transform(field: FieldPart) -> Iterator[Problem]:
         yield field.place.problem(
             f"{place} of a transform is a number", "it can only have a unit, scale, offset and round"
         )
-    elif conversion.unit and UNITS[conversion.unit].kind != _KINDS[place]:
+    elif conversion.unit and UNITS[conversion.unit].kind != (wanted := TRANSFORM[place]):
         kind, unit = UNITS[conversion.unit].kind, conversion.unit
-        told = f"{place} of a transform is a {_KINDS[place]}, but {unit} is a unit of {kind}"
-        yield field.place.problem(told, f"units of {_KINDS[place]} are {', '.join(units_of(_KINDS[place]))}")
+        told = f"{place} of a transform is a {wanted}, but {unit} is a unit of {kind}"
+        yield field.place.problem(told, f"units of {wanted} are {', '.join(units_of(wanted))}")
 
 
 def _pose(place: Place) -> tuple[FieldPart, ...]:

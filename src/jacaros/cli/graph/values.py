@@ -6,7 +6,7 @@ from itertools import zip_longest
 from typing import Any
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
-from jacaros.artifacts.mapping.message_units import UNIT_WORDS, unit_of
+from jacaros.artifacts.mapping.message_units import unit_of, words_of
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
@@ -89,7 +89,7 @@ def _shown(unit: str) -> Unit:
     if unit in ("rad", "rad/s"):
         return _DEGREES if unit == "rad" else _DEGREES_PER_SECOND
     digits, band = _PRECISION.get(unit, (3, 0.0))
-    return Unit(UNIT_WORDS.get(unit, unit), digits, band)
+    return Unit(words_of(unit), digits, band)
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,10 @@ properties:
         ("std_msgs/msg/Int32", "{path: data, scale: 0.5}", "Data: number"),
         ("std_msgs/msg/Int32", "{path: data, names: {0: off, 1: on_again}}", "Data: one of off, on_again"),
         ("sensor_msgs/msg/BatteryState", "percentage", "Percentage: number from 0 to 1"),
+        ("sensor_msgs/msg/BatteryState", "{path: percentage, unit: share}", "number from 0 to 1"),
+        ("sensor_msgs/msg/BatteryState", "temperature", "Temperature: number in degrees Celsius"),
+        ("sensor_msgs/msg/BatteryState", "{path: temperature, unit: celsius}", "number in degrees Celsius"),
+        ("geometry_msgs/msg/Accel", "angular.z", "Z: number in radians per second squared"),
         (
             "sensor_msgs/msg/BatteryState",
             "{path: percentage, unit: percent}",
