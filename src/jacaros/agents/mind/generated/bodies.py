@@ -378,37 +378,39 @@ def _is_called(compiler: BodyCompiler, node: nodes.InternalAction) -> bool:
 def _call(compiler: BodyCompiler, node: nodes.InternalAction, name: str, next_name: str) -> None:
     fn = compiler.begin(node)
     action = compiler.unit.actions.get(node.name)
-    direct = (
-        None
-        if action is None or action.direct is None
-        else action.direct(tuple(map(written, node.arguments)))
-    )
+    direct = None
+    if action is not None and action.direct is not None:
+        direct = action.direct(tuple(map(written, node.arguments)))
     with fn.writer.block(head(name)):
         fn.load(compiler.frame, names_in(node))
-        if direct is not None:
-            function = fn.constant(direct)
-            fn.line(f"{function}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
+        if node.name == ".fail" and not node.arguments:
+            fn.line("return FAILED")
+        elif direct is not None:
+            fn.line(f"{fn.constant(direct)}({', '.join(['agent', *(build(fn, a) for a in node.arguments)])})")
             fn.store(compiler.frame)
             fn.line(f"frame[0] = {next_name}")
-            compiler.finish(fn)
-            return
-        arguments = [resolved(fn, build(fn, a)) for a in node.arguments]
-        if action is None:
-            symbol = fn.constant(functor(node.name, len(node.arguments)))
-            fn.store(compiler.frame)
-            fn.line(f"return agent.begin_act({symbol}, {tuple_of(arguments)}, (), {next_name})")
         else:
-            call = ", ".join(["agent.context", *arguments])
-            if action.suspends:
-                fn.store(compiler.frame)
-                fn.line(
-                    f"return agent.finish_call({fn.constant(action.function)}({call}), frame, {next_name})"
-                )
-            else:
-                fn.line(f"if {fn.constant(action.function)}({call}) is False: return FAILED")
-                fn.store(compiler.frame)
-                fn.line(f"frame[0] = {next_name}")
+            _call_by_value(compiler, fn, node, next_name)
     compiler.finish(fn)
+
+
+def _call_by_value(
+    compiler: BodyCompiler, fn: FunctionBuilder, node: nodes.InternalAction, next_name: str
+) -> None:
+    action = compiler.unit.actions.get(node.name)
+    arguments = [resolved(fn, build(fn, a)) for a in node.arguments]
+    call = ", ".join(["agent.context", *arguments])
+    if action is not None and not action.suspends:
+        fn.line(f"if {fn.constant(action.function)}({call}) is False: return FAILED")
+        fn.store(compiler.frame)
+        fn.line(f"frame[0] = {next_name}")
+        return
+    fn.store(compiler.frame)
+    if action is None:
+        symbol = fn.constant(functor(node.name, len(node.arguments)))
+        fn.line(f"return agent.begin_act({symbol}, {tuple_of(arguments)}, (), {next_name})")
+    else:
+        fn.line(f"return agent.finish_call({fn.constant(action.function)}({call}), frame, {next_name})")
 
 
 _HOW_ADDED = {"+>": ", True", "++": ", False, False"}
