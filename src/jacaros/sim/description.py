@@ -5,13 +5,14 @@ them.
 """
 
 import math
-from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, NamedTuple
 
+from jacaros.files.entries import Entry, either, flag, number, section, text, whole
 from jacaros.files.texts import help_line, printable
 from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.sim.interface import EVERYTHING, Interface
-from jacaros.sim.trigonometry import PI, radians
+from jacaros.sim.trigonometry import PI, TWO_PI, radians
 
 
 class Segment(NamedTuple):
@@ -83,13 +84,16 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 
 
+_COLOR = Entry('`"#rrggbb"` or a name', "in drawings")
+
+
 @dataclass(frozen=True, slots=True)
 class Furniture:
     """A box with a kind ("" if unknown) and a colour as ``#rrggbb`` ("" for the colour of boxes)."""
 
     area: Rectangle
-    kind: str = ""
-    color: str = ""
+    kind: Annotated[str, text("any text, such as `table`")] = ""
+    color: Annotated[str, _COLOR] = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +140,14 @@ class Door:
     open: bool = False
 
 
+def _angle(unit: str, help: str, key: str, least: float = 0.0, most: float = 1e9) -> Entry:
+    """Return the entry of an angle: degrees in the file, radians in Python."""
+    return number(least, most, unit, help, key, radians)
+
+
+_PER_TURN = number(0.0, 1e9, "%", "discharge by a turn", "drain_per_turn", lambda drain: drain / TWO_PI)
+
+
 @dataclass(frozen=True, slots=True)
 class BatterySettings:
     """Discharge and charge rates of a battery; levels are in percent, 0 to 100.
@@ -143,11 +155,18 @@ class BatterySettings:
     The defaults last about two hours of driving, as for a TurtleBot.
     """
 
-    level: float = 100.0
-    drain_per_second: float = 0.01
-    drain_per_metre: float = 0.02
-    drain_per_radian: float = 0.0
-    charge_per_second: float = 5.0
+    level: Annotated[float, number(0.0, 100.0, "%", "charge at the start")] = 100.0
+    drain_per_second: Annotated[float, number(unit="%", help="discharge, also at rest")] = 0.01
+    drain_per_metre: Annotated[float, number(unit="%", help="discharge by driving")] = 0.02
+    drain_per_radian: Annotated[float, _PER_TURN] = 0.0
+    charge_per_second: Annotated[float, number(unit="%", help="charge at a dock")] = 5.0
+
+
+_ROOT = math.sqrt(TWO_PI)
+# The error of a whole turn is that of 2 pi radians, and the squares of errors add up.
+_TURN = number(
+    0.0, 1e9, "°", "error of the angle", "noise_degrees_per_turn", lambda turn: radians(turn) / _ROOT
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,10 +178,10 @@ class OdometrySettings:
     (radians) per metre driven.
     """
 
-    from_start: bool = False
-    per_metre: float = 0.0
-    per_radian: float = 0.0
-    turn_per_metre: float = 0.0
+    from_start: Annotated[bool, either("where it counts from", "origin", "world", "start")] = False
+    per_metre: Annotated[float, number(unit="m", help="error of the distance", key="noise_per_metre")] = 0.0
+    per_radian: Annotated[float, _TURN] = 0.0
+    turn_per_metre: Annotated[float, _angle("°", "error of the heading", "noise_degrees_per_metre")] = 0.0
 
     @property
     def noisy(self) -> bool:
@@ -188,32 +207,32 @@ class LaserSettings:
     (metres) of the uniform error of a range. With ``always`` it publishes even without subscriptions.
     """
 
-    enabled: bool = True
-    beams_per_turn: int = 360
-    field: float = 2.0 * PI
-    range_min: float = 0.1
-    range_max: float = 10.0
-    noise: float = 0.0
-    always: bool = False
+    enabled: Annotated[bool, flag("whether the robot has a laser")] = True
+    beams_per_turn: Annotated[int, whole(4, "beams in 360°")] = 360
+    field: Annotated[float, _angle("°", "field of view", "field_degrees", 1.0, 360.0)] = 2.0 * PI
+    range_min: Annotated[float, number(unit="m", help="shortest range")] = 0.1
+    range_max: Annotated[float, number(0.1, unit="m", help="longest range")] = 10.0
+    noise: Annotated[float, number(0.0, 1.0, "m", "largest error of a range")] = 0.0
+    always: Annotated[bool, either("when it publishes", "publish", "on demand", "always")] = False
 
 
 @dataclass(frozen=True, slots=True)
 class RobotLimits:
     """Limits of the base: metres and radians, per second and per second squared (TurtleBot)."""
 
-    speed: float = 0.65
-    turn_rate: float = PI
-    acceleration: float = 0.8
-    turn_acceleration: float = 5.0
-    command_timeout: float = 0.5
+    speed: Annotated[float, number(0.01, 5.0, "m/s", "highest speed")] = 0.65
+    turn_rate: Annotated[float, _angle("°/s", "highest turn rate", "turn_rate_degrees", 0.1, 3600.0)] = PI
+    acceleration: Annotated[float, number(0.01, unit="m/s²", help="highest acceleration")] = 0.8
+    turn_acceleration: Annotated[float, _angle("°/s²", "of turning", "turn_acceleration_degrees", 0.1)] = 5.0
+    command_timeout: Annotated[float, number(0.05, unit="s", help="time to a stop without commands")] = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class NavigationSettings:
     """Whether the robot offers navigation and docking, and its speed in m/s."""
 
-    enabled: bool = True
-    speed: float = 0.4
+    enabled: Annotated[bool, flag("whether the robot navigates")] = True
+    speed: Annotated[float, number(0.05, 5.0, "m/s", "highest speed of navigation")] = 0.4
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,20 +243,20 @@ class CleaningTool:
     """
 
     name: str
-    removes: tuple[str, ...]
-    rate: float = 5.0
-    reach: float = 0.3
+    removes: Annotated[tuple[str, ...], Entry("list of texts", "kinds of dirt")]
+    rate: Annotated[float, number(0.0, 1e6, "g/s", "dirt removed")] = 5.0
+    reach: Annotated[float, number(0.01, 10.0, "m", "from the robot's centre")] = 0.3
 
 
 @dataclass(frozen=True, slots=True)
 class ObjectDescription:
     """A round object on the floor that can be carried; ``color`` is ``#rrggbb``, or "" if unknown."""
 
-    name: str
-    x: float
-    y: float
-    radius: float = 0.03
-    color: str = ""
+    name: Annotated[str, text("unique name")]
+    x: Annotated[float, number(-math.inf, math.inf, help="position, in m")]
+    y: Annotated[float, number(-math.inf, math.inf, help="position, in m")]
+    radius: Annotated[float, number(0.005, 0.5, "m", "of the round object")] = 0.03
+    color: Annotated[str, _COLOR] = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,18 +268,18 @@ class RobotDescription:
     centre; 0 without a gripper. ``interface`` has the names of its topics, services and actions.
     """
 
-    name: str = "turtlebot"
-    namespace: str = ""
-    pose: Pose = ORIGIN
-    radius: float = 0.17
-    limits: RobotLimits = RobotLimits()
-    battery: BatterySettings = BatterySettings()
-    odometry: OdometrySettings = OdometrySettings()
-    laser: LaserSettings = LaserSettings()
-    navigation: NavigationSettings = NavigationSettings()
-    tools: tuple[CleaningTool, ...] = ()
-    gripper_reach: float = 0.0
-    footprint: tuple[float, float] | None = None
+    name: Annotated[str, text("unique name")] = "turtlebot"
+    namespace: Annotated[str, Entry("text", "prefix of its topics, services and actions")] = ""
+    pose: Annotated[Pose, Entry("`{x, y, yaw_degrees}`", "initial pose")] = ORIGIN
+    radius: Annotated[float, number(0.02, 2.0, "m", "of a round robot")] = 0.17
+    limits: Annotated[RobotLimits, section("limits of the base")] = RobotLimits()
+    battery: Annotated[BatterySettings, section("charge and discharge")] = BatterySettings()
+    odometry: Annotated[OdometrySettings, section("origin and errors of odometry")] = OdometrySettings()
+    laser: Annotated[LaserSettings, section("laser range finder")] = LaserSettings()
+    navigation: Annotated[NavigationSettings, Entry("mapping or flag", "navigation")] = NavigationSettings()
+    tools: Annotated[tuple[CleaningTool, ...], Entry("mapping", "cleaning tools by name")] = ()
+    gripper_reach: Annotated[float, Entry("mapping or flag", "gripper", "gripper")] = 0.0
+    footprint: Annotated[tuple[float, float] | None, Entry("`[length, width]` m", "of a rectangle")] = None
     interface: Interface = EVERYTHING
 
 
@@ -272,14 +291,14 @@ class PersonDescription:
     ``careless`` person does not stop in front of robots. ``color`` is ``#rrggbb``, or "" for any.
     """
 
-    name: str
-    path: tuple[tuple[float, float], ...]
-    speed: float = 1.0
-    pause: float = 0.0
-    loop: bool = False
-    radius: float = 0.25
-    careless: bool = False
-    color: str = ""
+    name: Annotated[str, text("unique name")]
+    path: Annotated[tuple[tuple[float, float], ...], Entry("list of `[x, y]` in m", "points of the walk")]
+    speed: Annotated[float, number(0.01, 5.0, "m/s", "walking speed")] = 1.0
+    pause: Annotated[float, number(0.0, 1e6, "s", "rest at each point")] = 0.0
+    loop: Annotated[bool, flag("continues from the last point to the first")] = False
+    radius: Annotated[float, number(0.05, 2.0, "m", "of the round person")] = 0.25
+    careless: Annotated[bool, flag("does not stop in front of robots")] = False
+    color: Annotated[str, _COLOR] = ""
 
     def legs(self) -> tuple[Segment, ...]:
         """Return the segments of the path."""
@@ -305,19 +324,19 @@ class WorldDescription:
     boxes with a kind or a colour. Over ``cliffs`` there is no floor.
     """
 
-    name: str = "empty"
+    name: Annotated[str, text("of the world")] = "empty"
     bounds: Rectangle = DEFAULT_BOUNDS
     segments: tuple[Segment, ...] = ()
     boxes: tuple[Rectangle, ...] = ()
     furniture: tuple[Furniture, ...] = ()
-    rooms: tuple[Room, ...] = ()
-    docks: tuple[Dock, ...] = ()
-    doors: tuple[Door, ...] = ()
-    cliffs: tuple[Rectangle, ...] = ()
-    objects: tuple[ObjectDescription, ...] = ()
-    robots: tuple[RobotDescription, ...] = field(default_factory=lambda: (RobotDescription(),))
-    people: tuple[PersonDescription, ...] = ()
-    seed: int = 0
+    rooms: Annotated[tuple[Room, ...], Entry("mapping", "parts of the floor by name")] = ()
+    docks: Annotated[tuple[Dock, ...], Entry("list", "charging stations")] = ()
+    doors: Annotated[tuple[Door, ...], Entry("list", "open or closed")] = ()
+    cliffs: Annotated[tuple[Rectangle, ...], Entry("list", "areas without floor")] = ()
+    objects: Annotated[tuple[ObjectDescription, ...], Entry("list", "things to carry")] = ()
+    robots: Annotated[tuple[RobotDescription, ...], Entry("list", "at least one")] = (RobotDescription(),)
+    people: Annotated[tuple[PersonDescription, ...], Entry("list", "people who walk")] = ()
+    seed: Annotated[int, whole(0, "of all noise")] = 0
 
     def with_noise(self, factor: float) -> "WorldDescription":
         """Return the same world with the noise of its robots' sensors times *factor*; 0 for exact sensors.
