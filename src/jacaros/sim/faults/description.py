@@ -1,9 +1,11 @@
 """Faults as plain data, read from fault files (`jacaros.sim.faults.file`)."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Annotated, Final
 
+from jacaros.files.entries import Entry, choice, number, whole
 from jacaros.sim.description import PersonDescription, Pose
 
 WHEELS: Final = ("wheel_slip", "blocked_wheel")
@@ -35,6 +37,10 @@ KEYS: Final[Mapping[str, tuple[str, ...]]] = {
 """Further keys by kind; all kinds have ``at`` and ``for``, and kinds of wheels or without duration also ``robot``."""
 
 
+def _seconds(help: str, key: str = "") -> Entry:
+    return number(0.0, math.inf, "s", help, key)
+
+
 @dataclass(frozen=True, slots=True)
 class Fault:
     """One fault.
@@ -58,17 +64,17 @@ class Fault:
 
     name: str
     kind: str
-    at: float | None = None
-    lasts: float | None = None
+    at: Annotated[float | None, _seconds("beginning; without it, only on request")] = None
+    lasts: Annotated[float | None, _seconds("duration; without it, until you end it", "for")] = None
     robot: str = ""
     topic: str = ""
     action: str = ""
-    share: float = 1.0
-    wheel: str = "both"
+    share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
+    wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
     pose: Pose = field(default=Pose(0.0, 0.0, 0.0))
     level: float = 0.0
     place: str = ""
     person: PersonDescription | None = None
-    seconds: float = 0.0
-    jitter: float = 0.0
-    copies: int = 2
+    seconds: Annotated[float, _seconds("delay")] = 0.5
+    jitter: Annotated[float, _seconds("largest random extra delay")] = 0.0
+    copies: Annotated[int, whole(2, "deliveries of each message")] = 2

@@ -1,28 +1,10 @@
-"""Fault files: YAML text to `Fault` objects, checked against their world.
-
-Times are seconds of the world, lengths metres, angles degrees; ``robot`` is optional if the world has one robot::
-
-    faults:
-      slippery: {kind: wheel_slip, share: 0.3, at: 5, for: 10}
-      stuck: {kind: blocked_wheel, wheel: left}          # left, right or both; without 'at': only on request
-      moved: {kind: kidnapped_robot, robot: turtlebot, to: {x: 1, y: 2, yaw_degrees: 90}, at: 30}
-      tired: {kind: battery_drop, to: 15, at: 40}        # percent
-      cold: {kind: dead_dock, dock: dock}
-      shut: {kind: closed_door, door: kitchen, at: 20, for: 60}
-      jammed: {kind: stuck_door, door: kitchen, share: 0.25, at: 0}
-      ann: {kind: person, path: [[1, 0]], at: 12, for: 30}
-      blind: {kind: dead, topic: /scan, at: 15, for: 5}  # frozen, nan
-      loss: {kind: lost, topic: /odom, share: 0.2}
-      late: {kind: delayed, topic: /cmd_vel, seconds: 0.3, jitter: 0.1}
-      twice: {kind: duplicated, topic: /odom, copies: 3}
-      astray: {kind: aborted_action, action: /navigate_to_pose, at: 25, for: 2}
-      clumsy: {kind: aborted_action, action: /gripper_controller/gripper_cmd, share: 0.5, at: 0}
-"""
+"""Fault files: YAML text to `Fault` objects, which declare their entries, checked against their world."""
 
 import re
 from dataclasses import replace
 from pathlib import Path
 
+from jacaros.files.entries import values
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 from jacaros.sim.description import PersonDescription, Pose, WorldDescription, WorldError
 from jacaros.sim.faults.description import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
@@ -101,21 +83,8 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
     if "kind" not in entries:
         return Fault(name, "dead")
     kind = entries["kind"].choice(*KEYS)
-    fault = Fault(
-        name,
-        kind,
-        at=entries["at"].number(0.0) if "at" in entries else None,
-        lasts=entries["for"].number(0.0) if "for" in entries else None,
-        share=entries["share"].number(0.0, 1.0)
-        if "share" in entries
-        else 0.3
-        if kind == "wheel_slip"
-        else 1.0,
-        wheel=entries["wheel"].choice("both", "left", "right") if "wheel" in entries else "both",
-        seconds=entries["seconds"].number(0.0) if "seconds" in entries else 0.5,
-        jitter=entries["jitter"].number(0.0) if "jitter" in entries else 0.0,
-        copies=entries["copies"].whole(2, 2) if "copies" in entries else 2,
-    )
+    usual = Fault(name, kind, share=0.3 if kind == "wheel_slip" else 1.0)
+    fault = replace(usual, **values(entries, usual))
     if kind in AT_ONCE and "for" in entries:
         entries["for"].wrong(f"'{kind}' has no duration", "remove 'for'")
     return _placed(fault, node, entries, world)
@@ -134,15 +103,9 @@ def _placed(fault: Fault, node: Node, entries: dict[str, Node], world: WorldDesc
     docks = None if world is None else [dock.name for dock in world.docks]
     doors = None if world is None else [door.name for door in world.doors]
     if fault.kind in ("closed_door", "stuck_door"):
-        return replace(
-            fault,
-            place=_one_of(node, entries, "door", doors),
-        )
+        return replace(fault, place=_one_of(node, entries, "door", doors))
     if fault.kind == "dead_dock":
-        return replace(
-            fault,
-            place=_one_of(node, entries, "dock", docks),
-        )
+        return replace(fault, place=_one_of(node, entries, "dock", docks))
     if fault.kind == "person":
         return replace(fault, person=_person(fault.name, node, entries))
     if fault.kind in AT_ONCE and "to" not in entries:
@@ -219,15 +182,7 @@ def _one_of(node: Node, entries: dict[str, Node], what: str, names: list[str] | 
 
 
 def _person(name: str, node: Node, entries: dict[str, Node]) -> PersonDescription:
-    usual = PersonDescription(name, ((0.0, 0.0),))
     if "path" not in entries:
         node.wrong(f"{node.what} lacks the key 'path'", "add 'path: [[1, 0]]', in metres")
-        return usual
-    return PersonDescription(
-        name,
-        read_path(entries["path"]),
-        speed=entries["speed"].number(0.01, 5.0, usual.speed) if "speed" in entries else usual.speed,
-        loop="loop" in entries and entries["loop"].truth(),
-        radius=entries["radius"].number(0.05, 2.0, usual.radius) if "radius" in entries else usual.radius,
-        careless="careless" in entries and entries["careless"].truth(),
-    )
+    usual = PersonDescription(name, ((0.0, 0.0),))
+    return replace(usual, **values(entries, usual, path=read_path))

@@ -1,44 +1,22 @@
-"""The ``people`` of a world file::
-
-people:
-  - name: ann
-    path: [[0, 0], [2, 0], [2, 2]]    # points; ann starts at the first one
-    speed: 1                          # m/s
-    pause: 0                          # seconds at each point
-    loop: true                        # continues from the last point to the first; false: stops at the last
-    radius: 0.25
-    careless: false                   # true: does not stop in front of robots
-    color: red
-"""
+"""The ``people`` of a world file; `PersonDescription` declares their entries."""
 
 import itertools
+from collections.abc import Iterable
 
+from jacaros.files.entries import read
 from jacaros.files.yaml import Node
 from jacaros.sim.description import PersonDescription, Segment, WorldDescription
-from jacaros.sim.files.box import read_color
+from jacaros.sim.files.objects import read_color
 
 _TOUCHING = 0.001
 
 
 def read_person(node: Node) -> PersonDescription:
     """Read one person."""
-    entries = node.mapping(
-        "name", "path", "speed", "pause", "loop", "radius", "careless", "color", required=("name", "path")
-    )
-    usual = PersonDescription("", ((0.0, 0.0),))
-    return PersonDescription(
-        name=entries["name"].text() if "name" in entries else "",
-        path=read_path(entries["path"]) if "path" in entries else usual.path,
-        speed=entries["speed"].number(0.01, 5.0, usual.speed) if "speed" in entries else usual.speed,
-        pause=entries["pause"].number(0.0, 1e6) if "pause" in entries else usual.pause,
-        loop="loop" in entries and entries["loop"].truth(),
-        radius=entries["radius"].number(0.05, 2.0, usual.radius) if "radius" in entries else usual.radius,
-        careless="careless" in entries and entries["careless"].truth(),
-        color=read_color(entries["color"]) if "color" in entries else "",
-    )
+    return read(node, PersonDescription("", ((0.0, 0.0),)), path=read_path, color=read_color)
 
 
-def read_path(node: Node) -> tuple[tuple[float, float], ...]:
+def read_path(node: Node, _: object) -> tuple[tuple[float, float], ...]:
     points = tuple(point.pair() for point in node.sequence())
     if not points:
         node.wrong(f"{node.what} has no points", "write [[x, y], ...], in metres")
@@ -52,7 +30,7 @@ def read_path(node: Node) -> tuple[tuple[float, float], ...]:
     return points
 
 
-def check_people(items: list[Node], world: WorldDescription, walled: bool) -> None:
+def check_people(items: Iterable[Node], world: WorldDescription, walled: bool) -> None:
     """Report duplicate names of people and robots, and paths that touch a wall or a robot's initial pose.
 
     Closed doors are allowed: people wait in front of them.

@@ -19,7 +19,7 @@ LARGEST = 10_000.0
 _MOST = 1e9
 
 
-def read_rooms(node: Node) -> tuple[Room, ...]:
+def read_rooms(node: Node, _: object) -> tuple[Room, ...]:
     """Read all rooms, in the order of the file."""
     return tuple(_room(name, room) for name, room in node.mapping().items())
 

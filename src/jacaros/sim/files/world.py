@@ -1,39 +1,17 @@
-"""World files: YAML text to a `WorldDescription`.
+"""World files: YAML text to a `WorldDescription`, which declares most of their keys.
 
 Lengths are in metres, times in seconds, levels in percent and angles in degrees (radians internally). All keys except
-``robots`` are optional; for those of robots see `jacaros.sim.files.robot`::
-
-    name: patrol
-    map: office.yaml                  # a map of map_server; see `jacaros.sim.files.map`
-    size: [6, 6]                      # centred at the origin; or bounds: {from: [x, y], to: [x, y]}
-    border: walls                     # or open (the default)
-    seed: 1
-    walls:
-      - segment: [[0, 0], [1, 0]]
-      - polyline: [[0, 0], [1, 0], [1, 1]]
-        closed: true
-      - box: {from: [2, 2], to: [2.5, 3], kind: table, color: brown}
-    rooms:
-      kitchen: {from: [1, 1], to: [3, 3]}    # for dirt see `jacaros.sim.files.room`
-    docks:
-      - {name: dock, x: 1, y: 1, yaw_degrees: 0, radius: 0.25}
-    doors:
-      - {name: kitchen, segment: [[1, 0], [1, 1]], open: false}
-    cliffs:
-      - {from: [-3, -3], to: [-2, -2]}       # no floor, such as the top of stairs
-    robots:
-      - name: turtlebot
-        pose: {x: 0, y: 0, yaw_degrees: 0}
-    objects:                          # see `jacaros.sim.files.objects`
-    people:                           # see `jacaros.sim.files.people`
-      - {name: ann, path: [[0, 1], [2, 1]], loop: true}
+``robots`` are optional.
 """
 
 import itertools
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+from jacaros.files.entries import Reader, declared_entries, values
 from jacaros.files.texts import is_file, suggestion
 from jacaros.files.yaml import Node, read_document, read_text, top_keys
 from jacaros.sim.description import (
@@ -49,31 +27,15 @@ from jacaros.sim.description import (
     WorldDescription,
     WorldError,
 )
-from jacaros.sim.files.box import read_box
 from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
-from jacaros.sim.files.objects import read_objects
+from jacaros.sim.files.objects import read_box, read_objects
 from jacaros.sim.files.people import check_people, read_person
 from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose, read_robot
 from jacaros.sim.files.room import read_rectangle, read_rooms
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
-_KEYS = (
-    "name",
-    "map",
-    "size",
-    "bounds",
-    "border",
-    "seed",
-    "walls",
-    "rooms",
-    "docks",
-    "doors",
-    "cliffs",
-    "robots",
-    "people",
-    "objects",
-)
+_KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))
 _TELLING = frozenset(_KEYS) - {"name", "seed"}
 """Keys that are rare in other YAML files."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -194,33 +156,34 @@ def _world(document: Node, folder: Path) -> WorldDescription:
     if "walls" in entries:
         for wall in entries["walls"].sequence():
             _wall(wall, segments, boxes)
-    robots = list(entries["robots"].sequence()) if "robots" in entries else []
-    if "robots" in entries:
-        _check_robots(entries["robots"], robots)
-    people = list(entries["people"].sequence()) if "people" in entries else []
-    world = WorldDescription(
-        name=entries["name"].text() if "name" in entries else "world",
+    usual = WorldDescription("world", robots=())
+    world = replace(
+        usual,
         bounds=bounds,
         segments=tuple(segments),
         boxes=tuple(box.area for box in boxes),
         furniture=tuple(box for box in boxes if box.kind or box.color),
-        rooms=read_rooms(entries["rooms"]) if "rooms" in entries else (),
-        docks=_docks(entries.get("docks")),
-        doors=_doors(entries.get("doors")),
-        cliffs=tuple(read_rectangle(cliff) for cliff in _items(entries.get("cliffs"))),
-        robots=tuple(read_robot(robot) for robot in robots),
-        objects=read_objects(entries["objects"]) if "objects" in entries else (),
-        people=tuple(read_person(person) for person in people),
-        seed=entries["seed"].whole(0, 0) if "seed" in entries else 0,
+        **values(
+            entries,
+            usual,
+            rooms=read_rooms,
+            docks=_docks,
+            doors=_doors,
+            cliffs=_each(read_rectangle),
+            objects=read_objects,
+            robots=_robots,
+            people=_each(read_person),
+        ),
     )
     if not document.problems:  # otherwise places may be placeholders
         walled = "border" in entries and entries["border"].value == "walls"
-        _check_places(robots, world)
-        check_people(people, world, walled)
+        _check_places(entries["robots"].sequence(), world)
+        if "people" in entries:
+            check_people(entries["people"].sequence(), world, walled)
     return world
 
 
-def _check_places(items: list[Node], world: WorldDescription) -> None:
+def _check_places(items: Iterable[Node], world: WorldDescription) -> None:
     """Report robots that are outside the world, in furniture, over a cliff, or in a wall or a closed door."""
     solid = (*world.segments, *(door.segment for door in world.doors if not door.open))
     for item, robot in zip(items, world.robots, strict=True):
@@ -302,13 +265,11 @@ def _straight(shape: Node, segments: list[Segment], several: bool = False, close
             segments.append(Segment(ax, ay, bx, by))
 
 
-def _items(node: Node | None) -> Iterable[Node]:
-    return node.sequence() if node is not None else ()
+def _each(item: Callable[[Node], Any]) -> Reader:
+    return lambda node, _: tuple(map(item, node.sequence()))
 
 
-def _docks(node: Node | None) -> tuple[Dock, ...]:
-    if node is None:
-        return ()
+def _docks(node: Node, _: object) -> tuple[Dock, ...]:
     docks = []
     for index, item in enumerate(node.sequence()):
         entries = item.mapping("name", "x", "y", "yaw_degrees", "radius", required=("x", "y"))
@@ -318,9 +279,7 @@ def _docks(node: Node | None) -> tuple[Dock, ...]:
     return tuple(docks)
 
 
-def _doors(node: Node | None) -> tuple[Door, ...]:
-    if node is None:
-        return ()
+def _doors(node: Node, _: object) -> tuple[Door, ...]:
     doors: list[Door] = []
     for item in node.sequence():
         entries = item.mapping("name", "segment", "open", required=("name", "segment"))
@@ -339,9 +298,10 @@ def _doors(node: Node | None) -> tuple[Door, ...]:
     return tuple(doors)
 
 
-def _check_robots(node: Node, items: list[Node]) -> None:
-    """Report robots with the same name or the same topics, and a world without robots."""
+def _robots(node: Node, _: object) -> tuple[RobotDescription, ...]:
+    """Read all robots; report those with the same name or the same topics, and a world without robots."""
     seen: dict[tuple[str, str], int] = {}
+    items = list(node.sequence())
     if not items and isinstance(node.value, list):
         node.wrong("a world needs a robot", "add '- name: turtlebot' under 'robots'")
     for item in items:
@@ -355,3 +315,4 @@ def _check_robots(node: Node, items: list[Node]) -> None:
                     f"the robot of line {first} has the same {key} '{value}'", f"give it another {key}"
                 )
             seen.setdefault((key, value), item.line)
+    return tuple(map(read_robot, items))
