@@ -1,4 +1,4 @@
-"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, the index of internal actions.
+"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, world_keys.md, and more.
 
 make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
 """
@@ -10,6 +10,7 @@ import sys
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -21,6 +22,9 @@ from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.velocity import WheeledArtifact
 from jacaros.cli.main import COMMANDS, jacaros
+from jacaros.files.entries import declared_entries
+from jacaros.sim import description
+from jacaros.sim.faults.description import Fault
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
@@ -44,6 +48,19 @@ GROUPS = (
     "functions",
 )
 """The pages about internal actions and functions."""
+DESCRIBED: dict[str, Any] = {
+    "Robot": description.RobotDescription(),
+    "Limits": description.RobotLimits(),
+    "Battery": description.BatterySettings(),
+    "Odometry": description.OdometrySettings(),
+    "Laser": description.LaserSettings(),
+    "Navigation": description.NavigationSettings(),
+    "Tool": description.CleaningTool("", ()),
+    "Object": description.ObjectDescription("", 0.0, 0.0),
+    "Person": description.PersonDescription("", ()),
+    "Fault": Fault("", ""),
+}
+"""The parts of world files and fault files whose entries are declared, with their defaults."""
 SECTIONS = {"Options:": "Options", "Properties:": "Properties", "Signals:": "Signals"}
 
 
@@ -54,6 +71,7 @@ def main(folder: Path) -> None:
         ("cli.md", command_line()),
         ("artifacts.md", artifacts()),
         ("grammar.md", grammar()),
+        ("world_keys.md", world_keys()),
         (ACTIONS / "index.md", internal_actions()),
     )
     for name, lines in pages:
@@ -90,6 +108,29 @@ def grammar() -> Iterator[str]:
         .rstrip()
     )
     yield "```"
+
+
+def world_keys() -> Iterator[str]:
+    """The page with the keys of world files and fault files."""
+    yield NOTE
+    yield "# Keys of world files and fault files\n"
+    yield (ROOT / "tools" / "world_keys.md").read_text(encoding="utf-8")
+    for title, usual in DESCRIBED.items():
+        yield f"## {title}\n"
+        yield "| key | values | default | meaning |\n|---|---|---|---|"
+        for key, (name, entry, required) in declared_entries(usual).items():
+            default = "required" if required else _default(getattr(usual, name), entry.words)
+            yield f"| `{key}` | {entry.words} | {default} | {entry.help} |"
+        yield ""
+
+
+def _default(value: object, words: str) -> str:
+    """Return the default of a key as it is written in a file."""
+    if isinstance(value, bool):
+        return words.split(", ")[value]
+    if isinstance(value, int | float) and "flag" not in words:
+        return f"{math.degrees(value) if words[-1] == '°' or '°/s' in words else value:.4g}"
+    return f"`{value}`" if value and isinstance(value, str) else ""
 
 
 def _parts(group: click.Group, context: click.Context) -> Iterator[str]:

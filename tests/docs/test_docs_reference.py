@@ -22,7 +22,7 @@ def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("page", ["cli.md", "artifacts.md", "internal_actions/index.md"])
+@pytest.mark.parametrize("page", ["cli.md", "artifacts.md", "world_keys.md", "internal_actions/index.md"])
 def test_a_generated_page_is_up_to_date(page: str, fresh: Path) -> None:
     same = (REFERENCE / page).read_text(encoding="utf-8") == (fresh / page).read_text(encoding="utf-8")
     assert same, f"docs/reference/{page} is out of date: run `make reference`"
