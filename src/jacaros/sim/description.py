@@ -126,9 +126,9 @@ class Room:
 class Dock:
     """A charging station: it charges a robot whose centre rests within ``radius`` metres of it."""
 
-    name: str
+    name: Annotated[str, text("unique name")]
     pose: Pose
-    radius: float = 0.25
+    radius: Annotated[float, number(0.01, math.inf, "m", "in which robots are charged")] = 0.25
 
 
 @dataclass(frozen=True, slots=True)

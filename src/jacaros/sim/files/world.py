@@ -273,9 +273,8 @@ def _docks(node: Node, _: object) -> tuple[Dock, ...]:
     docks = []
     for index, item in enumerate(node.sequence()):
         entries = item.mapping("name", "x", "y", "yaw_degrees", "radius", required=("x", "y"))
-        name = entries["name"].text() if "name" in entries else ("dock" if index == 0 else f"dock{index + 1}")
-        radius = entries["radius"].number(0.01) if "radius" in entries else 0.25
-        docks.append(Dock(name, read_pose(entries), radius))
+        usual = Dock(f"dock{index + 1}" if index else "dock", read_pose(entries))
+        docks.append(replace(usual, **values(entries, usual)))
     return tuple(docks)
 
 
