@@ -57,6 +57,7 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
     "jacaros/agents/mind/state": MIND,
     "jacaros/artifacts/robots": ("tests/unit/artifacts",),
     "jacaros/artifacts/mapping": ("tests/unit/artifacts",),
+    "jacaros/plane": ("tests/unit/plane",),
     "jacaros/ros": ("tests/unit/ros", "tests/contracts"),
     "jacaros/sim": ("tests/unit/sim",),
 }

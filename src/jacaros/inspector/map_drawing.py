@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from jacaros.files.maps import CELLS
+from jacaros.plane.pose import Point, Pose
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.files.map import OccupancyMap
 
@@ -11,8 +12,7 @@ from jacaros.sim.files.map import OccupancyMap
 def can_be_drawn(message: Any) -> bool:
     """Return whether a map is valid: the number of cells matches, and size and origin are finite."""
     info = message.info
-    place, turn = info.origin.position, info.origin.orientation
-    numbers = (info.resolution, place.x, place.y, turn.z, turn.w)
+    numbers = (info.resolution, *Pose.of(info.origin))
     return info.width * info.height == len(message.data) > 0 < info.resolution and all(
         map(math.isfinite, numbers)
     )
@@ -27,17 +27,15 @@ def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
     info = message.info
     cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, _bytes_of(message.data).translate(CELLS))
     size = float(info.resolution)
-    place, turn = info.origin.position, info.origin.orientation
-    yaw = 2.0 * math.atan2(turn.z, turn.w)
-    cosine, sine = math.cos(yaw), math.sin(yaw)
+    origin = Pose.of(info.origin)
 
-    def point(column: float, row: float) -> tuple[float, float]:
-        x, y = column * size, row * size
-        return round(place.x + cosine * x - sine * y, 4), round(place.y + sine * x + cosine * y, 4)
+    def point(column: float, row: float) -> Point:
+        x, y = origin.point(column * size, row * size)
+        return round(x, 4), round(y, 4)
 
     walls = [Segment(*point(a, b), *point(c, d)) for a, b, c, d in cells.walls()]
     boxes = []
-    if abs(yaw) < 1e-6:
+    if abs(origin.yaw) < 1e-6:
         boxes = [Rectangle(*point(a, b), *point(c, d)) for a, b, c, d in cells.boxes()]
     left, bottom, right, top = cells.known_part()
     corners = [point(x, y) for x in (left, right) for y in (bottom, top)]

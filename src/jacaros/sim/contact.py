@@ -7,8 +7,9 @@ and 0.65 m/s it moves 13 mm).
 import math
 from collections.abc import Iterable
 
-from jacaros.sim.description import Pose, Segment
-from jacaros.sim.trigonometry import sine_cosine
+from jacaros.plane.pose import Pose
+from jacaros.plane.trigonometry import sine_cosine
+from jacaros.sim.description import Segment
 
 CELL = 0.5
 """Side of a cell of the wall index, in metres."""

@@ -11,8 +11,9 @@ from typing import Annotated, Any, NamedTuple
 from jacaros.files.entries import Entry, either, flag, number, section, text, whole
 from jacaros.files.texts import help_line, printable
 from jacaros.files.yaml import Problem, YamlFileError
+from jacaros.plane.pose import ORIGIN, Pose
+from jacaros.plane.trigonometry import PI, TWO_PI, radians
 from jacaros.sim.interface import EVERYTHING, Interface
-from jacaros.sim.trigonometry import PI, TWO_PI, radians
 
 
 class Segment(NamedTuple):
@@ -72,15 +73,6 @@ class Rectangle(NamedTuple):
         return Segment(a, b, c, b), Segment(c, b, c, d), Segment(c, d, a, d), Segment(a, d, a, b)
 
 
-class Pose(NamedTuple):
-    """The pose of a robot: metres, and the heading in radians, counter-clockwise from +x."""
-
-    x: float
-    y: float
-    yaw: float
-
-
-ORIGIN = Pose(0.0, 0.0, 0.0)
 DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from jacaros.errors import JacarosError
 from jacaros.files.texts import file_text
-from jacaros.sim.description import Pose
+from jacaros.plane.pose import Pose
 
 Record = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""

@@ -6,9 +6,9 @@ They block neither robots nor lasers; only grippers touch them.
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.description import Door, ObjectDescription, Segment
 from jacaros.sim.robot.robot import Robot
-from jacaros.sim.trigonometry import sine_cosine
 
 _BEFORE = 0.05
 """Distance in metres from the edge of a robot to the centre of an object that it carries or puts down."""

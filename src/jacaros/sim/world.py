@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
+from jacaros.plane.pose import Pose
 from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
-from jacaros.sim.description import PersonDescription, Pose, WorldDescription
+from jacaros.sim.description import PersonDescription, WorldDescription
 from jacaros.sim.faults.description import Fault
 from jacaros.sim.faults.schedule import Faults
 from jacaros.sim.files.world import load_world, read_world

@@ -21,7 +21,8 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
-from jacaros.sim.description import Pose
+from jacaros.plane.pose import Pose, normalised
+from jacaros.sim.description import Segment
 from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 
 
@@ -106,22 +107,17 @@ def distance(one: Placed, x: float, y: float) -> float:
 
 def angle_between(one: float, other: float) -> float:
     """Return the absolute difference of two headings, from 0 to pi, in radians."""
-    return abs(math.remainder(one - other, math.tau))
+    return abs(normalised(one - other))
 
 
 def seen_from(origin: Placed, point: Placed) -> tuple[float, float]:
     """Return the position of a point relative to a pose: metres ahead, metres to the left."""
-    dx, dy = point.x - origin.x, point.y - origin.y
-    cosine, sine = math.cos(origin.yaw), math.sin(origin.yaw)
-    return dx * cosine + dy * sine, dy * cosine - dx * sine
+    return Pose(origin.x, origin.y, origin.yaw).local(point.x, point.y)
 
 
 def to_segment(one: Placed, a: tuple[float, float], b: tuple[float, float]) -> float:
     """Return the distance from a pose to the segment from *a* to *b*, in metres."""
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    share = ((one.x - a[0]) * dx + (one.y - a[1]) * dy) / (dx * dx + dy * dy)
-    share = min(1.0, max(0.0, share))
-    return distance(one, a[0] + share * dx, a[1] + share * dy)
+    return Segment(*a, *b).distance(one.x, one.y)
 
 
 def turns(path: Sequence[Sample], least: float = math.radians(20.0)) -> list[Turn]:
@@ -147,7 +143,7 @@ def _turning_stretches(path: Sequence[Sample]) -> Iterable[list[Sample]]:
 
 
 def _turn(stretch: Sequence[Sample]) -> Turn:
-    angle = math.fsum(math.remainder(b.yaw - a.yaw, math.tau) for a, b in itertools.pairwise(stretch))
+    angle = math.fsum(normalised(b.yaw - a.yaw) for a, b in itertools.pairwise(stretch))
     count = len(stretch)
     return Turn(
         math.fsum(sample.x for sample in stretch) / count,

@@ -5,23 +5,13 @@ import math
 import pytest
 
 from jacaros.artifacts.robots.approach import Outlook, Step, pulse_for
-from jacaros.artifacts.robots.control import (
-    Limits,
-    Line,
-    Pose,
-    Velocity,
-    bearing,
-    distance,
-    heading_of,
-    steer,
-    unwrapped,
-)
+from jacaros.artifacts.robots.control import Limits, Line, Velocity, bearing, distance, steer
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.journey import DriveTo, Sequence, TurnTo, go_to
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
+from jacaros.plane.pose import ORIGIN, Pose, normalised
 
 LIMITS = Limits(speed=0.65, turn_speed=1.0)
-ORIGIN = Pose(0.0, 0.0, 0.0)
 TICK = 0.01
 
 
@@ -74,12 +64,12 @@ class Base:
         angular = wanted.angular if abs(wanted.angular) >= self.sticks.angular else 0.0
         v = ramp(self.velocity.linear, linear, self.acceleration * TICK)
         w = ramp(self.velocity.angular, angular, 6.0 * self.acceleration * TICK)
-        middle = self.pose.heading + 0.5 * w * TICK
+        middle = self.pose.yaw + 0.5 * w * TICK
         self.velocity = Velocity(v, w)
         self.pose = Pose(
             self.pose.x + v * TICK * math.cos(middle),
             self.pose.y + v * TICK * math.sin(middle),
-            self.pose.heading + w * TICK,
+            self.pose.yaw + w * TICK,
         )
 
     def outlook(self) -> Outlook:
@@ -112,7 +102,7 @@ def test_a_drive_stops_within_a_centimetre_whatever_the_latency(late: int, lengt
 def test_a_turn_stops_within_a_degree_whatever_the_latency(late: int, degrees: float) -> None:
     base = Base(late)
     base.follow(Turn(math.radians(degrees)))
-    assert math.degrees(base.pose.heading) == pytest.approx(degrees, abs=1)
+    assert math.degrees(base.pose.yaw) == pytest.approx(degrees, abs=1)
 
 
 @pytest.mark.parametrize("late", [0, 2, 6])
@@ -122,7 +112,7 @@ def test_a_motion_ends_although_wheels_stick_below_a_speed(late: int, stuck: Vel
     base.follow(Straight(1.0))
     base.follow(Turn(2.0))
     assert base.pose.x == pytest.approx(1, abs=0.01)
-    assert math.degrees(base.pose.heading) == pytest.approx(math.degrees(2), abs=1.5)
+    assert math.degrees(base.pose.yaw) == pytest.approx(math.degrees(2), abs=1.5)
 
 
 @pytest.mark.parametrize("late", [0, 2, 6])
@@ -167,7 +157,7 @@ def test_a_journey_ends_at_point_and_heading(goal: tuple[float, float]) -> None:
     base = Base(1)
     base.follow(go_to(*goal, math.radians(170)))
     assert distance(base.pose, Pose(*goal, 0)) < 0.02
-    assert math.degrees(unwrapped(base.pose.heading - math.radians(170))) == pytest.approx(0, abs=1)
+    assert math.degrees(normalised(base.pose.yaw - math.radians(170))) == pytest.approx(0, abs=1)
 
 
 def test_a_point_at_the_robot_needs_no_motion() -> None:
@@ -182,7 +172,7 @@ def test_turning_to_a_heading_takes_the_short_way() -> None:
     maneuver = TurnTo(math.radians(-170))
     base.follow(maneuver)
     assert maneuver.covered == pytest.approx(20, abs=1)
-    assert math.degrees(unwrapped(base.pose.heading)) == pytest.approx(-170, abs=0.5)
+    assert math.degrees(normalised(base.pose.yaw)) == pytest.approx(-170, abs=0.5)
 
 
 def test_the_covered_distance_is_in_metres_and_degrees() -> None:
@@ -204,25 +194,12 @@ def test_a_drive_by_time_gives_its_commands_and_ends() -> None:
     assert commands == [Step(Velocity(0.65, 0.0), 0.1)] * 3 + [None]
 
 
-@pytest.mark.parametrize(
-    ("angle", "same"),
-    [(0, 0), (math.pi, math.pi), (-math.pi, math.pi), (7, 7 - math.tau), (-7, math.tau - 7)],
-)
-def test_directions_are_unwrapped(angle: float, same: float) -> None:
-    assert unwrapped(angle) == pytest.approx(same)
-
-
 def test_a_line_tells_along_and_aside() -> None:
     line = Line(Pose(1, 1, math.pi / 2), 2.0)
     assert line.along(Pose(0, 2, 0)) == pytest.approx(1)
     assert line.aside(Pose(0, 2, 0)) == pytest.approx(1)
     assert line.remaining(Pose(0, 2, 0)) == pytest.approx(1)
     assert bearing(Pose(1, 1, 0), 0, 1) == pytest.approx(math.pi)
-
-
-@pytest.mark.parametrize("heading", [0.0, 1.0, -2.5, 3.1])
-def test_the_heading_is_read_from_a_quaternion(heading: float) -> None:
-    assert heading_of(0, 0, math.sin(heading / 2), math.cos(heading / 2)) == pytest.approx(heading)
 
 
 def test_speed_rises_by_the_acceleration_and_never_passes_the_cruise_speed() -> None:

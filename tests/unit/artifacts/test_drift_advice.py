@@ -10,8 +10,9 @@ from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Structure
 from jacaros.artifacts.robots import drift
-from jacaros.artifacts.robots.control import Pose, Velocity
+from jacaros.artifacts.robots.control import Velocity
 from jacaros.artifacts.robots.velocity import ArtCmdVel
+from jacaros.plane.pose import Pose
 
 SLIPPERY = """
 seed: 3

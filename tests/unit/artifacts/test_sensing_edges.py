@@ -20,7 +20,7 @@ from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.artifacts.mapping.read_fields import conversion
 from jacaros.artifacts.mapping.rows import extractor
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Pose
 from jacaros.runtime.clock import VirtualClock, run
 
 

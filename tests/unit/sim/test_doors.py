@@ -7,11 +7,11 @@ import pytest
 from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
 from jacaros.errors import UsageError
+from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 from jacaros.sim import World, WorldError, read_world
 from jacaros.sim.navigation.laser_perception import LaserPerception
-from jacaros.sim.navigation.placement import Placement
 
 TWO_ROOMS = """
 name: two rooms

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import pytest
 
+from jacaros.plane.trigonometry import PI, sine_cosine
 from jacaros.sim.description import LaserSettings, Rectangle, Segment
 from jacaros.sim.robot.sensors.laser import Laser
 from jacaros.sim.robot.sensors.laser_numpy import WallArrays
 from jacaros.sim.robot.sensors.laser_plain import Beams, sweep_circles, sweep_walls
-from jacaros.sim.trigonometry import PI, sine_cosine
 
 
 def random_walls(draw: random.Random, count: int) -> list[Segment]:

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from navigation_lab import Lab, in_world, near, pose
 
+from jacaros.plane.trigonometry import PI
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
-from jacaros.sim.trigonometry import PI
 
 FROM_START = """
 name: from start

@@ -11,15 +11,15 @@ from typing import Any
 import pytest
 from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
+from jacaros.plane.pose import Placement, distance
+from jacaros.plane.trigonometry import PI
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.errors import GoalRejected
 from jacaros.sim import World
 from jacaros.sim.navigation.driver import Driver, Pace, Route
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import Planner
-from jacaros.sim.trigonometry import PI
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from jacaros.plane.pose import distance
 from jacaros.sim import World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.driver import Route
@@ -20,9 +21,7 @@ from jacaros.sim.navigation.failure import (
     NavigationFailure,
 )
 from jacaros.sim.navigation.grid import DIAGONAL, REACH, RESOLUTION, Grid, cheapest_path
-from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import MARGIN, Planner
-from jacaros.sim.trigonometry import PI
 
 RADIUS = 0.17
 SHIPPED = ["empty", "house", "patrol", "two_robots"]
@@ -181,20 +180,6 @@ def test_a_robot_at_a_wall_can_leave_it() -> None:
     points = planner.plan((-2.0 + RADIUS, 0.0), (1.0, 0.0))
     assert points[0] == (-2.0 + RADIUS, 0.0)
     assert points[-1] == (1.0, 0.0)
-
-
-def test_placements_compose_as_angles_do() -> None:
-    draw = random.Random(5)
-    for _ in range(200):
-        x, y, yaw = draw.uniform(-5, 5), draw.uniform(-5, 5), draw.uniform(-PI, PI)
-        place = Placement.at(x, y, yaw)
-        assert place.then(place.inverse()) == pytest.approx((0.0, 0.0, 1.0, 0.0), abs=1e-12)
-        z, w = place.quaternion()
-        assert Placement.from_quaternion(x, y, (0.0, 0.0, z, w)) == pytest.approx(place, abs=1e-9)
-        px, py = draw.uniform(-5, 5), draw.uniform(-5, 5)
-        turned = complex(px, py) * complex(math.cos(yaw), math.sin(yaw)) + complex(x, y)
-        assert place.point(px, py) == pytest.approx((turned.real, turned.imag))
-        assert place.local(*place.point(px, py)) == pytest.approx((px, py))
 
 
 def test_a_route_knows_how_far_the_robot_is() -> None:

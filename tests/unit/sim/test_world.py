@@ -6,17 +6,17 @@ import random
 import pytest
 
 from jacaros.errors import UsageError
+from jacaros.plane.pose import Pose
+from jacaros.plane.trigonometry import PI
 from jacaros.sim import World
 from jacaros.sim.description import (
     BatterySettings,
     Dock,
     OdometrySettings,
-    Pose,
     RobotDescription,
     Segment,
     WorldDescription,
 )
-from jacaros.sim.trigonometry import PI
 from jacaros.sim.world import STEP
 
 

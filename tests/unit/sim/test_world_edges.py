@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from navigation_lab import Lab, in_world
 
+from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
@@ -14,7 +15,6 @@ from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.driver import Driver, Pace, Route
 from jacaros.sim.navigation.failure import GOAL_OCCUPIED, NavigationFailure
 from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.placement import Placement
 from jacaros.sim.navigation.planner import Planner
 
 RADIUS = 0.17

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from jacaros.plane.trigonometry import PI
 from jacaros.sim import World, WorldError, read_world, shipped_worlds
 from jacaros.sim.robot.kinds import KINDS
-from jacaros.sim.trigonometry import PI
 
 FULL = """\
 name: flat

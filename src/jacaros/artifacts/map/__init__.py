@@ -8,7 +8,7 @@ file                             content
 `robot_map`                      ``ArtMap``: the same, filled from scans or ``/map``, with the robot on it
 `cells`, `occupancy`             cells and their labels; an occupancy grid
 `mapper`                         from scans and odometry to a grid and a pose, built from `scans`,
-                                 `localisation`, `scan_matching` and `poses`
+                                 `localisation` and `scan_matching`
 `route`, `inflation`, `legs`     routes for a robot with a size
 `frontiers`                      the border of unknown ground
 `map_files`, `grids`             foreign maps: files of map_server, ``nav_msgs/msg/OccupancyGrid``

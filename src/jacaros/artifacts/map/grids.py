@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
-from jacaros.artifacts.robots.control import Pose, heading_of
 from jacaros.files.maps import CELLS, OCCUPIED, UNKNOWN
+from jacaros.plane.pose import Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +29,8 @@ class Grid:
     @staticmethod
     def of(message: Any) -> "Grid":
         """Read a ``nav_msgs/msg/OccupancyGrid``."""
-        info, q = message.info, message.info.origin.orientation
-        position = info.origin.position
-        origin = Pose(float(position.x), float(position.y), heading_of(q.x, q.y, q.z, q.w))
-        return Grid(float(info.resolution), int(info.width), origin, message.data)
+        info = message.info
+        return Grid(float(info.resolution), int(info.width), Pose.of(info.origin), message.data)
 
     def labels(self, size: float) -> dict[Cell, str]:
         """Return free cells and obstacles as cells of another *size* (metres), which must not be smaller.
@@ -41,7 +39,7 @@ class Grid:
         """
         found: dict[Cell, str] = {}
         corner, step = self.origin, self.resolution / size
-        sine, cosine = step * math.sin(corner.heading), step * math.cos(corner.heading)
+        sine, cosine = step * math.sin(corner.yaw), step * math.cos(corner.yaw)
         for index, percent in enumerate(self.occupancy):
             meaning = CELLS[percent & 255]
             if meaning != UNKNOWN:

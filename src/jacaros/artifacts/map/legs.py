@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from jacaros.artifacts.map.cells import Cell
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Pose, normalised
 
 
 class Leg(NamedTuple):
@@ -42,7 +42,7 @@ def next_leg(way: Sequence[Cell], free: Collection[Cell], pose: Pose, leg: Leg) 
     metres = math.dist(pose[:2], (x, y))
     if metres < 0.5 * size:
         return 0.0, 0.0
-    turn = math.remainder(math.atan2(y - pose.y, x - pose.x) - pose.heading, math.tau)
+    turn = normalised(math.atan2(y - pose.y, x - pose.x) - pose.yaw)
     return turn, metres
 
 

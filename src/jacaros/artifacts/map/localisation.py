@@ -3,8 +3,7 @@
 import math
 from collections import deque
 
-from jacaros.artifacts.robots.control import Pose
-from jacaros.artifacts.robots.poses import ORIGIN, between, followed_by, inverse
+from jacaros.plane.pose import ORIGIN, Pose, normalised
 
 REMEMBERED = 40
 """Number of odometry poses that are stored: two seconds at 20 Hz, for sensors that arrive late."""
@@ -33,19 +32,19 @@ class Localisation:
             if stamp < last:  # the sender's clock was set back
                 self._odometry.clear()
         self._odometry.append((stamp, pose))
-        self.pose = followed_by(self.correction, pose)
+        self.pose = self.correction.then(pose)
 
     def pose_at(self, stamp: float) -> Pose | None:
         """Return the pose on the map at *stamp* (0.0: now), the nearest known one; None before the first odometry."""
         found = self._odometry_at(stamp)
-        return None if found is None else followed_by(self.correction, found)
+        return None if found is None else self.correction.then(found)
 
     def correct(self, stamp: float, pose: Pose) -> None:
         """Correct the pose: the robot was at *pose* on the map at *stamp*. No effect before the first odometry."""
         found = self._odometry_at(stamp)
         if found is not None:
-            self.correction = followed_by(pose, inverse(found))
-            self.pose = followed_by(self.correction, self._odometry[-1][1])
+            self.correction = pose.then(found.inverse())
+            self.pose = self.correction.then(self._odometry[-1][1])
 
     def _odometry_at(self, stamp: float) -> Pose | None:
         if not self._odometry:
@@ -55,6 +54,12 @@ class Localisation:
             return later
         for before_stamp, before in reversed(self._odometry):
             if before_stamp <= stamp:
-                return between(before, later, (stamp - before_stamp) / (later_stamp - before_stamp))
+                return _between(before, later, (stamp - before_stamp) / (later_stamp - before_stamp))
             later_stamp, later = before_stamp, before
         return later
+
+
+def _between(a: Pose, b: Pose, share: float) -> Pose:
+    """Interpolate linearly between *a* (share 0) and *b* (share 1)."""
+    turn = normalised(b.yaw - a.yaw)
+    return Pose(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.yaw + share * turn)

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from jacaros.artifacts.map.cells import FREE, Cell
 from jacaros.artifacts.map.grids import Grid
-from jacaros.artifacts.robots.control import Pose
 from jacaros.errors import JacarosError
 from jacaros.files.maps import (
     BLACK,
@@ -24,6 +23,7 @@ from jacaros.files.maps import (
 )
 from jacaros.files.texts import file_text
 from jacaros.files.yaml import Problem, YamlFileError, read_document
+from jacaros.plane.pose import Pose
 
 
 class MapFileError(JacarosError):

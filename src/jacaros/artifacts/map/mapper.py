@@ -9,7 +9,7 @@ from jacaros.artifacts.map.localisation import Localisation
 from jacaros.artifacts.map.occupancy import OccupancyCells
 from jacaros.artifacts.map.scan_matching import Surfaces, match
 from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Pose, normalised
 
 DRIVEN = 0.1
 """Metres after which the next scan is added to the map."""
@@ -71,7 +71,7 @@ class Mapper:
         before, last = self._last
         return (
             math.dist(last[:2], pose[:2]) >= DRIVEN
-            or abs(math.remainder(pose.heading - last.heading, math.tau)) >= TURNED
+            or abs(normalised(pose.yaw - last.yaw)) >= TURNED
             or not 0.0 <= stamp - before < STOOD
         )
 

@@ -8,9 +8,7 @@ import math
 from collections.abc import Iterable, Mapping
 
 from jacaros.artifacts.map.cells import FREE, OBSTACLE, UNKNOWN, Cell, LabelledCells
-
-Point = tuple[float, float]
-"""x and y, in metres."""
+from jacaros.plane.pose import Point
 
 HIT = 0.9
 """Log odds that an echo adds to its cell."""

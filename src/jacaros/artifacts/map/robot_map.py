@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.faults import Header
@@ -16,9 +16,8 @@ from jacaros.artifacts.map.mapper import Mapper
 from jacaros.artifacts.map.occupancy import OccupancyCells
 from jacaros.artifacts.map.scans import ScanOptions
 from jacaros.artifacts.map.slam_data import ArtSlamData
-from jacaros.artifacts.robots.control import Pose, heading_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
-from jacaros.artifacts.robots.poses import ORIGIN
+from jacaros.plane.pose import ORIGIN, Pose
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import LATCHED, SENSOR_DATA
@@ -154,7 +153,7 @@ class ArtMap(ArtSlamData):
 
     def _take_pose(self, sample: Sample) -> None:
         message = sample.message
-        self._mapper.localisation.correct(to_seconds(message.header.stamp), _pose(message))
+        self._mapper.localisation.correct(to_seconds(message.header.stamp), Pose.of(message.pose.pose))
         self._locate(sample)
 
     def _take_map(self, sample: Sample) -> None:
@@ -166,7 +165,7 @@ class ArtMap(ArtSlamData):
         self.start(self.show_surroundings, cause=sample.cause)
 
     def _take_other(self, name: str, sample: Sample) -> None:
-        pose = _pose(sample.message)
+        pose = Pose.of(sample.message.pose.pose)
         self.start(self.update_object, name, *self._seen.cell_at(pose.x, pose.y), cause=sample.cause)
 
     def _take_things(self, sample: Sample) -> None:
@@ -177,7 +176,7 @@ class ArtMap(ArtSlamData):
             name, *place = str(recognised).split(",")
             try:
                 ahead, left = float(place[0]), float(place[1])
-                cell = self._seen.cell_at(*point_ahead(pose, ahead, left))
+                cell = self._seen.cell_at(*pose.point(ahead, left))
             except (ValueError, IndexError, OverflowError):
                 continue  # a text in another format
             self.start(self.update_object, name.strip(), *cell, cause=sample.cause)
@@ -187,7 +186,7 @@ class ArtMap(ArtSlamData):
         pose = self._mapper.localisation.pose
         if pose is None:
             return
-        self.heading = math.degrees(pose.heading)
+        self.heading = math.degrees(pose.yaw)
         if not self._showing and self._seen.cell_at(pose.x, pose.y) != self.here:
             self._showing = True
             self.start(self.show_surroundings, cause=sample.cause)
@@ -198,7 +197,7 @@ class ArtMap(ArtSlamData):
         self._showing = False
         pose = self._mapper.localisation.pose
         if pose is not None:
-            self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.heading), 0.0)
+            self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.yaw), 0.0)
         view = math.floor(self._metres("view", 0.0) / self.size)
         if view:
             self.show_obstacles(self._seen.near(self.here, view))
@@ -252,16 +251,3 @@ class ArtMap(ArtSlamData):
         """Match scans with the present map."""
         self._done.clear()
         self._mapper.begin_with(self.cells.blocked())
-
-
-def point_ahead(pose: Pose, ahead: float, left: float) -> tuple[float, float]:
-    """Return the point *ahead* and *left* metres from a robot at *pose*."""
-    cosine, sine = math.cos(pose.heading), math.sin(pose.heading)
-    return pose.x + ahead * cosine - left * sine, pose.y + ahead * sine + left * cosine
-
-
-def _pose(message: Any) -> Pose:
-    """Read a ``geometry_msgs/msg/PoseWithCovarianceStamped``."""
-    pose = message.pose.pose
-    q = pose.orientation
-    return Pose(float(pose.position.x), float(pose.position.y), heading_of(q.x, q.y, q.z, q.w))

@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from jacaros.artifacts.map.cells import Cell
-from jacaros.artifacts.map.occupancy import Point
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Point, Pose, normalised
 
 BUCKET = 0.1
 """Side, in metres, of the squares in which observed points are averaged."""
@@ -116,7 +115,7 @@ def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | No
     pose = guess
     for _ in range(ROUNDS):
         normal = _Normal(pose, guess)
-        sine, cosine = math.sin(pose.heading), math.cos(pose.heading)
+        sine, cosine = math.sin(pose.yaw), math.cos(pose.yaw)
         used = 0
         for px, py in points:
             rx, ry = cosine * px - sine * py, sine * px + cosine * py
@@ -131,7 +130,7 @@ def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | No
         if used < FEW:
             return None
         dx, dy, turn = normal.solved()
-        pose = Pose(pose.x + dx, pose.y + dy, math.remainder(pose.heading + turn, math.tau))
+        pose = Pose(pose.x + dx, pose.y + dy, normalised(pose.yaw + turn))
         if abs(dx) + abs(dy) < 1e-4 and abs(turn) < 1e-4:
             break
     return pose
@@ -142,7 +141,7 @@ class _Normal:
 
     def __init__(self, pose: Pose, guess: Pose) -> None:
         tx, ty, tt = TRUST
-        turned = math.remainder(guess.heading - pose.heading, math.tau)
+        turned = normalised(guess.yaw - pose.yaw)
         self._a = [[tx, 0.0, 0.0], [0.0, ty, 0.0], [0.0, 0.0, tt]]
         self._b = [tx * (guess.x - pose.x), ty * (guess.y - pose.y), tt * turned]
 

@@ -4,11 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from jacaros.artifacts.robots.control import Pose
-from jacaros.artifacts.robots.poses import transformed
-
-Point = tuple[float, float]
-
+from jacaros.plane.pose import Point, Pose
 
 SAME_SURFACE = 0.5
 """Relative difference of the ranges of neighbouring beams up to which they are taken for echoes of one surface."""
@@ -57,7 +53,7 @@ def read_scan(message: Any, options: ScanOptions) -> Scan:
     echoes: list[Point] = []
     clear: list[Point] = []
     least, most = float(message.range_min), float(message.range_max)
-    angle, increment = float(message.angle_min) + mount.heading, float(message.angle_increment)
+    angle, increment = float(message.angle_min) + mount.yaw, float(message.angle_increment)
     sine, cosine = math.sin(increment), math.cos(increment)
     dx, dy = math.cos(angle), math.sin(angle)
     before = math.inf
@@ -88,10 +84,10 @@ def _beside(reading: float, before: float, sine: float, cosine: float, near: flo
 
 def moved(scan: Scan, pose: Pose) -> Scan:
     """Convert a scan to map coordinates, for a robot at *pose*."""
-    sine, cosine = math.sin(pose.heading), math.cos(pose.heading)
+    sine, cosine = math.sin(pose.yaw), math.cos(pose.yaw)
     x, y = pose.x, pose.y
 
     def all_of(points: list[Point]) -> list[Point]:
         return [(x + cosine * a - sine * b, y + sine * a + cosine * b) for a, b in points]
 
-    return Scan(transformed(pose, *scan.origin), all_of(scan.echoes), all_of(scan.clear))
+    return Scan(pose.point(*scan.origin), all_of(scan.echoes), all_of(scan.clear))

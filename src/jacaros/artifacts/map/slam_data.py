@@ -13,6 +13,7 @@ from jacaros.artifacts.map.cells import FREE, GOAL, OBSTACLE, UNKNOWN, Cell, Lab
 from jacaros.artifacts.map.inflation import inflated
 from jacaros.artifacts.map.picture import picture
 from jacaros.artifacts.map.route import DEGREES, compass, route
+from jacaros.plane.pose import normalised
 
 ME = Atom("me")
 """The agent, as the first argument of ``pos2d(Object, X, Y)``."""
@@ -281,8 +282,7 @@ class ArtSlamData(RosArtifact):
 
     def _turn_to(self, heading: float) -> float:
         """Return the turn in degrees from the agent's heading to *heading*, in (-180, 180]."""
-        turn = math.remainder(heading - self.heading, 360.0)
-        return 180.0 if turn == -180.0 else turn
+        return normalised(heading - self.heading, 360.0)
 
     def _goal(self) -> Cell:
         x, y = self.here

@@ -13,6 +13,7 @@ from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
 from jacaros.artifacts.mapping.message_units import check_unit
 from jacaros.artifacts.mapping.paths import follow, getter
 from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
+from jacaros.plane.pose import pitch_of, roll_of, yaw_of
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES, to_seconds
 
@@ -171,10 +172,10 @@ def _element(
     after = converted(conversion)
     fallback = _otherwise(field, message, interfaces)
     if conversion.kind in ANGLES:
-        angle = _ANGLES[conversion.kind]
+        angle = {"roll": roll_of, "pitch": pitch_of, "yaw": yaw_of}[conversion.kind]
 
         def heading(raw: Any, whole: Any) -> object:
-            value = angle(raw)
+            value = angle(raw.x, raw.y, raw.z, raw.w)
             return after(value) if math.isfinite(value) else fallback(value, whole)
 
         return heading
@@ -414,22 +415,6 @@ def _structure(path: str, type_name: str, interfaces: Interfaces) -> Convert:
 def _whole(path: str, kind: FieldType, interfaces: Interfaces) -> Convert:
     single = _plain(path, FieldType(kind.base), interfaces)
     return (lambda raw: [single(each) for each in _items(raw)]) if kind.array else single
-
-
-def _yaw(q: Any) -> float:
-    return math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
-
-
-def _pitch(q: Any) -> float:
-    # Rounding may put the sine slightly beyond 1.
-    return math.asin(max(-1.0, min(1.0, 2.0 * (q.w * q.y - q.z * q.x))))
-
-
-def _roll(q: Any) -> float:
-    return math.atan2(2.0 * (q.w * q.x + q.y * q.z), 1.0 - 2.0 * (q.x * q.x + q.y * q.y))
-
-
-_ANGLES: dict[str, Callable[[Any], float]] = {"yaw": _yaw, "pitch": _pitch, "roll": _roll}
 
 
 class MessageHandle:

@@ -1,6 +1,5 @@
 """Frames of tf as properties, looked up at a fixed rate."""
 
-import math
 from collections.abc import Callable, Iterable
 
 from jacaros.artifacts.env.values import Structure
@@ -8,6 +7,7 @@ from jacaros.artifacts.kit.reading import Values
 from jacaros.artifacts.mapping.declared import FieldPart, FramePart
 from jacaros.artifacts.mapping.decoding import converted
 from jacaros.artifacts.mapping.host import Host
+from jacaros.plane.pose import pitch_of, roll_of
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.waiting import MISSING_AFTER
@@ -89,22 +89,12 @@ def values_of(fields: Iterable[FieldPart]) -> Callable[[Transform], Values]:
     return lambda transform: tuple([convert(_part(transform, what)) for what, convert in parts])
 
 
-def _roll(transform: Transform) -> float:
-    x, y, z, w = transform.rotation
-    return math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-
-
-def _pitch(transform: Transform) -> float:
-    x, y, z, w = transform.rotation
-    return math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x))))
-
-
 _PARTS: dict[str, Callable[[Transform], float]] = {
     "x": lambda transform: transform.translation[0],
     "y": lambda transform: transform.translation[1],
     "z": lambda transform: transform.translation[2],
-    "roll": _roll,
-    "pitch": _pitch,
+    "roll": lambda transform: roll_of(*transform.rotation),
+    "pitch": lambda transform: pitch_of(*transform.rotation),
     "yaw": lambda transform: transform.yaw,
     "stamp": lambda transform: transform.stamp,
 }

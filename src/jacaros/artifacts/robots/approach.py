@@ -9,9 +9,10 @@ about to change.
 import math
 from dataclasses import dataclass
 
-from jacaros.artifacts.robots.control import Limits, Pose, Velocity
+from jacaros.artifacts.robots.control import Limits, Velocity
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.response import HELD, Axis
+from jacaros.plane.pose import Pose
 
 BRAKING_SHARE = 0.6
 """Fraction of the robot's acceleration used for slowing down; the rest is a reserve for disturbances."""

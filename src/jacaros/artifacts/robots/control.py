@@ -8,13 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-
-class Pose(NamedTuple):
-    """Where a robot is: x and y in metres, heading in radians."""
-
-    x: float
-    y: float
-    heading: float
+from jacaros.plane.pose import Pose, normalised
 
 
 class Velocity(NamedTuple):
@@ -61,13 +55,11 @@ class Line:
 
     def along(self, pose: Pose) -> float:
         """Return how many metres *pose* is ahead of the start."""
-        dx, dy = pose.x - self.start.x, pose.y - self.start.y
-        return dx * math.cos(self.start.heading) + dy * math.sin(self.start.heading)
+        return self.start.local(pose.x, pose.y)[0]
 
     def aside(self, pose: Pose) -> float:
         """Return how many metres *pose* is to the left of the line."""
-        dx, dy = pose.x - self.start.x, pose.y - self.start.y
-        return dy * math.cos(self.start.heading) - dx * math.sin(self.start.heading)
+        return self.start.local(pose.x, pose.y)[1]
 
     def remaining(self, pose: Pose) -> float:
         """Return the remaining distance from *pose*, in signed metres."""
@@ -77,17 +69,6 @@ class Line:
 def clamp(value: float, limit: float) -> float:
     """Return *value*, limited to [-limit, limit]."""
     return max(-limit, min(limit, value))
-
-
-def unwrapped(angle: float) -> float:
-    """Return the same direction in (-pi, pi]."""
-    turned = math.remainder(angle, math.tau)
-    return math.pi if turned == -math.pi else turned
-
-
-def heading_of(x: float, y: float, z: float, w: float) -> float:
-    """Return the heading of a robot with the orientation x, y, z, w (a quaternion), in (-pi, pi]."""
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def distance(a: Pose, b: Pose) -> float:
@@ -114,6 +95,6 @@ def steer(line: Line, pose: Pose, speed: float, jitter: float, most: float) -> f
         most: greatest turn rate of the robot.
     """
     pull = math.atan2(line.aside(pose), 0.4) if abs(line.remaining(pose)) > 0.05 else 0.0
-    aim = line.start.heading - math.copysign(1.0, speed) * pull
+    aim = line.start.yaw - math.copysign(1.0, speed) * pull
     gain = min(2.0, 0.4 / jitter) if jitter else 2.0
-    return clamp(gain * unwrapped(aim - pose.heading), 0.5 * most)
+    return clamp(gain * normalised(aim - pose.yaw), 0.5 * most)

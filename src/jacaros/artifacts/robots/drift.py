@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable
 from weakref import WeakSet
 
-from jacaros.artifacts.robots.control import Pose, heading_of
 from jacaros.artifacts.robots.odometry import Odometer
-from jacaros.artifacts.robots.poses import followed_by, inverse
+from jacaros.plane.pose import Pose, normalised
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.message import to_seconds
 
@@ -42,12 +41,9 @@ class Drift:
     def take(self, sample: Sample) -> None:
         """Handle a localised pose; the callback of the subscription."""
         at = self._odometry_at(to_seconds(sample.message.header.stamp))
-        found = sample.message.pose.pose
         if at is None or self._ros in _advised:
             return
-        q = found.orientation
-        place = Pose(found.position.x, found.position.y, heading_of(q.x, q.y, q.z, q.w))
-        correction = followed_by(place, inverse(at))
+        correction = Pose.of(sample.message.pose.pose).then(at.inverse())
         if (
             self._first is None
             or self._last is None
@@ -72,19 +68,19 @@ class Drift:
         late = to_seconds(newest.sample.message.header.stamp) - stamp
         if not -AHEAD <= late <= OUTDATED:
             return None
-        ahead = newest.pose.heading - 0.5 * late * newest.velocity.angular
+        ahead = newest.pose.yaw - 0.5 * late * newest.velocity.angular
         metres = late * newest.velocity.linear
         return Pose(
             newest.pose.x - metres * math.cos(ahead),
             newest.pose.y - metres * math.sin(ahead),
-            newest.pose.heading - late * newest.velocity.angular,
+            newest.pose.yaw - late * newest.velocity.angular,
         )
 
     @staticmethod
     def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
         """Return how far two corrections put the robot apart: metres and radians."""
-        a, b = followed_by(one, at), followed_by(other, at)
-        return math.dist(a[:2], b[:2]), abs(math.remainder(a.heading - b.heading, math.tau))
+        a, b = one.then(at), other.then(at)
+        return math.dist(a[:2], b[:2]), abs(normalised(a.yaw - b.yaw))
 
 
 def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:

@@ -10,9 +10,10 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, clamp, unwrapped
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, clamp
 from jacaros.artifacts.robots.filtering import Filtered
 from jacaros.artifacts.robots.response import HELD, LAGS, TICK, WINDOW, Axis, ramp, vertex
+from jacaros.plane.pose import Pose, normalised
 
 LONGEST_PENDING = 3.0
 """Seconds of commands that may be on the way; without odometry, poses are made up anyway."""
@@ -178,7 +179,7 @@ class DriveModel:
         if last is None or seconds > 2.0:
             self._changes = (0.0, 0.0, 0.0)
             self._x.value, self._y.value = pose.x, pose.y
-            self._heading.value += unwrapped(pose.heading - self._heading.value)
+            self._heading.value += normalised(pose.yaw - self._heading.value)
             self.linear.speed, self.angular.speed = velocity
             return
         before, self._changes = self._changes, _changes(last[0], pose)
@@ -194,7 +195,7 @@ class DriveModel:
         for each, way, value in zip(coordinates, ways, pose, strict=True):
             each.move(way)
             difference = value - each.value
-            each.measure(unwrapped(difference) if each is self._heading else difference)
+            each.measure(normalised(difference) if each is self._heading else difference)
         self._filter_speeds(velocity)
 
     def _filter_speeds(self, velocity: Velocity) -> None:
@@ -322,4 +323,4 @@ class DriveModel:
 
 
 def _changes(old: Pose, new: Pose) -> tuple[float, float, float]:
-    return new.x - old.x, new.y - old.y, unwrapped(new.heading - old.heading)
+    return new.x - old.x, new.y - old.y, normalised(new.yaw - old.yaw)

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from jacaros.artifacts.robots.control import Pose, unwrapped
 from jacaros.artifacts.robots.odometry import Odometry
+from jacaros.plane.pose import Pose, normalised
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.message import to_seconds
@@ -42,5 +42,5 @@ class DrivingFrame:
         if told and transform.stamp and told - transform.stamp > OUTDATED:
             return None
         position = transform.apply(odometry.position)
-        heading = unwrapped(odometry.pose.heading + transform.yaw)
+        heading = normalised(odometry.pose.yaw + transform.yaw)
         return replace(odometry, position=position, pose=Pose(position[0], position[1], heading))

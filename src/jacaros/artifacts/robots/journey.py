@@ -6,8 +6,9 @@ Their goals are absolute, so after a rest they continue from wherever the robot 
 import math
 
 from jacaros.artifacts.robots.approach import Outlook, Step, Tolerance
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, bearing, distance, unwrapped
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, bearing, distance
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Turn
+from jacaros.plane.pose import Pose, normalised
 
 ARRIVED = 0.015
 """Metres within which `DriveTo` is at its point."""
@@ -46,7 +47,7 @@ class TurnTo:
 
     def begin(self, pose: Pose) -> None:
         """Choose the shorter side."""
-        self._turn = Turn(unwrapped(self._goal - pose.heading))
+        self._turn = Turn(normalised(self._goal - pose.yaw))
         self._turn.begin(pose)
 
     def command(self, outlook: Outlook) -> Step | None:
@@ -112,10 +113,10 @@ class DriveTo:
         way = distance(pose, self._goal)
         if way <= ARRIVED:
             return None
-        aside = unwrapped(bearing(pose, self._goal.x, self._goal.y) - pose.heading)
+        aside = normalised(bearing(pose, self._goal.x, self._goal.y) - pose.yaw)
         # If the line would end within half a centimetre of the point, the robot counts as facing it.
         aimed = abs(aside) <= AIMED or abs(aside) * way <= 0.005
-        self._part = Straight(way, pose.heading + aside) if aimed else Turn(aside, AIMING)
+        self._part = Straight(way, pose.yaw + aside) if aimed else Turn(aside, AIMING)
         self._part.begin(pose)
         return self._part.command(outlook) or Step(STANDSTILL)
 

@@ -9,16 +9,8 @@ import math
 from typing import ClassVar, Protocol
 
 from jacaros.artifacts.robots.approach import ANGLE, DISTANCE, Approach, Outlook, Step, Tolerance
-from jacaros.artifacts.robots.control import (
-    STANDSTILL,
-    Limits,
-    Line,
-    Pose,
-    Velocity,
-    distance,
-    steer,
-    unwrapped,
-)
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Line, Velocity, distance, steer
+from jacaros.plane.pose import ORIGIN, Pose, normalised
 
 DISPLACED_DISTANCE = 0.02
 """Metres by which a resting robot must be moved to continue from its new position."""
@@ -75,7 +67,7 @@ class Straight:
         self._approach = Approach(DISTANCE)
         self._before = 0.0
         self._along = 0.0
-        self._line = Line(Pose(0.0, 0.0, 0.0), length)
+        self._line = Line(ORIGIN, length)
         self._resting = self._line.start
 
     @property
@@ -93,7 +85,7 @@ class Straight:
 
     def begin(self, pose: Pose) -> None:
         """Lay the line through *pose*."""
-        heading = pose.heading if self._heading is None else self._heading
+        heading = pose.yaw if self._heading is None else self._heading
         self._line = Line(Pose(pose.x, pose.y, heading), self._length)
 
     def command(self, outlook: Outlook) -> Step | None:
@@ -134,7 +126,7 @@ class Turn:
         self._angle = angle
         self._approach = Approach(tolerance)
         self._heading = self._now = 0.0
-        self._resting = Pose(0.0, 0.0, 0.0)
+        self._resting = ORIGIN
 
     @property
     def covered(self) -> float:
@@ -151,15 +143,15 @@ class Turn:
 
     def _remaining(self, pose: Pose) -> float:
         # Headings of a model count full turns.
-        return self._heading + self._angle - pose.heading
+        return self._heading + self._angle - pose.yaw
 
     def begin(self, pose: Pose) -> None:
         """Count the angle from the heading of *pose*."""
-        self._heading = self._now = pose.heading
+        self._heading = self._now = pose.yaw
 
     def command(self, outlook: Outlook) -> Step | None:
         """Continue turning."""
-        self._now = outlook.pose.heading
+        self._now = outlook.pose.yaw
         pulse = self._approach.speed(
             outlook.model.angular,
             outlook,
@@ -170,12 +162,12 @@ class Turn:
 
     def rest(self, pose: Pose) -> None:
         """Store the angle turned so far."""
-        self._now, self._resting = pose.heading, pose
+        self._now, self._resting = pose.yaw, pose
 
     def go_on(self, pose: Pose) -> None:
         """Turn the rest; turns by others in between do not count."""
         if is_displaced(self._resting, pose):
-            self._heading += pose.heading - self._resting.heading
+            self._heading += pose.yaw - self._resting.yaw
 
 
 class Timed:
@@ -188,7 +180,7 @@ class Timed:
         self._velocity = velocity
         self._times = times
         self._given = 0
-        self._start = self._now = Pose(0.0, 0.0, 0.0)
+        self._start = self._now = ORIGIN
 
     @property
     def activity(self) -> str:
@@ -230,5 +222,5 @@ class Timed:
 
 def is_displaced(resting: Pose, pose: Pose) -> bool:
     """Return whether the robot was moved or turned while it rested."""
-    turned = abs(unwrapped(pose.heading - resting.heading))
+    turned = abs(normalised(pose.yaw - resting.yaw))
     return distance(resting, pose) > DISPLACED_DISTANCE or turned > DISPLACED_ANGLE

@@ -11,11 +11,12 @@ from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Pose, Velocity, distance
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, distance
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.maneuver import Maneuver
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions
 from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
+from jacaros.plane.pose import Pose
 from jacaros.ros.backend import Backend
 
 STALE = 0.5

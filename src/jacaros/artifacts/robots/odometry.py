@@ -10,7 +10,8 @@ from jacaros.artifacts.kit.faults import Faults, Header
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.robots.control import Pose, Velocity, heading_of
+from jacaros.artifacts.robots.control import Velocity
+from jacaros.plane.pose import Pose, yaw_of
 from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
 from jacaros.runtime.clock import Clock
@@ -55,7 +56,7 @@ def read_odometry(sample: Sample) -> Odometry:
     q = pose.orientation
     return Odometry(
         position,
-        Pose(position[0], position[1], heading_of(q.x, q.y, q.z, q.w)),
+        Pose(position[0], position[1], yaw_of(q.x, q.y, q.z, q.w)),
         Velocity(float(twist.linear.x), float(twist.angular.z)),
         sample,
     )
@@ -221,4 +222,4 @@ class ArtOdometryOnDemand(ArtOdometry):
 def pose_values(odometry: Odometry) -> tuple[float, float, float]:
     """x and y in metres, heading in degrees."""
     pose = odometry.pose
-    return (pose.x, pose.y, math.degrees(pose.heading))
+    return (pose.x, pose.y, math.degrees(pose.yaw))

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from jacaros.plane.pose import yaw_of
+
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
@@ -24,8 +26,7 @@ class Transform:
     @property
     def yaw(self) -> float:
         """Heading of the rotated x axis in the plane, in radians, counter-clockwise."""
-        x, y, z, w = self.rotation
-        return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        return yaw_of(*self.rotation)
 
     def apply(self, point: Vector) -> Vector:
         """Convert *point* from the source frame to the target frame."""

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated, Final
 
 from jacaros.files.entries import Entry, choice, number, whole
-from jacaros.sim.description import PersonDescription, Pose
+from jacaros.plane.pose import ORIGIN, Pose
+from jacaros.sim.description import PersonDescription
 
 WHEELS: Final = ("wheel_slip", "blocked_wheel")
 """Kinds that affect the wheels of a robot."""
@@ -71,7 +72,7 @@ class Fault:
     action: str = ""
     share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
     wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
-    pose: Pose = field(default=Pose(0.0, 0.0, 0.0))
+    pose: Pose = ORIGIN
     level: float = 0.0
     place: str = ""
     person: PersonDescription | None = None

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from jacaros.files.entries import values
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
-from jacaros.sim.description import PersonDescription, Pose, WorldDescription, WorldError
+from jacaros.plane.pose import Pose
+from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
 from jacaros.sim.faults.description import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
 from jacaros.sim.files.people import read_path
 from jacaros.sim.files.places import place_problem

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterable
 
+from jacaros.plane.pose import Pose
 from jacaros.sim.contact import WallIndex, push_out_rectangle
-from jacaros.sim.description import Pose, RobotDescription, Segment, WorldDescription
+from jacaros.sim.description import RobotDescription, Segment, WorldDescription
 
 _TOUCHING = 0.001
 """Metres that a robot may overlap a wall: the error of a rounded coordinate."""

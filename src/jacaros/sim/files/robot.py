@@ -6,10 +6,11 @@ from dataclasses import replace
 
 from jacaros.files.entries import declared_entries, read, values
 from jacaros.files.yaml import Node
-from jacaros.sim.description import CleaningTool, NavigationSettings, Pose, RobotDescription
+from jacaros.plane.pose import Pose
+from jacaros.plane.trigonometry import radians
+from jacaros.sim.description import CleaningTool, NavigationSettings, RobotDescription
 from jacaros.sim.files.interface import SECTIONS, read_interface
 from jacaros.sim.robot.kinds import KINDS, USUAL
-from jacaros.sim.trigonometry import radians
 
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 

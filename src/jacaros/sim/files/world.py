@@ -14,11 +14,11 @@ from typing import Any
 from jacaros.files.entries import Reader, declared_entries, values
 from jacaros.files.texts import is_file, suggestion
 from jacaros.files.yaml import Node, read_document, read_text, top_keys
+from jacaros.plane.pose import Pose
 from jacaros.sim.description import (
     Dock,
     Door,
     Furniture,
-    Pose,
     Problem,
     Rectangle,
     RobotDescription,

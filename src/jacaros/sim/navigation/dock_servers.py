@@ -4,11 +4,11 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
 from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.frames import ODOMETRY, Frames, FrameUnknown, fault_of, fill_in
-from jacaros.sim.navigation.placement import Placement
 from jacaros.sim.navigation.servers import Execute, Goal, Servers
 
 _DOCK_AT = 0.5

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable
 
+from jacaros.plane.pose import Placement, distance
 from jacaros.sim.description import Dock
 from jacaros.sim.navigation.driver import STOP
 from jacaros.sim.navigation.failure import NavigationFailure
 from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.navigation.planner import GOAL_MARGIN
 from jacaros.sim.navigation.trip import go
 from jacaros.sim.navigation.wheels import PERIOD

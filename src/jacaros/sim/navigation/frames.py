@@ -7,11 +7,11 @@ namespace have it as a prefix (``robot_1/odom``), and its ``robot_1/map`` equals
 import math
 from typing import Any
 
+from jacaros.plane.pose import Placement
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.ros.message import stamp
 from jacaros.sim.navigation.localisation import Localisation
-from jacaros.sim.navigation.placement import Placement
 
 MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
 CAMERA = "camera_optical_frame"

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterable
 
+from jacaros.plane.pose import Placement, Point, distance
 from jacaros.sim.description import Door, Segment
-from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world import World

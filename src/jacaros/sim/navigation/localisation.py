@@ -2,9 +2,9 @@
 
 import math
 
-from jacaros.sim.navigation.placement import Placement, distance
+from jacaros.plane.pose import Placement, distance
+from jacaros.plane.trigonometry import PI, sine_cosine
 from jacaros.sim.robot.robot import Robot
-from jacaros.sim.trigonometry import PI, sine_cosine
 
 PERIOD = 0.5
 """Seconds between two corrections of the odometry."""

@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
+from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.backend import Backend, Sample, Subscription
 from jacaros.sim.navigation.failure import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
 from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.placement import Placement
 from jacaros.sim.navigation.servers import Goal, Servers
 from jacaros.sim.navigation.trip import Progress, go
 from jacaros.sim.navigation.wheels import Overtaken

@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 
+from jacaros.plane.pose import Point, distance
 from jacaros.sim.navigation.failure import (
     GOAL_OCCUPIED,
     GOAL_OUTSIDE_MAP,
@@ -13,7 +14,6 @@ from jacaros.sim.navigation.failure import (
     NavigationFailure,
 )
 from jacaros.sim.navigation.grid import Grid, cheapest_path
-from jacaros.sim.navigation.placement import Point, distance
 
 MARGIN = 0.06
 """Minimum distance in metres of a planned path from walls, in addition to the robot's radius."""

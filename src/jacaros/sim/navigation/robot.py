@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from jacaros.plane.pose import Point
 from jacaros.ros.backend import Backend
 from jacaros.sim.navigation.dock_servers import DockServers
 from jacaros.sim.navigation.docking import Docking
@@ -10,7 +11,6 @@ from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.navigation.nav2_servers import NavigationServers
 from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.placement import Point
 from jacaros.sim.navigation.planner import Planner
 from jacaros.sim.navigation.servers import Servers
 from jacaros.sim.navigation.wheels import Wheels

@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from jacaros.plane.pose import Placement, Point, distance
 from jacaros.sim.navigation.driver import STOP, Route, in_the_way
 from jacaros.sim.navigation.failure import FAILED_TO_MAKE_PROGRESS, NO_VALID_PATH, TIMEOUT, NavigationFailure
 from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.placement import Placement, Point, distance
 from jacaros.sim.navigation.planner import Circle, coordinates
 from jacaros.sim.navigation.wheels import PERIOD, Claim
 

@@ -7,9 +7,9 @@ topics, services and actions of all kinds.
 from collections.abc import Mapping
 from typing import Final
 
+from jacaros.plane.trigonometry import PI, radians
 from jacaros.sim.description import LaserSettings, NavigationSettings, RobotDescription, RobotLimits
 from jacaros.sim.interface import CAMERA, CREATE3, KOBUKI, SONAR, TURTLEBOT3, Interface
-from jacaros.sim.trigonometry import PI, radians
 
 USUAL: Final = "turtlebot"
 

@@ -6,8 +6,9 @@ Odometry is a second pose, integrated from the motion of the wheels, with option
 import math
 import random
 
-from jacaros.sim.description import OdometrySettings, Pose, RobotLimits
-from jacaros.sim.trigonometry import sine_cosine, wrap
+from jacaros.plane.pose import Pose, wrap
+from jacaros.plane.trigonometry import sine_cosine
+from jacaros.sim.description import OdometrySettings, RobotLimits
 
 
 def clamp(value: float, most: float) -> float:

@@ -5,11 +5,12 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from typing import Any
 
+from jacaros.plane.pose import Pose
+from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.contact import WallIndex, push_out, push_out_rectangle
-from jacaros.sim.description import BatterySettings, Dock, Pose, Rectangle, RobotDescription
+from jacaros.sim.description import BatterySettings, Dock, Rectangle, RobotDescription
 from jacaros.sim.ground_truth import RobotState, Sample
 from jacaros.sim.robot.motion import Odometry, advance, ramp
-from jacaros.sim.trigonometry import sine_cosine
 
 STILL_SPEED = 0.02
 """Speed in m/s below which a dock considers a robot at rest."""

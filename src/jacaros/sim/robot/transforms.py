@@ -7,13 +7,13 @@ defaults of Nav2's.
 import math
 from typing import Any
 
+from jacaros.plane.pose import Placement, distance
 from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import QoS
 from jacaros.sim.navigation.frames import BASE, CAMERA, FOOTPRINT, MAP, ODOMETRY, SCAN
 from jacaros.sim.navigation.localisation import FOUND
-from jacaros.sim.navigation.placement import Placement, distance
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.rendering import CAMERA_HEIGHT
 

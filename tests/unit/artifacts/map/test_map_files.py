@@ -9,8 +9,7 @@ from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.map.grids import Grid
 from jacaros.artifacts.map.map_files import MapFileError, load, save
 from jacaros.artifacts.map.slam_data import ArtSlamData
-from jacaros.artifacts.robots.control import Pose
-from jacaros.artifacts.robots.poses import ORIGIN
+from jacaros.plane.pose import ORIGIN, Pose
 
 LABELS = {(0, 0): "free", (1, 0): "free", (2, 0): "wall", (0, 2): "free"}
 """Three columns and rows; any label that is not free is an obstacle."""

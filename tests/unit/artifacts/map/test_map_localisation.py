@@ -5,7 +5,7 @@ import math
 import pytest
 
 from jacaros.artifacts.map.localisation import Localisation
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Pose
 
 
 def test_a_sensor_that_is_late_gets_the_pose_of_its_time() -> None:

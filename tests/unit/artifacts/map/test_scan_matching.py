@@ -5,10 +5,8 @@ import random
 
 import pytest
 
-from jacaros.artifacts.map.occupancy import Point
 from jacaros.artifacts.map.scan_matching import Surfaces, match
-from jacaros.artifacts.robots.control import Pose
-from jacaros.artifacts.robots.poses import followed_by, inverse, transformed
+from jacaros.plane.pose import Point, Pose
 
 
 def room(noise: float = 0.01) -> list[Point]:
@@ -25,8 +23,8 @@ def room(noise: float = 0.01) -> list[Point]:
 
 
 def seen_from(pose: Pose, points: list[Point]) -> list[Point]:
-    back = inverse(pose)
-    return [transformed(back, *point) for point in points]
+    back = pose.inverse()
+    return [back.point(*point) for point in points]
 
 
 def known_room() -> Surfaces:
@@ -38,11 +36,11 @@ def known_room() -> Surfaces:
 @pytest.mark.parametrize("off", [(0.1, 0.0, 0.0), (-0.08, 0.1, 0.05), (0.0, 0.0, -0.09), (0.05, -0.05, 0.08)])
 def test_the_pose_is_found_from_a_guess_that_is_off(off: tuple[float, float, float]) -> None:
     truth = Pose(2.5, 1.2, 0.7)
-    guess = Pose(truth.x + off[0], truth.y + off[1], truth.heading + off[2])
+    guess = Pose(truth.x + off[0], truth.y + off[1], truth.yaw + off[2])
     found = match(known_room(), seen_from(truth, room(0.01)), guess)
     assert found is not None
     assert math.dist(found[:2], truth[:2]) < 0.012
-    assert abs(found.heading - truth.heading) < math.radians(0.4)
+    assert abs(found.yaw - truth.yaw) < math.radians(0.4)
 
 
 def test_along_a_corridor_odometry_is_believed() -> None:
@@ -54,7 +52,7 @@ def test_along_a_corridor_odometry_is_believed() -> None:
     assert found is not None
     assert found.x == pytest.approx(4.8, abs=0.02)
     assert found.y == pytest.approx(0.5, abs=0.01)
-    assert found.heading == pytest.approx(0.0, abs=0.005)
+    assert found.yaw == pytest.approx(0.0, abs=0.005)
 
 
 def test_without_anything_known_nothing_is_found() -> None:
@@ -71,9 +69,3 @@ def test_some_points_of_something_new_do_not_move_the_pose() -> None:
     found = match(known_room(), seen_from(truth, room() + new), truth)
     assert found is not None
     assert math.dist(found[:2], truth[:2]) < 0.015
-
-
-def test_poses_can_be_composed_and_separated() -> None:
-    pose = Pose(1.0, -2.0, 2.5)
-    back = followed_by(pose, inverse(pose))
-    assert (back.x, back.y, back.heading) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
-from jacaros.artifacts.robots.control import Pose
-from jacaros.artifacts.robots.poses import ORIGIN
+from jacaros.plane.pose import ORIGIN, Pose
 
 
 def message(ranges: list[float], increment: float = math.pi / 2.0) -> SimpleNamespace:

@@ -8,7 +8,7 @@ from jacaros.artifacts.map.cells import Cell
 from jacaros.artifacts.map.frontiers import around, frontier, nearest
 from jacaros.artifacts.map.inflation import inflated
 from jacaros.artifacts.map.legs import Leg, next_leg
-from jacaros.artifacts.robots.control import Pose
+from jacaros.plane.pose import Pose
 
 
 def read(rows: list[str], sign: str = ".") -> set[Cell]:

@@ -7,8 +7,9 @@ import pytest
 
 from jacaros.artifacts.robots import approach
 from jacaros.artifacts.robots.approach import Approach, NotMoving, Outlook, Tolerance, Unsettled, pulse_for
-from jacaros.artifacts.robots.control import Limits, Line, Pose, Velocity, steer
+from jacaros.artifacts.robots.control import Limits, Line, Velocity, steer
 from jacaros.artifacts.robots.drive_model import DriveModel
+from jacaros.plane.pose import Pose
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)
 TOLERANCE = Tolerance(0.005, 0.02)

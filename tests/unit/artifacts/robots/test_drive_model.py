@@ -5,10 +5,11 @@ import random
 
 import pytest
 
-from jacaros.artifacts.robots.control import Limits, Pose, Velocity
+from jacaros.artifacts.robots.control import Limits, Velocity
 from jacaros.artifacts.robots.drive_model import DriveModel, DriveQuality
 from jacaros.artifacts.robots.filtering import Filtered
 from jacaros.artifacts.robots.response import SHARES, Axis, ramp, vertex
+from jacaros.plane.pose import Pose
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)
 STEP = 0.01
@@ -126,7 +127,7 @@ def test_the_predicted_pose_is_where_the_robot_is_when_a_command_takes_effect(de
         shown = (plant.wanted[:], plant.pose, plant.velocity, plant.steps)
         plant.wait(plant.model.delay)
         assert plant.pose[:2] == pytest.approx(pose[:2], abs=0.03)
-        assert plant.pose.heading == pytest.approx(pose.heading, abs=0.08)
+        assert plant.pose.yaw == pytest.approx(pose.yaw, abs=0.08)
         assert plant.velocity.linear == pytest.approx(velocity.linear, abs=0.06)
         assert plant.velocity.angular == pytest.approx(velocity.angular, abs=0.25)
         assert shown[3] < plant.steps

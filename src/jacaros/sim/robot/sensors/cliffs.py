@@ -7,11 +7,11 @@ computed without subscribers.
 from collections.abc import Mapping
 from typing import Any, Final
 
+from jacaros.plane.trigonometry import radians, sine_cosine
 from jacaros.ros.message import constant
 from jacaros.sim.description import Rectangle
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.robot import Robot
-from jacaros.sim.trigonometry import radians, sine_cosine
 
 _SENSORS: Final[Mapping[str, float]] = {"LEFT": 60.0, "CENTER": 0.0, "RIGHT": -60.0}
 """Bearings of a Kobuki's cliff sensors, in degrees from straight ahead."""

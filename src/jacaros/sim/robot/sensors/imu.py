@@ -1,7 +1,7 @@
 """The inertial measurement unit (IMU) at a robot's centre."""
 
+from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.robot.on_graph import RobotOnGraph
-from jacaros.sim.trigonometry import sine_cosine
 
 GRAVITY = 9.80665
 """Acceleration measured upwards at rest, in m/s²."""

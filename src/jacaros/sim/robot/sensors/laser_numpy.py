@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy
 
+from jacaros.plane.trigonometry import PI, TWO_PI, sine_cosine
 from jacaros.sim.description import Segment
 from jacaros.sim.robot.sensors.laser_plain import Beams, Circle
-from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 
 class WallArrays:

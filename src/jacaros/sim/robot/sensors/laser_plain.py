@@ -8,8 +8,8 @@ ranges themselves are computed with ``+ - * /`` and square roots.
 import math
 from collections.abc import Iterable
 
+from jacaros.plane.trigonometry import PI, TWO_PI, sine_cosine
 from jacaros.sim.description import LaserSettings, Segment
-from jacaros.sim.trigonometry import PI, TWO_PI, sine_cosine
 
 Circle = tuple[float, float, float]
 """A round obstacle: centre and radius, in metres."""

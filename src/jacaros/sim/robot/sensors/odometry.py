@@ -1,7 +1,7 @@
 """The odometry of a robot, from the motion of its wheels."""
 
+from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.robot.on_graph import RobotOnGraph
-from jacaros.sim.trigonometry import sine_cosine
 
 # Fields are assigned one by one: at 20 messages per second this is five times as fast as nested messages made from
 # keywords, which would cost more than the steps of the world.

@@ -5,10 +5,10 @@ The original JaCaROS receives this topic from a vision program.
 
 from collections.abc import Iterator
 
+from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, WIDTH
-from jacaros.sim.trigonometry import sine_cosine
 
 RANGE = 4.0
 """Distance up to which objects are recognised, in metres."""

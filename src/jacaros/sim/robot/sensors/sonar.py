@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterable
 
+from jacaros.plane.trigonometry import radians, sine_cosine
 from jacaros.ros.message import constant
 from jacaros.sim.description import Segment
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.laser_plain import Circle
-from jacaros.sim.trigonometry import radians, sine_cosine
 
 FIELD = radians(30.0)
 """Width of the cone, in radians."""

@@ -6,7 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from jacaros.sim.trigonometry import PI, radians, sine_cosine, wrap
+from jacaros.plane.pose import wrap
+from jacaros.plane.trigonometry import PI, radians, sine_cosine
 
 DIGITS = 10**70
 

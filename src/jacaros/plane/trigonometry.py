@@ -42,13 +42,6 @@ def sine_cosine(angle: float) -> tuple[float, float]:
     return -cosine, sine
 
 
-def wrap(angle: float) -> float:
-    """Return the same direction in the range from -pi (included) to pi (excluded), in radians."""
-    if -PI <= angle < PI:
-        return angle
-    return angle - TWO_PI * math.floor((angle + PI) / TWO_PI)
-
-
 def radians(degrees: float) -> float:
     """Convert degrees to radians, with one multiplication and one division."""
     return degrees * PI / 180.0
