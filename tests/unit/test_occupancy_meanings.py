@@ -9,6 +9,7 @@ import pytest
 from jacaros.artifacts.map import map_files
 from jacaros.artifacts.map.cells import FREE, OBSTACLE
 from jacaros.artifacts.map.grids import Grid
+from jacaros.files import maps
 from jacaros.inspector.map_drawing import map_drawing
 from jacaros.sim import World
 from jacaros.sim.files.map import map_of_world, read_map
@@ -62,4 +63,4 @@ def test_both_writers_state_thresholds_with_which_unknown_cells_stay_unknown(tmp
         assert key in text.splitlines()
         assert key in written.splitlines()
     loaded = map_files.load(tmp_path / "agents.yaml").grid
-    assert list(loaded.occupancy) == [0, -1, 100]
+    assert list(loaded.cells) == [maps.FREE, maps.UNKNOWN, maps.OCCUPIED]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from io import BytesIO
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from jacaros.files.texts import LARGEST, close_matches, file_bytes
 from jacaros.files.yaml import Node
@@ -147,6 +147,16 @@ CELLS: Final = bytes(
 )
 """What the occupancy of a cell (percent) means: the thresholds of both ``map_saver``; negative numbers count from 256."""
 
+
+def meanings(data: Any) -> bytes:
+    """Return what the cells of a ``nav_msgs/msg/OccupancyGrid`` mean: int8 arrays of client libraries without a loop."""
+    try:
+        view = memoryview(data)
+    except TypeError:
+        return bytes(value & 255 for value in data).translate(CELLS)
+    return (view.tobytes() if view.itemsize == 1 else bytes(value & 255 for value in data)).translate(CELLS)
+
+
 BLACK, WHITE, GREY = 0, 254, 205
 """Pixels of occupied, free and unknown cells in a written map."""
 
@@ -172,7 +182,7 @@ class MapHeader:
         image: path of the image, relative to the file; empty after a mistake.
         resolution: side of a pixel, in metres.
         origin: x and y (metres) and heading (radians) of the lower left corner.
-        occupancy: percent occupied for each of the 256 values of a pixel, or -1 (unknown).
+        cells: what each of the 256 values of a pixel means.
         places: x and y by name, in metres.
     """
 
@@ -180,8 +190,13 @@ class MapHeader:
     image: str
     resolution: float
     origin: tuple[float, float, float]
-    occupancy: tuple[int, ...]
+    cells: bytes
     places: Mapping[str, tuple[float, float]]
+
+    def read(self, image: GreyImage) -> bytes:
+        """Return what the cells of the image mean, in rows from the bottom."""
+        meant, width = image.pixels.translate(self.cells), image.width
+        return b"".join(meant[row * width : (row + 1) * width] for row in reversed(range(image.height)))
 
 
 def read_header(document: Node) -> MapHeader:
@@ -196,7 +211,7 @@ def read_header(document: Node) -> MapHeader:
         nodes["image"].text() if "image" in nodes else "",
         nodes["resolution"].number(0.001, 10.0, 1.0) if "resolution" in nodes else 1.0,
         _origin(nodes["origin"]) if "origin" in nodes else (0.0, 0.0, 0.0),
-        _occupancy(nodes),
+        _cells(nodes),
         {name.text(): place.pair() for name, place in places},
     )
 
@@ -208,7 +223,7 @@ def _origin(node: Node) -> tuple[float, float, float]:
     return (numbers[0], numbers[1], numbers[2]) if len(numbers) == 3 else (0.0, 0.0, 0.0)
 
 
-def _occupancy(nodes: Mapping[str, Node]) -> tuple[int, ...]:
+def _cells(nodes: Mapping[str, Node]) -> bytes:
     inverted = "negate" in nodes and _truth(nodes["negate"])
     raw = "mode" in nodes and nodes["mode"].choice("trinary", "scale", "raw") == "raw"
     occupied = nodes["occupied_thresh"].number(0.0, 1.0, 0.65) if "occupied_thresh" in nodes else 0.65
@@ -219,13 +234,11 @@ def _occupancy(nodes: Mapping[str, Node]) -> tuple[int, ...]:
             "free pixels are the bright ones: write 0.25 and 0.65",
         )
 
-    def percent(pixel: int) -> int:
-        if raw:
-            return pixel if pixel <= 100 else -1
+    def meaning(pixel: int) -> int:
         dark = (pixel if inverted else 255 - pixel) / 255
-        return 100 if dark > occupied else 0 if dark < free else -1
+        return OCCUPIED if dark > occupied else FREE if dark < free else UNKNOWN
 
-    return tuple(percent(pixel) for pixel in range(256))
+    return CELLS if raw else bytes(map(meaning, range(256)))
 
 
 def _truth(node: Node) -> bool:

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from jacaros.files.maps import CELLS
+from jacaros.files.maps import meanings
 from jacaros.plane.pose import Point, Pose
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.files.map import OccupancyMap
@@ -25,7 +25,7 @@ def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
     only outlines, because boxes are axis-aligned.
     """
     info = message.info
-    cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, _bytes_of(message.data).translate(CELLS))
+    cells = OccupancyMap(1.0, 0.0, 0.0, info.width, info.height, meanings(message.data))
     size = float(info.resolution)
     origin = Pose.of(info.origin)
 
@@ -42,12 +42,3 @@ def map_drawing(message: Any, name: str = "") -> dict[str, Any]:
     xs, ys = [x for x, _ in corners], [y for _, y in corners]
     bounds = Rectangle(min(xs), min(ys), max(xs), max(ys))
     return WorldDescription(name, bounds, tuple(walls), tuple(boxes), robots=()).drawing()
-
-
-def _bytes_of(data: Any) -> bytes:
-    """Return the cells as bytes, negative ones from 255 down: int8 arrays of client libraries, without a loop."""
-    try:
-        view = memoryview(data)
-    except TypeError:
-        return bytes(value & 255 for value in data)
-    return view.tobytes() if view.itemsize == 1 else bytes(value & 255 for value in data)

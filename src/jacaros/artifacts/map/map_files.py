@@ -95,8 +95,5 @@ def load(file: Path) -> Saved:
         raise MapFileError(f"cannot read the map `{file}`: {error}; {error.help}") from None
     except (OSError, ValueError, JacarosError) as error:
         raise MapFileError(f"cannot read the map `{file}`: {error}") from None
-    width, rows = image.width, range(image.height - 1, -1, -1)
-    occupancy = [
-        header.occupancy[shade] for row in rows for shade in image.pixels[row * width : (row + 1) * width]
-    ]
-    return Saved(Grid(header.resolution, width, Pose(*header.origin), occupancy), header.places)
+    grid = Grid(header.resolution, image.width, Pose(*header.origin), header.read(image))
+    return Saved(grid, header.places)

@@ -11,7 +11,6 @@ from pathlib import Path
 
 from jacaros.files.maps import (
     BLACK,
-    CELLS,
     FREE,
     KEYS,
     OCCUPIED,
@@ -192,9 +191,7 @@ def _map(header: MapHeader, folder: Path) -> OccupancyMap | None:
     image = _image(header.nodes["image"], folder / header.image) if header.image else None
     if image is None:
         return None
-    meant = image.pixels.translate(bytes(CELLS[percent & 255] for percent in header.occupancy))
-    rows = [meant[row * image.width : (row + 1) * image.width] for row in range(image.height)]
-    return OccupancyMap(header.resolution, x_min, y_min, image.width, image.height, b"".join(reversed(rows)))
+    return OccupancyMap(header.resolution, x_min, y_min, image.width, image.height, header.read(image))
 
 
 def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[float, float] | None:

@@ -9,6 +9,7 @@ from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.map.grids import Grid
 from jacaros.artifacts.map.map_files import MapFileError, load, save
 from jacaros.artifacts.map.slam_data import ArtSlamData
+from jacaros.files.maps import meanings
 from jacaros.plane.pose import ORIGIN, Pose
 
 LABELS = {(0, 0): "free", (1, 0): "free", (2, 0): "wall", (0, 2): "free"}
@@ -39,7 +40,7 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
         "image: room.pgm\nresolution: 1\norigin: [2.0, 3.0, 0.0]\nnegate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
         encoding="utf-8",
     )
-    assert load(tmp_path / "room.yaml").grid == Grid(1.0, 2, Pose(2.0, 3.0, 0.0), [100, 0])
+    assert load(tmp_path / "room.yaml").grid == Grid(1.0, 2, Pose(2.0, 3.0, 0.0), meanings([100, 0]))
 
 
 @pytest.mark.parametrize(
@@ -70,11 +71,11 @@ def test_a_map_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path, te
 
 
 def test_cells_of_another_size_are_obstacles_if_some_of_them_is() -> None:
-    occupancy = [0, 0, 100, 0, 0, -1, 50, 0]
-    assert Grid(0.5, 4, Pose(-0.5, -0.5, 0.0), occupancy).labels(1.0) == {(0, 0): "free", (1, 0): "obstacle"}
-    turned = Grid(1.0, 2, Pose(0.5, -0.5, 1.5707963267948966), [0, 100])
+    cells = meanings([0, 0, 100, 0, 0, -1, 50, 0])
+    assert Grid(0.5, 4, Pose(-0.5, -0.5, 0.0), cells).labels(1.0) == {(0, 0): "free", (1, 0): "obstacle"}
+    turned = Grid(1.0, 2, Pose(0.5, -0.5, 1.5707963267948966), meanings([0, 100]))
     assert turned.labels(1.0) == {(0, 0): "free", (0, 1): "obstacle"}
-    assert Grid(1.0, 1, ORIGIN, []).labels(1.0) == {}
+    assert Grid(1.0, 1, ORIGIN, b"").labels(1.0) == {}
 
 
 def test_an_agent_saves_its_map_and_another_loads_it(tmp_path: Path) -> None:
