@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from jacaros.plane.path import DIAGONAL, cheapest_path
 from jacaros.plane.pose import distance
 from jacaros.sim import World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
@@ -20,7 +21,7 @@ from jacaros.sim.navigation.failure import (
     START_OUTSIDE_MAP,
     NavigationFailure,
 )
-from jacaros.sim.navigation.grid import DIAGONAL, REACH, RESOLUTION, Grid, cheapest_path
+from jacaros.sim.navigation.grid import REACH, RESOLUTION, Grid
 from jacaros.sim.navigation.planner import MARGIN, Planner
 
 RADIUS = 0.17

@@ -1,12 +1,11 @@
 """The shortest route over free cells, and the direction of its first step."""
 
-import heapq
 import math
-from collections.abc import Collection, Iterator
+from collections import defaultdict
+from collections.abc import Collection
 
 from jacaros.artifacts.map.cells import Cell
-
-_DIAGONAL = math.sqrt(2.0)
+from jacaros.plane.path import cheapest_path
 
 
 def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
@@ -16,57 +15,20 @@ def route(free: Collection[Cell], start: Cell, goal: Cell) -> list[Cell] | None:
     free. If several routes are shortest, the result is the same each time.
 
     Args:
-        free: cells that may be entered; a set, for speed.
+        free: cells that may be entered.
         start: first cell of the route.
         goal: last cell of the route.
 
     Returns:
         All cells from start to goal, inclusive; None if there is no route.
     """
-    open_cells: list[tuple[float, float, Cell]] = [(_octile(start, goal), 0.0, start)]
-    costs = {start: 0.0}
-    came_from: dict[Cell, Cell] = {}
-    while open_cells:
-        _, cost, cell = heapq.heappop(open_cells)
-        if cell == goal:
-            return _way(came_from, goal)
-        if cost > costs[cell]:
-            continue
-        for neighbour, length in _steps(free, cell, start, goal):
-            better = cost + length
-            if better < costs.get(neighbour, math.inf) - 1e-9:
-                costs[neighbour] = better
-                came_from[neighbour] = cell
-                heapq.heappush(open_cells, (better + _octile(neighbour, goal), better, neighbour))
-    return None
-
-
-def _steps(free: Collection[Cell], cell: Cell, start: Cell, goal: Cell) -> Iterator[tuple[Cell, float]]:
-    def passable(candidate: Cell) -> bool:
-        return candidate in free or candidate in (start, goal)
-
-    x, y = cell
-    for dx in (-1, 0, 1):
-        for dy in (-1, 0, 1):
-            if (dx, dy) == (0, 0) or not passable((x + dx, y + dy)):
-                continue
-            if dx and dy:
-                if passable((x + dx, y)) and passable((x, y + dy)):
-                    yield (x + dx, y + dy), _DIAGONAL
-            else:
-                yield (x + dx, y + dy), 1.0
-
-
-def _octile(a: Cell, b: Cell) -> float:
-    dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
-    return max(dx, dy) + (_DIAGONAL - 1.0) * min(dx, dy)
-
-
-def _way(came_from: dict[Cell, Cell], goal: Cell) -> list[Cell]:
-    way = [goal]
-    while way[-1] in came_from:
-        way.append(came_from[way[-1]])
-    return way[::-1]
+    cells = {*free, start, goal}
+    left = min(cells)[0] - 1
+    width = max(cells)[0] - left + 2
+    weights = defaultdict(float, {y * width + x - left: 1.0 for x, y in cells})
+    begin, end = (y * width + x - left for x, y in (start, goal))
+    path = cheapest_path(weights, width, begin, end, cuts_corners=False)
+    return None if path is None else [(cell % width + left, cell // width) for cell in path]
 
 
 _COMPASS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")

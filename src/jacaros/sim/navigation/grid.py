@@ -1,11 +1,6 @@
-"""The map of a robot: the distance of every cell of the floor from the nearest wall.
+"""The map of a robot: the distance of every cell of the floor from the nearest wall."""
 
-A* finds the cheapest path between two cells, with eight neighbours per cell.
-"""
-
-import heapq
 import math
-from collections.abc import Sequence
 
 from jacaros.sim.description import Segment, WorldDescription
 
@@ -129,61 +124,3 @@ class Grid:
             for row in range(1, self.height - 1)
             for column in range(1, self.width - 1)
         ]
-
-
-DIAGONAL = math.sqrt(2.0)
-
-
-def cheapest_path(weights: Sequence[float], width: int, start: int, goal: int) -> list[int] | None:
-    """Find the cheapest path.
-
-    Args:
-        weights: cost per metre in each cell: 1 or more, or 0 for blocked cells; the outermost cells must be 0.
-        width: columns of the grid.
-        start, goal: cells; the start can be a blocked cell.
-
-    Returns:
-        The cells from start to goal, both included; None if there is no path. A step costs its length (in cells) times the
-        weight of its second cell. Among equally cheap paths, the result is always the same.
-    """
-    if not weights[goal]:
-        return None
-    steps = (
-        (1, 1.0), (-1, 1.0), (width, 1.0), (-width, 1.0),
-        (width + 1, DIAGONAL), (width - 1, DIAGONAL), (1 - width, DIAGONAL), (-1 - width, DIAGONAL),
-    )  # fmt: skip
-    goal_row, goal_column = divmod(goal, width)
-    costs = {start: 0.0}
-    origins: dict[int, int] = {}
-    done: set[int] = set()
-    waiting = [(0.0, start)]
-    while waiting:
-        _, cell = heapq.heappop(waiting)
-        if cell == goal:
-            return _back(origins, start, goal)
-        if cell in done:
-            continue
-        done.add(cell)
-        cost_here = costs[cell]
-        for offset, length in steps:
-            near = cell + offset
-            weight = weights[near]
-            if not weight or near in done:
-                continue
-            cost = cost_here + length * weight
-            if cost < costs.get(near, math.inf):
-                costs[near] = cost
-                origins[near] = cell
-                row, column = divmod(near, width)
-                dx, dy = abs(column - goal_column), abs(row - goal_row)
-                short, long = (dx, dy) if dx < dy else (dy, dx)
-                heapq.heappush(waiting, (cost + long + (DIAGONAL - 1.0) * short, near))
-    return None
-
-
-def _back(origins: dict[int, int], start: int, goal: int) -> list[int]:
-    path = [goal]
-    while path[-1] != start:
-        path.append(origins[path[-1]])
-    path.reverse()
-    return path

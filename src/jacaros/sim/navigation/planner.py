@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 
+from jacaros.plane.path import cheapest_path
 from jacaros.plane.pose import Point, distance
 from jacaros.sim.navigation.failure import (
     GOAL_OCCUPIED,
@@ -13,7 +14,7 @@ from jacaros.sim.navigation.failure import (
     START_OUTSIDE_MAP,
     NavigationFailure,
 )
-from jacaros.sim.navigation.grid import Grid, cheapest_path
+from jacaros.sim.navigation.grid import Grid
 
 MARGIN = 0.06
 """Minimum distance in metres of a planned path from walls, in addition to the robot's radius."""
