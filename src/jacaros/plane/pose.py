@@ -129,6 +129,15 @@ def distance(a: Point, b: Point) -> float:
     return math.sqrt(dx * dx + dy * dy)
 
 
+def clamp(value: float, most: float) -> float:
+    """Limit the magnitude of *value* to *most*."""
+    if value > most:
+        return most
+    if value < -most:
+        return -most
+    return value
+
+
 def roll_of(x: float, y: float, z: float, w: float) -> float:
     """Return the rotation of a unit quaternion about the x axis."""
     return math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))

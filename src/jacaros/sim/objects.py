@@ -6,7 +6,6 @@ They block neither robots nor lasers; only grippers touch them.
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.description import Door, ObjectDescription, Segment
 from jacaros.sim.robot.robot import Robot
 
@@ -38,9 +37,7 @@ class Thing:
         """Position of its centre, in metres."""
         if self.carrier is None:
             return self._place
-        sine, cosine = sine_cosine(self.carrier.yaw)
-        ahead = self.carrier.description.radius + _BEFORE
-        return self.carrier.x + ahead * cosine, self.carrier.y + ahead * sine
+        return self.carrier.placement.point(self.carrier.description.radius + _BEFORE, 0.0)
 
     def lie(self) -> None:
         """Stay at the current position."""
@@ -74,11 +71,11 @@ class Objects:
 
     def before(self, robot: Robot) -> Thing | None:
         """Return the nearest object within a robot's reach, at most 45 degrees to the left or right of straight ahead."""
-        sine, cosine = sine_cosine(robot.yaw)
+        frame = robot.placement
         nearest, least = None, robot.description.gripper_reach * robot.description.gripper_reach
         for each in self.by_name.values():
             dx, dy = each.place[0] - robot.x, each.place[1] - robot.y
-            ahead, left = cosine * dx + sine * dy, cosine * dy - sine * dx
+            ahead, left = frame.local(*each.place)
             near = each.carrier is None and abs(left) <= ahead and dx * dx + dy * dy <= least
             if near and not self._behind_door(robot, *each.place):
                 nearest, least = each, dx * dx + dy * dy

@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from jacaros.plane.pose import Pose, normalised
+from jacaros.plane.pose import Pose, clamp, normalised
 
 
 class Velocity(NamedTuple):
@@ -64,11 +64,6 @@ class Line:
     def remaining(self, pose: Pose) -> float:
         """Return the remaining distance from *pose*, in signed metres."""
         return self.length - self.along(pose)
-
-
-def clamp(value: float, limit: float) -> float:
-    """Return *value*, limited to [-limit, limit]."""
-    return max(-limit, min(limit, value))
 
 
 def distance(a: Pose, b: Pose) -> float:

@@ -10,10 +10,10 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, clamp
+from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.filtering import Filtered
 from jacaros.artifacts.robots.response import HELD, LAGS, TICK, WINDOW, Axis, ramp, vertex
-from jacaros.plane.pose import Pose, normalised
+from jacaros.plane.pose import Pose, clamp, normalised
 
 LONGEST_PENDING = 3.0
 """Seconds of commands that may be on the way; without odometry, poses are made up anyway."""

@@ -7,7 +7,7 @@ ago. Speeds are in metres or radians per second, times in seconds.
 import math
 from collections import deque
 
-from jacaros.artifacts.robots.control import clamp
+from jacaros.plane.pose import clamp
 
 TICK = 0.025
 """Seconds between two states of the simulated candidates."""

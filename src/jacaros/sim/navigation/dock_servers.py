@@ -174,10 +174,9 @@ class DockServers:
         return {"pose": pose}
 
     def _pose(self) -> Any:
-        odometry = self._navigator.robot.odometry
         return fill_in(
             self._backend.message("geometry_msgs/msg/PoseStamped"),
-            Placement.at(odometry.x, odometry.y, odometry.yaw),
+            self._navigator.robot.odometry.placement,
             self.frames.prefix + ODOMETRY,
             self._navigator.time.now(),
         )

@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from jacaros.plane.pose import Placement, Point, distance
+from jacaros.plane.pose import Placement, Point, clamp, distance
 from jacaros.sim.description import RobotLimits
 from jacaros.sim.navigation.planner import Circle, Planner
-from jacaros.sim.robot.motion import clamp
 
 
 class Route:

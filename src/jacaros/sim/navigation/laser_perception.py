@@ -36,7 +36,7 @@ class LaserPerception:
         world = self._world
         if self._reach <= 0.0 or not (len(world.robots) > 1 or world.people or world.obstacles.by_name):
             return []
-        true, seen = self._true(), []
+        true, seen = self._robot.placement, []
         for x, y, radius in self._world.others(self._robot):
             if self._sees(x, y, self._world.segments):
                 seen.append((*believed.point(*true.local(x, y)), radius))
@@ -51,7 +51,7 @@ class LaserPerception:
             others = [wall for wall in self._world.segments if wall is not door.segment]
             if any(self._sees(*point, others) for point in _points(door)[1:-1]):
                 (self._closed.discard if self._world.doors[door.name] else self._closed.add)(door.name)
-        true = self._true()
+        true = self._robot.placement
         return {
             door.name: [(*believed.point(*true.local(*point)), _LEAF) for point in _points(door)]
             for door in doors
@@ -60,14 +60,11 @@ class LaserPerception:
 
     def covers(self, place: Point, believed: Placement) -> bool:
         """Return whether the robot sees a place on its map, or what occupies it."""
-        return self._sees(*self._true().point(*believed.local(*place)), self._world.segments)
+        return self._sees(*self._robot.placement.point(*believed.local(*place)), self._world.segments)
 
     def forget(self) -> None:
         """Forget the doors that were closed."""
         self._closed.clear()
-
-    def _true(self) -> Placement:
-        return Placement.at(self._robot.x, self._robot.y, self._robot.yaw)
 
     def _sees(self, x: float, y: float, walls: Iterable[Segment]) -> bool:
         dx, dy = x - self._robot.x, y - self._robot.y

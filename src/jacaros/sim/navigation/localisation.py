@@ -45,7 +45,7 @@ class Localisation:
             return
         self._next = time + PERIOD
         self.variances = FOUND
-        found = self._truth().then(self._odometry().inverse())
+        found = self._robot.placement.then(self._robot.odometry.placement.inverse())
         known = self.map_to_odom
         # Rounding errors must not move a robot with exact odometry.
         if max(abs(a - b) for a, b in zip(found, known, strict=True)) > _SAME:
@@ -56,28 +56,20 @@ class Localisation:
 
         If the true pose is within that accuracy (at least `SURE`), the next correction finds it.
         """
-        truth = self._truth()
+        truth = self._robot.placement
         apart = distance((place.x, place.y), (truth.x, truth.y))
         alike = place.cosine * truth.cosine + place.sine * truth.sine
         _, least_alike = sine_cosine(min(PI, max(SURE, turn)))
         self.lost = apart > max(SURE, radius) or alike < least_alike
-        self.map_to_odom = place.then(self._odometry().inverse())
+        self.map_to_odom = place.then(self._robot.odometry.placement.inverse())
         self.variances = ((0.5 * radius) ** 2, (0.5 * turn) ** 2)
         self._next = time + PERIOD
 
     def pose(self) -> Placement:
         """Return the estimated pose on the map."""
-        return self.map_to_odom.then(self._odometry())
+        return self.map_to_odom.then(self._robot.odometry.placement)
 
     def belief(self, time: float) -> Placement:
         """Return the estimate at *time* (seconds of the world) without updating it, for observers."""
         due = time >= self._next and not self.lost and self._robot.put_downs == self._put_downs
-        return self._truth() if due else self.pose()
-
-    def _truth(self) -> Placement:
-        robot = self._robot
-        return Placement.at(robot.x, robot.y, robot.yaw)
-
-    def _odometry(self) -> Placement:
-        odometry = self._robot.odometry
-        return Placement.at(odometry.x, odometry.y, odometry.yaw)
+        return self._robot.placement if due else self.pose()

@@ -3,14 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 
-from jacaros.plane.pose import Placement, Point, distance, wrap
+from jacaros.plane.pose import Placement, Point, clamp, distance, wrap
 from jacaros.sim.description import Dock
 from jacaros.sim.navigation.driver import STOP, Command, Driver, Pace
 from jacaros.sim.navigation.laser_perception import LaserPerception
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.navigation.planner import Circle, Planner
 from jacaros.sim.navigation.wheels import PERIOD, Claim, Wheels
-from jacaros.sim.robot.motion import clamp
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.world_time import WorldTime
 

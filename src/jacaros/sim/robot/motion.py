@@ -6,18 +6,9 @@ Odometry is a second pose, integrated from the motion of the wheels, with option
 import math
 import random
 
-from jacaros.plane.pose import Pose, wrap
+from jacaros.plane.pose import Placement, Pose, clamp, wrap
 from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.description import OdometrySettings, RobotLimits
-
-
-def clamp(value: float, most: float) -> float:
-    """Limit the magnitude of *value* to *most*."""
-    if value > most:
-        return most
-    if value < -most:
-        return -most
-    return value
 
 
 def approach(now: float, wanted: float, most: float) -> float:
@@ -75,6 +66,11 @@ class Odometry:
         self.x, self.y, self.yaw = (0.0, 0.0, 0.0) if settings.from_start else start
         self.rolled = self.turned = 0.0
         self._draw = random.Random(seed).random
+
+    @property
+    def placement(self) -> Placement:
+        """The estimated pose, with the cosine and sine of the heading."""
+        return Placement.at(self.x, self.y, self.yaw)
 
     def step(self, distance: float, turn: float) -> None:
         """Add *distance* metres and *turn* radians made by the wheels in one step."""

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from typing import Any
 
-from jacaros.plane.pose import Pose
+from jacaros.plane.pose import Placement, Pose
 from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.contact import WallIndex, push_out, push_out_rectangle
 from jacaros.sim.description import BatterySettings, Dock, Rectangle, RobotDescription
@@ -65,6 +65,11 @@ class Robot:
     def pose(self) -> Pose:
         """The true pose."""
         return Pose(self.x, self.y, self.yaw)
+
+    @property
+    def placement(self) -> Placement:
+        """The same, with the cosine and sine of the heading."""
+        return Placement.at(self.x, self.y, self.yaw)
 
     @property
     def fed(self) -> bool:
@@ -193,9 +198,7 @@ class Robot:
 
     def side(self, towards_x: float, towards_y: float) -> str:
         """Return the side of the robot that faces a direction of the world: front, back, left or right."""
-        sine, cosine = sine_cosine(self.yaw)
-        ahead = towards_x * cosine + towards_y * sine
-        left = towards_y * cosine - towards_x * sine
+        ahead, left = Placement.at(0.0, 0.0, self.yaw).local(towards_x, towards_y)
         if abs(ahead) >= abs(left):
             return "front" if ahead > 0.0 else "back"
         return "left" if left > 0.0 else "right"

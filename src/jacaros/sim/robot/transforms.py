@@ -56,8 +56,7 @@ class RobotTransforms:
             return
         self._publish_static()
         self._localisation.update(self._time.world.time)
-        odometry = self._robot.odometry
-        moved = self._transform(ODOMETRY, FOOTPRINT, Placement.at(odometry.x, odometry.y, odometry.yaw))
+        moved = self._transform(ODOMETRY, FOOTPRINT, self._robot.odometry.placement)
         corrected = self._transform(MAP, ODOMETRY, self._localisation.map_to_odom)
         publisher.publish(publisher.message(transforms=[moved, corrected]))
 

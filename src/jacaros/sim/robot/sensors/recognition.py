@@ -5,7 +5,6 @@ The original JaCaROS receives this topic from a vision program.
 
 from collections.abc import Iterator
 
-from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.navigation.laser_perception import hidden
 from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, WIDTH
@@ -30,12 +29,10 @@ class ObjectRecognition:
         publisher.publish(publisher.message(perception=list(self._in_view())))
 
     def _in_view(self) -> Iterator[str]:
-        robot = self._robot
-        sine, cosine = sine_cosine(robot.yaw)
+        robot, frame = self._robot, self._robot.placement
         for each in self._world.objects.by_name.values():
             x, y = each.place
-            ahead = cosine * (x - robot.x) + sine * (y - robot.y)
-            left = cosine * (y - robot.y) - sine * (x - robot.x)
+            ahead, left = frame.local(x, y)
             in_image = 0.0 < ahead <= RANGE and abs(left) * FOCAL_LENGTH <= 0.5 * WIDTH * ahead
             if in_image and not hidden(self._world.segments, robot.x, robot.y, x, y):
                 yield f"{each.name},{ahead:.2f},{left:.2f},0.00"
