@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.recording import Recording
-from jacaros.sim.description import Pose
+from jacaros.plane.pose import Pose
 from jacaros.sim.ground_truth import RobotState
 
 _STYLE = """
