@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 
     FindType = Callable[[str], type[Artifact]]
 
-_MAKES: Final = "makeArtifact"
-_USES: Final = frozenset({"use_artifact", "create_artifact"})
-"""Goals of the artifact library with the same arguments."""
 _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
 """Actions that add artifacts of other systems."""
 
@@ -41,81 +38,28 @@ _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
 """Methods that add operations at run time."""
 
 
-class _NotCertain(Exception):
-    """The operations of the project's artifacts are not known before it runs."""
-
-
 def check_actions(
-    deployment: Deployment, programs: Sequence[tuple[AgentSpec, nodes.Program]], find_type: "FindType"
-) -> list[Diagnostic]:
-    """Return warnings about unknown operations and unknown types of artifacts.
+    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
+) -> Iterator[Diagnostic]:
+    """Return warnings about operations that no artifact has.
 
     Args:
-        deployment: the project.
         programs: the agents with their programs, including included files.
-        find_type: finds the project's artifact types.
+        types: the types of all artifacts of the project.
     """
-    found = [(agent, list(_steps(program))) for agent, program in programs]
-    makes = [make for _, program in programs for make in _makes(program)]
-    warnings = list(_unknown_types(makes, find_type))
-    try:
-        if any(_is_open(program) for _, program in programs):
-            return warnings
-        offered = _Offered(_types(deployment, makes, find_type))
-    except _NotCertain:
-        return warnings
-    if any(step.functor in _OPEN_WORLD for _, steps in found for step in steps):
-        return warnings
-    for agent, steps in found:
+    if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
+        return
+    offered = _Offered(types)
+    for agent, program in programs:
         if not agent.agent_class:
-            warnings += filter(None, map(offered.diagnose, steps))
-    return warnings
+            yield from filter(None, map(offered.diagnose, _steps(program)))
 
 
 def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
     """Return the actions in the plans of a program."""
-    return _actions(*clauses_of(program))
-
-
-def _actions(*roots: object) -> Iterator[nodes.Literal]:
-    for node in walk(*roots):
+    for node in walk(*clauses_of(program)):
         if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
             yield node.action
-
-
-def _makes(program: nodes.Program) -> Iterator[nodes.Literal]:
-    """Return the steps ``makeArtifact(Name,Type,...)`` of a program, and its goals for library plans that create
-    artifacts.
-    """
-    library = [plan for plan in program.plans if _is_of_library(plan)]
-    offered = _goals(plan.trigger.literal for plan in library)
-    own = [plan for plan in program.plans if not _is_of_library(plan)]
-    posted = [*program.goals, *(node.goal for node in walk(*own) if isinstance(node, nodes.Achieve))]
-    yield from (action for action in _actions(*own) if action.functor == _MAKES)
-    wanted = [goal for goal in posted if isinstance(goal, nodes.Literal) and goal.functor in _USES]
-    yield from (goal for goal in wanted if (goal.functor, len(goal.arguments)) in offered)
-    used = _goals(posted)
-    for plan in library:
-        head = plan.trigger.literal
-        if isinstance(head, nodes.Literal) and (head.functor, len(head.arguments)) in used:
-            goals = (node.goal for node in walk(plan.body) if isinstance(node, nodes.Achieve))
-            for goal in goals:
-                # A variable is a parameter of the plan: the goal names the type.
-                if isinstance(goal, nodes.Literal) and goal.functor in _USES and _type_of(goal) is not None:
-                    yield goal
-
-
-def _goals(literals: Iterable[object]) -> set[tuple[str, int]]:
-    return {(each.functor, len(each.arguments)) for each in literals if isinstance(each, nodes.Literal)}
-
-
-def _is_of_library(plan: nodes.Plan) -> bool:
-    return plan.span is not None and plan.span.file.name.startswith("$")
-
-
-def artifact_types(program: nodes.Program) -> list[str]:
-    """Return the artifact types that a program names."""
-    return [name for make in _makes(program) if (name := _type_of(make)) is not None]
 
 
 def _is_open(program: nodes.Program) -> bool:
@@ -126,56 +70,6 @@ def _is_open(program: nodes.Program) -> bool:
         if isinstance(node, nodes.Literal) and node.functor == _FAKE:
             return True
     return False
-
-
-def _type_of(action: nodes.Literal) -> str | None:
-    """Return the type in ``makeArtifact(Name,Type,...)`` or in such a goal; None if it is computed at run time."""
-    if len(action.arguments) < 2:
-        return None
-    wanted = action.arguments[1]
-    if isinstance(wanted, nodes.String):
-        return wanted.value
-    if isinstance(wanted, nodes.Literal) and not wanted.arguments:
-        return wanted.functor
-    return None
-
-
-def _unknown_types(makes: Sequence[nodes.Literal], find_type: "FindType") -> Iterator[Diagnostic]:
-    for action in makes:
-        name = _type_of(action)
-        if name is None:
-            continue
-        try:
-            find_type(name)
-        except UnknownArtifactType as unknown:
-            span = action.arguments[1].span
-            yield Diagnostic("warning", str(unknown), span, code="unknown-artifact-type")
-        except Exception:
-            # The module has an error, which a run reports.
-            continue
-
-
-def _types(
-    deployment: Deployment, makes: Sequence[nodes.Literal], find_type: "FindType"
-) -> "list[type[Artifact]]":
-    """Return all artifact types of the project.
-
-    Raises:
-        _NotCertain: not all of them are known.
-    """
-    names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
-    for action in makes:
-        name = _type_of(action)
-        if name is None:
-            raise _NotCertain
-        names.append(name)
-    try:
-        types = [find_type(name) for name in dict.fromkeys(names)]
-    except Exception as error:
-        raise _NotCertain from error
-    if any(map(_offers_more, types)):
-        raise _NotCertain
-    return types
 
 
 def _offers_more(artifact_type: "type[Artifact]") -> bool:
@@ -195,7 +89,7 @@ def _offers_more(artifact_type: "type[Artifact]") -> bool:
 class _Offered:
     """The operations that the artifacts of a project offer to agents."""
 
-    def __init__(self, types: "list[type[Artifact]]") -> None:
+    def __init__(self, types: "Sequence[type[Artifact]]") -> None:
         self._types = types
         self._main = Environment(VirtualClock()).workspace("/main")
         self._personal = frozenset(keys())
@@ -234,19 +128,41 @@ class _Place(NamedTuple):
     of_library: bool = False
 
 
-_MAKING: Final = tuple(_Place("makeArtifact", arity, 1) for arity in (2, 3, 4))
+_MAKING: Final = tuple(_Place("makeArtifact", arity, 1, of_library=True) for arity in (2, 3, 4))
+
+
+class _NamedType(NamedTuple):
+    name: str
+    term: nodes.Term
+    of_library: bool
+    """Whether it is an argument of an action or of a goal of a library, which is certainly a type."""
+
+
+def unknown_types(programs: Iterable[nodes.Program], find_type: "FindType") -> Iterator[Diagnostic]:
+    """Return warnings about artifact types that programs name but that do not exist."""
+    for program in programs:
+        for named in _named_types(program)[0]:
+            if not named.of_library:
+                continue
+            try:
+                find_type(named.name)
+            except UnknownArtifactType as unknown:
+                yield Diagnostic("warning", str(unknown), named.term.span, code="unknown-artifact-type")
+            except Exception:
+                # The module has an error, which a run reports.
+                continue
 
 
 def made_types(
-    deployment: Deployment, programs: Sequence[nodes.Program], find_type: "Callable[[str], type[Artifact]]"
+    deployment: Deployment, programs: Sequence[nodes.Program], find_type: "FindType"
 ) -> "list[type[Artifact]] | None":
     """Return the types of all artifacts of a project; None if they are not known before it runs."""
     names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
     for program in programs:
-        made = type_names(program)
-        if made is None:
+        named, certain = _named_types(program)
+        if not certain:
             return None
-        names += made
+        names += [each.name for each in named]
     try:
         return [find_type(name) for name in dict.fromkeys(names)]
     except Exception:
@@ -254,34 +170,47 @@ def made_types(
         return None
 
 
-def type_names(program: nodes.Program) -> list[str] | None:
-    """Return the types that a program creates artifacts of; None if some are computed at run time."""
+def artifact_types(program: nodes.Program) -> list[str]:
+    """Return the artifact types that a program names."""
+    return [each.name for each in _named_types(program)[0]]
+
+
+def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
+    """Return the types that a program creates artifacts of, and whether it creates no others at run time.
+
+    A type may be the argument of a goal whose plan creates the artifact.
+    """
     uses = list(_uses(program))
-    if any(literal.functor in _OPEN_WORLD for literal, _ in uses):
-        return None
-    names: list[str] = []
+    posted = {_key(literal) for literal, plan in uses if not _is_of_library(plan)}
+    certain = not any(literal.functor in _OPEN_WORLD for literal, _ in uses)
+    named: list[_NamedType] = []
     places = list(_MAKING)
     for place in places:  # the list grows while it is iterated
         found = [each for each in uses if _key(each[0]) == (place.functor, place.arity)]
-        if not found and place not in _MAKING and not place.of_library:
-            return None  # the goal comes from outside
+        certain &= bool(found) or place.of_library  # other goals come from outside
         for literal, plan in found:
             wanted = literal.arguments[place.argument]
-            if isinstance(wanted, nodes.String):
-                names.append(wanted.value)
-            elif isinstance(wanted, nodes.Literal) and not wanted.arguments:
-                names.append(wanted.functor)
-            else:
-                given = _given_by_goal(wanted, plan)
-                if given is None:
-                    return None
-                if given not in places:
-                    places.append(given)
-    return names
+            name = _type_of(wanted)
+            if name is not None:
+                if plan is None or not _is_of_library(plan) or _key(plan.trigger.literal) in posted:
+                    named.append(_NamedType(name, wanted, place.of_library))
+                continue
+            given = _given_by_goal(wanted, plan)
+            certain &= given is not None
+            if given is not None and given not in places:
+                places.append(given)
+    return named, certain
 
 
-def _key(literal: nodes.Literal) -> tuple[str, int]:
-    return literal.functor, len(literal.arguments)
+def _type_of(wanted: nodes.Term) -> str | None:
+    """Return the type that a term names; None if it is computed at run time."""
+    if isinstance(wanted, nodes.String):
+        return wanted.value
+    return wanted.functor if isinstance(wanted, nodes.Literal) and not wanted.arguments else None
+
+
+def _key(literal: nodes.Literal | nodes.Variable) -> tuple[str, int]:
+    return (literal.functor, len(literal.arguments)) if isinstance(literal, nodes.Literal) else ("", 0)
 
 
 def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
@@ -304,6 +233,9 @@ def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None
         return None
     for number, argument in enumerate(goal.arguments):
         if isinstance(argument, nodes.Variable) and argument.name == wanted.name:
-            is_library = plan.span is not None and plan.span.file.name.startswith("$")
-            return _Place(goal.functor, len(goal.arguments), number, is_library)
+            return _Place(*_key(goal), number, _is_of_library(plan))
     return None
+
+
+def _is_of_library(plan: nodes.Plan | None) -> bool:
+    return plan is not None and plan.span is not None and plan.span.file.name.startswith("$")

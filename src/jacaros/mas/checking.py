@@ -220,7 +220,7 @@ def _of_artifacts(
     """Return the errors in the artifacts of a project, and in what its agents do with them."""
     # Imported on demand: programs without artifacts do not need them.
     from jacaros.artifacts.registry import type_finder
-    from jacaros.mas.action_check import check_actions, made_types
+    from jacaros.mas.action_check import check_actions, made_types, unknown_types
     from jacaros.mas.environment import types_of
     from jacaros.mas.need_check import check_needs
 
@@ -237,11 +237,11 @@ def _of_artifacts(
         return [Diagnostic("error", str(error), code="wrong-project")]
     except ProjectError as error:
         return [_of_project(each) for each in error.diagnostics]
-    told = check_actions(deployment, programs, find_type)
     trees = [program for _, program in programs]
+    told = list(unknown_types(trees, find_type))
     types = made_types(deployment, trees, find_type)
     if types is not None:
-        told += check_needs(trees, types)
+        told += [*check_actions(programs, types), *check_needs(trees, types)]
     return [each for each in told if not _is_of_wrong_mapping(each, folders)]
 
 

@@ -192,6 +192,7 @@ def test_operations_are_checked_in_a_project_for_jaca(folder: Path, architecture
         'makeArtifact("c", "Counter", [], Id); focus(Id)',
         '!use_artifact("c", "Counter")',
         '!use_artifact("c", "Counter", [5])',
+        '!made("c", "Counter"); !done.\n+!made(Name, Type) <- makeArtifact(Name, Type).\n+!done <- focusWhenAvailable("c")',
     ],
 )
 def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> None:
