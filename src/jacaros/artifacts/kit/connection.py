@@ -9,6 +9,7 @@ from contextlib import suppress
 from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
+from jacaros.files.texts import did_you_mean
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents, TopicInfo, latching
@@ -173,11 +174,10 @@ class MissingTopic:
     def _report_missing(self, contents: GraphContents) -> None:
         topic = self._subscription.topic
         near = contents.near_topics(topic, message_type(self._type_name), "publishers")
-        means = " or ".join(f"`{name}`" for name in near)
         self._log(
             f"no publisher on topic {topic} ({self._type_name}); still listening"
             + (
-                f"\n  help: did you mean {means}? `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
+                f"\n  help: {did_you_mean(near)} `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
                 if near
                 else "; is the node that publishes it running?"
             )
