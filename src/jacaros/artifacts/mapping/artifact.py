@@ -5,48 +5,37 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
-from jacaros.artifacts.env.artifact import internal_operation
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import text
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.checking import type_problems
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingError, MappingFile, Place
+from jacaros.artifacts.mapping.declared import MappingError, MappingFile
 from jacaros.artifacts.mapping.deriving import Derivation
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameUpdater
-from jacaros.artifacts.mapping.host import Elements, Tap
+from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
 from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
 from jacaros.artifacts.mapping.type_search import TypeSearch
-from jacaros.files.yaml import Problem, shown
-from jacaros.ros.backend import TopicEvent, TopicTrouble
-from jacaros.ros.names import frame_name
 
 
-class MappedArtifact(RosArtifact):
+class MappedArtifact(Host):
     """An artifact made from a mapping file; `mapped_type` makes a class for each.
 
     Options:
         tf_prefix(P): prefix of frame names, in place of the namespace (including the node's).
         match_timeout(S): how long operations that publish wait for a subscriber (3 s).
         unmatched(W): effect of a missing subscriber: ``warn`` or ``fail``.
-
-    Attributes:
-        mapping: the file.
-        part: the declaration of this artifact.
     """
 
     known_options: ClassVar[Mapping[str, Callable[[object], object]]] = {"tf_prefix": text, **MATCH_OPTIONS}
-    mapping: ClassVar[MappingFile]
-    part: ClassVar[ArtifactPart]
 
     def open(self) -> None:
         """Check the mapping against the types of this middleware, and open everything."""
+        super().open()
         for folder in self.part.interfaces:
             self.ros.add_interfaces(folder)
         problems = type_problems(self.part, self.ros)
@@ -55,18 +44,10 @@ class MappedArtifact(RosArtifact):
             self.fail(str(error), "wrong_mapping", self.mapping.file)
         if self.part.connected is not False and "watch_connection" not in self.options:
             self.options = {**self.options, "watch_connection": self.part.connected}
-        self._reported: set[object] = set()
-        self._notes: dict[str, tuple[object, ...]] = {}
-        self._followers: dict[str, list[Callable[[Values], None]]] = {}
-        self.readings: dict[str, Reading] = {}
-        self.elements: dict[str, Elements] = {}
         self.own_parameters = self._declare_parameters()
-        self.taps: dict[str, list[Tap]] = {}
-        self.derivations = {
-            each.name: Derivation(self, each, each.spec)
-            for each in self.part.derived
-            if each.spec is not None
-        }
+        for each in self.part.derived:
+            if each.spec is not None:
+                Derivation(self, each, each.spec)
         search = TypeSearch(self)
         self.operating = Operations(self)
         topics: dict[object, TopicMultiplexer] = {}
@@ -97,103 +78,6 @@ class MappedArtifact(RosArtifact):
             error = MappingError(self.mapping.file, self.mapping.text, problems)
             self.fail(str(error), "wrong_mapping", self.mapping.file)
         return own
-
-    @property
-    def robot_prefix(self) -> str:
-        """Prefix of relative names: from ``makeArtifact``, or else from the file."""
-        given = super().robot_prefix
-        return given or (f"/{self.part.namespace}" if self.part.namespace else "")
-
-    @property
-    def tf_prefix(self) -> str:
-        """Prefix of frame names."""
-        given = self.options.get("tf_prefix", self.part.tf_prefix)
-        if given is not None:
-            return str(given).strip("/")
-        return self.frame_prefix
-
-    def frame(self, name: str) -> str:
-        """Return the name of a frame in the graph."""
-        return frame_name(name, self.tf_prefix)
-
-    def adapted(self, field: str, value: object) -> object:
-        """Adapt a constant for the field of a message: frame names get their prefix."""
-        if field in ("frame_id", "child_frame_id") and isinstance(value, str):
-            return self.frame(value)
-        return value
-
-    # ---- properties
-
-    def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
-        """Return the reading of a property, also for operations that refresh it."""
-        made = self.readings[name] = self.reading(name, policy, *initial)
-        return made
-
-    def annotate(self, name: str, notes: tuple[object, ...]) -> None:
-        """Set the annotations that the property *name* gets when it is shown next."""
-        if notes or name in self._notes:
-            self._notes[name] = notes
-
-    def follow_property(self, name: str, follower: Callable[[Values], None]) -> None:
-        """Call *follower* with the values of the property *name* whenever it is shown."""
-        self._followers.setdefault(name, []).append(follower)
-
-    def _show_values(self, name: str, values: Values) -> None:
-        notes = self._notes.get(name)
-        if self.has_property(name):
-            self.update_property(name, *values, annotations=notes)
-        else:
-            self.define_property(name, *values, annotations=notes)
-        for follower in self._followers.get(name, ()):
-            follower(values)
-
-    @internal_operation
-    def show_rows(self, name: str) -> None:
-        """Update the properties of the elements *name*."""
-        self.elements[name].show()
-
-    @internal_operation
-    def show_derived(self, name: str) -> None:
-        """Update the derived property *name*."""
-        self.derivations[name].show()
-
-    @internal_operation
-    def send_signals(self, name: str, rows: object) -> None:
-        """Send one signal for each tuple of values."""
-        assert isinstance(rows, list)
-        for values in rows:
-            self.signal(name, *values)
-
-    @internal_operation
-    async def run_process(self, process: object) -> None:
-        """Run a long-running process for as long as the artifact exists."""
-        assert callable(process)
-        await process()  # pyright: ignore[reportGeneralTypeIssues]
-
-    # ---- log
-
-    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None:
-        """Log a problem with the line of the mapping, the first time only."""
-        if key in self._reported:
-            return
-        self._reported.add(key)
-        self.report([place.problem(message, help)])
-
-    def report(self, problems: list[Problem]) -> None:
-        """Log problems."""
-        lines = self.mapping.text.splitlines()
-        for problem in problems:
-            self.log(shown(self.mapping.file, lines, problem))
-
-    def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
-        """Return a callback that logs each kind of problem of a topic once."""
-
-        def report(event: TopicEvent) -> None:
-            weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
-            help = "write qos: sensor_data, which is compatible with any publisher" if weak else ""
-            self.report_once((topic, event.trouble), place, event.text, help)
-
-        return report
 
 
 class TunedArtifact(MappedArtifact):

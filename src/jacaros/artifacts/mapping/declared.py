@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path as FilePath
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from jacaros.artifacts.streams.declarations import ReadingPolicy, Spec
 from jacaros.files.yaml import Problem, YamlFileError
@@ -414,7 +414,7 @@ class OperationPart:
     feedback: tuple[TopicPart, ...] = ()
     code: FieldPart | None = None
     aborted: tuple[FieldPart, ...] = ()
-    suspend: str = "cancel"
+    suspend: Literal["go_on", "cancel", "pause"] = "cancel"
     pause: Written = NOTHING
     resume: Written = NOTHING
     node: str = ""

@@ -113,7 +113,7 @@ class Derivation:
         host, name = self._host, self._part.name
         self._pending.append(values if kind == SHOW else None)
         if len(self._pending) == 1:
-            host.start(host.show_derived, name, cause=self._cause)
+            host.start(host.show_property, name, self.show, cause=self._cause)
         for tap in host.taps.get(name, ()):
             tap(self._latest, None if kind == HIDE else values, self._cause)
 

@@ -1,135 +1,132 @@
-"""The interface of a mapped artifact for its parts."""
+"""The mapped artifact, as its parts use it."""
 
-from collections.abc import Awaitable, Callable, Mapping
-from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
+from collections.abc import Callable
+from typing import ClassVar
 
-from jacaros.artifacts.env.execution import OperationExecution
-from jacaros.artifacts.kit.connection import Matching
-from jacaros.artifacts.kit.faults import Faults
+from jacaros.artifacts.env.artifact import internal_operation
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
-from jacaros.artifacts.mapping.rows import Row
-from jacaros.files.yaml import Problem
-from jacaros.ros.action import ActionClient
-from jacaros.ros.backend import Backend, Client, Publisher, Sample, Subscription, TopicEvent
-from jacaros.ros.qos import QoS
-from jacaros.runtime.clock import Clock
+from jacaros.files.yaml import Problem, shown
+from jacaros.ros.backend import TopicEvent, TopicTrouble
+from jacaros.ros.names import frame_name
 from jacaros.runtime.trace import Cause
-
-T = TypeVar("T")
 
 Tap = Callable[[float, Values | None, Cause | None], None]
 """Called for each message of a property or signal with its stamp (0: none), values (None: it ended) and cause."""
 
 
-class Elements(Protocol):
-    """The properties of the elements of an array."""
+class Host(RosArtifact):
+    """The base class of `jacaros.artifacts.mapping.artifact.MappedArtifact`, which is built from the parts.
 
-    def take(self, rows: list[Row], cause: Cause | None) -> None:
-        """Take the elements of a message."""
-
-    def show(self) -> None:
-        """Bring the properties up to date."""
-
-
-class Host(Protocol):
-    """A mapped artifact, such as `jacaros.artifacts.mapping.artifact.MappedArtifact`.
-
-    It is a protocol so that the parts need not know the class that is built from them.
+    Attributes:
+        mapping: the file.
+        part: the declaration of this artifact.
+        readings: the properties that operations refresh, by name.
+        taps: called with the messages of properties and signals, by their names.
     """
 
-    name: str
-    clock: Clock
-    readings: dict[str, Reading]
-    elements: dict[str, Elements]
-    taps: dict[str, list[Tap]]
     mapping: ClassVar[MappingFile]
     part: ClassVar[ArtifactPart]
 
-    @property
-    def show_rows(self) -> Callable[..., object]: ...
-    @property
-    def show_derived(self) -> Callable[..., object]: ...
-    @property
-    def send_signals(self) -> Callable[..., object]: ...
-    @property
-    def run_process(self) -> Callable[..., object]: ...
-    @property
-    def report_bad_message(self) -> Callable[..., object]: ...
-    @property
-    def ros(self) -> Backend: ...
-    @property
-    def robot_prefix(self) -> str: ...
-    @property
-    def current(self) -> OperationExecution: ...
+    def open(self) -> None:
+        """Begin without any parts."""
+        self.readings: dict[str, Reading] = {}
+        self.taps: dict[str, list[Tap]] = {}
+        self._reported: set[object] = set()
+        self._notes: dict[str, tuple[object, ...]] = {}
+        self._followers: dict[str, list[Callable[[Values], None]]] = {}
 
-    def robot_topic(self, name: str) -> str: ...
-    def frame(self, name: str) -> str: ...
-    def adapted(self, field: str, value: object) -> object: ...
-    def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher: ...
-    def matching_of(
-        self,
-        publisher: Publisher,
-        timeout: float | None = ...,
-        unmatched: str | None = ...,
-        warn: Callable[[str, str], None] | None = ...,
-    ) -> Matching: ...
-    def client(self, service: str, type_name: str) -> Client: ...
-    def action_client(self, name: str, type_name: str) -> ActionClient: ...
-    def subscription(
-        self,
-        topic: str,
-        type_name: str,
-        callback: Callable[[Sample], None],
-        qos: QoS = ...,
-        on_event: Callable[[TopicEvent], None] | None = ...,
-    ) -> Subscription: ...
-    def faults_at(self, topic: str) -> Faults: ...
-    def at_dispose(self, closing: Callable[[], None]) -> None: ...
+    @property
+    def robot_prefix(self) -> str:
+        """Prefix of relative names: from ``makeArtifact``, or else from the file."""
+        given = super().robot_prefix
+        return given or (f"/{self.part.namespace}" if self.part.namespace else "")
 
-    def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading: ...
-    def annotate(self, name: str, notes: tuple[object, ...]) -> None: ...
-    def follow_property(self, name: str, follower: Callable[[Values], None]) -> None: ...
-    def has_untaken(self, name: str) -> bool: ...
-    def has_property(self, name: str, *values: object) -> bool: ...
-    def define_property(
-        self, name: str, *values: object, annotations: tuple[object, ...] | None = None
-    ) -> None: ...
-    def update_property(
-        self,
-        name: str,
-        *values: object,
-        annotations: tuple[object, ...] | None = None,
-        if_new: bool = False,
-        where: tuple[object, ...] = (),
-    ) -> None: ...
-    def remove_property(self, name: str, *values: object) -> None: ...
+    @property
+    def tf_prefix(self) -> str:
+        """Prefix of frame names."""
+        given = self.options.get("tf_prefix", self.part.tf_prefix)
+        if given is not None:
+            return str(given).strip("/")
+        return self.frame_prefix
 
-    def start(
-        self, operation: str | Callable[..., object], *arguments: object, cause: Cause | None = None
-    ) -> None: ...
-    def step(self, awaitable: Awaitable[T]) -> Awaitable[T]: ...
-    def sleep(self, delay: float) -> Awaitable[None]: ...
-    def pause_point(self, on_pause: Callable[[], None] | None = None) -> Awaitable[float]: ...
-    def newest(self, reading: Reading, missing: str) -> Awaitable[Values]: ...
-    def refresh(self, name: str, reading: Reading, missing: str) -> Awaitable[None]: ...
-    def call(self, client: Client, timeout: float, /, **fields: Any) -> Awaitable[Any]: ...
-    def act(
-        self,
-        client: ActionClient,
-        goal: Mapping[str, Any],
-        *,
-        timeout: float | None = None,
-        on_feedback: Callable[[Any], None] | None = None,
-        under_way: Callable[[bool], None] | None = None,
-        suspend: Any = ...,
-        pause: Callable[[], Awaitable[object] | None] | None = None,
-        resume: Callable[[], Awaitable[object] | None] | None = None,
-        aborted: Callable[[Any], tuple[object, ...]] | None = None,
-    ) -> Awaitable[Any]: ...
-    def fail(self, message: str, functor: str | None = None, *arguments: object) -> NoReturn: ...
-    def log(self, text: str) -> None: ...
+    def frame(self, name: str) -> str:
+        """Return the name of a frame in the graph."""
+        return frame_name(name, self.tf_prefix)
 
-    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None: ...
-    def report(self, problems: list[Problem]) -> None: ...
-    def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]: ...
+    def adapted(self, field: str, value: object) -> object:
+        """Adapt a constant for the field of a message: frame names get their prefix."""
+        if field in ("frame_id", "child_frame_id") and isinstance(value, str):
+            return self.frame(value)
+        return value
+
+    # ---- properties
+
+    def reading_of(self, name: str, policy: ReadingPolicy, *initial: object) -> Reading:
+        """Return the reading of a property, also for operations that refresh it."""
+        made = self.readings[name] = self.reading(name, policy, *initial)
+        return made
+
+    def annotate(self, name: str, notes: tuple[object, ...]) -> None:
+        """Set the annotations that the property *name* gets when it is shown next."""
+        if notes or name in self._notes:
+            self._notes[name] = notes
+
+    def follow_property(self, name: str, follower: Callable[[Values], None]) -> None:
+        """Call *follower* with the values of the property *name* whenever it is shown."""
+        self._followers.setdefault(name, []).append(follower)
+
+    def _show_values(self, name: str, values: Values) -> None:
+        notes = self._notes.get(name)
+        if self.has_property(name):
+            self.update_property(name, *values, annotations=notes)
+        else:
+            self.define_property(name, *values, annotations=notes)
+        for follower in self._followers.get(name, ()):
+            follower(values)
+
+    @internal_operation
+    def show_property(self, name: str, show: object) -> None:
+        """Bring the property *name* up to date, by calling *show*."""
+        del name  # only the log needs it
+        assert callable(show)
+        show()
+
+    @internal_operation
+    def send_signals(self, name: str, rows: object) -> None:
+        """Send one signal for each tuple of values."""
+        assert isinstance(rows, list)
+        for values in rows:
+            self.signal(name, *values)
+
+    @internal_operation
+    async def run_process(self, process: object) -> None:
+        """Run a long-running process for as long as the artifact exists."""
+        assert callable(process)
+        await process()  # pyright: ignore[reportGeneralTypeIssues]
+
+    # ---- log
+
+    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None:
+        """Log a problem with the line of the mapping, the first time only."""
+        if key in self._reported:
+            return
+        self._reported.add(key)
+        self.report([place.problem(message, help)])
+
+    def report(self, problems: list[Problem]) -> None:
+        """Log problems."""
+        lines = self.mapping.text.splitlines()
+        for problem in problems:
+            self.log(shown(self.mapping.file, lines, problem))
+
+    def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
+        """Return a callback that logs each kind of problem of a topic once."""
+
+        def report(event: TopicEvent) -> None:
+            weak = event.trouble is TopicTrouble.INCOMPATIBLE_QOS
+            help = "write qos: sensor_data, which is compatible with any publisher" if weak else ""
+            self.report_once((topic, event.trouble), place, event.text, help)
+
+        return report

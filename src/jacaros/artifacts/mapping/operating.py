@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.artifacts.env.artifact import Out
 from jacaros.artifacts.env.values import Atom, plain
@@ -32,27 +32,6 @@ from jacaros.ros.errors import CapabilityMissing, NameInvalid, ParameterRefused,
 from jacaros.ros.fields import FieldType
 
 
-class Runner(Protocol):
-    """Runs one operation."""
-
-    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Run it within an operation of the artifact."""
-
-
-class Switch(Protocol):
-    """Runs an operation that pauses or resumes the server of a goal."""
-
-    async def ready(self) -> None:
-        """Look up missing types, within an operation of the artifact."""
-
-    async def switch(self) -> None:
-        """Run it, outside of all operations.
-
-        Raises:
-            RosError, OperationFailed: it failed.
-        """
-
-
 class Operations:
     """The operations of one artifact.
 
@@ -62,7 +41,7 @@ class Operations:
 
     def __init__(self, host: Host) -> None:
         parts = host.part.operations
-        self._runners: list[Runner] = [_RUNNERS[part.kind](host, part) for part in parts]
+        self._runners = [_RUNNERS[part.kind](host, part) for part in parts]
         plain = {
             part.name: runner
             for part, runner in zip(parts, self._runners, strict=True)
@@ -71,7 +50,7 @@ class Operations:
         for part, runner in zip(parts, self._runners, strict=True):
             if isinstance(runner, _ActionOperation) and part.suspend == "pause":
                 # The reader has checked that these operations are of the right kind.
-                runner.switches = (plain[part.pause.text], plain[part.resume.text])  # type: ignore[assignment]
+                runner.switches = (plain[part.pause.text], plain[part.resume.text])
 
     async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Run the operation with this index in the file."""
@@ -188,7 +167,7 @@ class _ActionOperation(_RemoteOperation):
         self._under_way = 0
         self._code: Read | None = None
         self._aborted: list[Read] = []
-        self.switches: tuple[Switch, Switch] | tuple[()] = ()
+        self.switches: tuple[_ServiceOperation | _SetParameter, ...] = ()
         super().__init__(host, part)
 
     def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:

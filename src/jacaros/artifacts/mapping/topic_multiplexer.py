@@ -109,6 +109,7 @@ class Updater:
         self._host = host
         self._extract: Extract | None = None
         self._reading: Reading | None = None
+        self._elements: Elements | None = None
         self._faults: Faults | None = None
         self._sent: dict[object, tuple[object, ...]] = {}
         self._held: tuple[list[Row], Cause | None] | None = None
@@ -117,7 +118,7 @@ class Updater:
         self._latched = False
         host.at_dispose(self._end_pause)
         if part.each is not None and not part.signal:
-            host.elements[part.name] = Elements(host, part)
+            self._elements = Elements(host, part)
         elif not part.signal:
             self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
         self._view = self._range_of_view()
@@ -191,8 +192,10 @@ class Updater:
     def _show(self, rows: list[Row], cause: Cause | None) -> None:
         if self.part.signal:
             self._signal(rows, cause)
+        elif self._elements is not None:
+            self._elements.take(rows, cause)
         elif self._reading is None:
-            self._host.elements[self.part.name].take(rows, cause)
+            return
         elif rows:
             self._host.annotate(self.part.name, rows[0].annotations)
             self._reading.take(rows[0].values, cause)
@@ -301,7 +304,7 @@ class Elements:
 
     def _deliver(self, values: tuple[object, ...], cause: Cause | None) -> None:
         self._coming = True
-        self._host.start(self._host.show_rows, self._part.name, cause=cause)
+        self._host.start(self._host.show_property, self._part.name, self.show, cause=cause)
 
     def show(self) -> None:
         """Update the properties, within an operation."""

@@ -5,10 +5,10 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import Matching
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, distance
@@ -17,7 +17,6 @@ from jacaros.artifacts.robots.maneuver import Maneuver
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions
 from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
 from jacaros.plane.pose import Pose
-from jacaros.ros.backend import Backend
 
 STALE = 0.5
 """Seconds after which the newest odometry is too old to drive by; the robot stops until more arrives."""
@@ -66,35 +65,26 @@ class MotionSettings:
     timeout: float | None
 
 
-class Wheels(Protocol):
+class Wheels(RosArtifact):
     """The artifact that drives, as used by a motion."""
 
-    clock: Any
     motions: Motions
     matching: Matching
     odometer: Odometer
     model: DriveModel
     settings: MotionSettings
 
-    @property
-    def ros(self) -> Backend:
-        """The graph."""
-
-    @property
-    def current(self) -> Any:
-        """The running operation."""
-
     def command(self, velocity: Velocity) -> None:
         """Publish a velocity command."""
+        raise NotImplementedError
 
     def interrupted(self, why: Structure | Atom) -> None:
         """Signal that the robot was not watched for a while."""
+        raise NotImplementedError
 
     def show(self, motion: "Motion", state: str | None) -> None:
         """Show the state of the motion to observers; None: it has ended."""
-
-    async def step(self, awaitable: Any) -> Any:
-        """Release the artifact while waiting."""
+        raise NotImplementedError
 
 
 class Motion:

@@ -4,11 +4,12 @@ The arbiter of resources (`jacaros.artifacts.resources.arbiter`) decides which o
 """
 
 import asyncio
-from collections.abc import Awaitable, Callable
-from typing import Any, Protocol, Self
+from collections.abc import Callable
+from typing import Self
 from weakref import WeakKeyDictionary
 
 from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import Velocity
 from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.ros.backend import Backend
@@ -120,23 +121,6 @@ class Aborted(Exception):
     """Raised in a motion that was aborted."""
 
 
-class Mover(Protocol):
-    """The artifact of a motion, as used by `Driving`."""
-
-    clock: Any
-
-    @property
-    def ros(self) -> Backend:
-        """The graph."""
-
-    @property
-    def current(self) -> Any:
-        """The running operation."""
-
-    def step(self, awaitable: Any) -> Awaitable[Any]:
-        """Release the artifact while waiting."""
-
-
 class Driving:
     """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
 
@@ -152,7 +136,7 @@ class Driving:
 
     def __init__(
         self,
-        mover: Mover,
+        mover: RosArtifact,
         motions: Motions,
         use: str,
         stop: Callable[[], None],

@@ -11,10 +11,9 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.kit.connection import MATCH_OPTIONS, Matching
+from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.drift import LOCALISED, Drift
@@ -22,8 +21,8 @@ from jacaros.artifacts.robots.drive_model import DriveModel
 from jacaros.artifacts.robots.driving_frame import DrivingFrame
 from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
 from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
-from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings
-from jacaros.artifacts.robots.motion_claim import Motions, motions_of
+from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings, Wheels
+from jacaros.artifacts.robots.motion_claim import motions_of
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
 from jacaros.artifacts.robots.quality_file import read_quality, write_quality
 from jacaros.ros.errors import CapabilityMissing
@@ -44,7 +43,7 @@ STATES = ("driving", "turning", "waiting", "paused")
 """States of a motion, by precedence: the property ``moving`` shows one of them."""
 
 
-class WheeledArtifact(RosArtifact):
+class WheeledArtifact(Wheels):
     """An artifact whose operations drive a robot with `perform`.
 
     Options:
@@ -105,11 +104,6 @@ class WheeledArtifact(RosArtifact):
     command_topic: ClassVar[str] = "cmd_vel"
     further_uses: ClassVar[tuple[str, ...]] = (WHEELS,)
 
-    motions: Motions
-    matching: Matching
-    odometer: Odometer
-    model: DriveModel
-    settings: MotionSettings
     newest_pose: Reading
 
     def init(self, *arguments: object) -> None:
