@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
-from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.act import Services, SpeechAct
 from jacaros.agents.terms.text import text
 from jacaros.artifacts.env import ports
 from jacaros.artifacts.env.artifact import Artifact
@@ -20,7 +20,6 @@ from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest, 
 from jacaros.artifacts.env.ports import OnMade, OnOutcome, UnderWay, ignore_made
 from jacaros.artifacts.env.property import ObservableProperty, Observation, Observer, Signal
 from jacaros.artifacts.env.values import Atom, Out, Structure
-from jacaros.mas.directory import Services
 from jacaros.mas.system import System
 from jacaros.runtime.trace import Cause
 
@@ -465,7 +464,7 @@ class RemoteAgents:
 
 
 class RemoteServices:
-    """The directory facilitator of the other side, with a copy of what it knows: `jacaros.mas.directory.Services`."""
+    """The directory facilitator of the other side, with a copy of what it knows: a `Services`."""
 
     def __init__(self, cable: Cable) -> None:
         self._cable = cable

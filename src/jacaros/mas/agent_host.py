@@ -1,19 +1,21 @@
 """The host of a mind in its run (Jason's agent architecture)."""
 
-from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Iterable
 from random import Random
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.agents.language.nodes import Literal
-from jacaros.agents.mind.state.act import NEEDS, Act, Completion, SpeechAct, Timer
+from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, Timer
 from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.values import String, Term, atom, functor
 from jacaros.mas.console import Console
 from jacaros.mas.coroutines import Coroutines, Ended
-from jacaros.mas.directory import Services
 from jacaros.mas.idleness import Activity, AgentTimer
 from jacaros.mas.scheduler import Scheduler
 from jacaros.runtime.clock import Clock
+
+if TYPE_CHECKING:
+    from jacaros.agents.body.body import AgentBody
 
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
@@ -54,26 +56,7 @@ class HostedMind(Protocol):
         """Receive the announcement that the run ends after this time."""
 
 
-class Body(Protocol):
-    """Runs the actions of an agent (`jacaros.agents.body.body.AgentBody`)."""
-
-    def act(self, act: Act) -> None:
-        """Begin an action."""
-
-    def cancel_act(self, act_id: int) -> None:
-        """Cancel an action."""
-
-    def suspend_act(self, act_id: int) -> None:
-        """Pause the operation of an action, if it is pausable."""
-
-    def resume_act(self, act_id: int) -> None:
-        """Let it continue."""
-
-    def close(self) -> None:
-        """Cancel all actions and stop focusing."""
-
-
-class Run(Protocol):
+class Run(AgentSystem, Protocol):
     """What a host needs of its run."""
 
     clock: Clock
@@ -81,15 +64,8 @@ class Run(Protocol):
     activity: Activity
     console: Console
 
-    @property
-    def services(self) -> Services:
-        """The directory facilitator."""
-
     def deliver(self, message: SpeechAct) -> bool:
         """Deliver a message. Return False if the receiver is unknown."""
-
-    def agent_names(self) -> Sequence[str]:
-        """Return the names of all agents, in the order of creation."""
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
@@ -100,29 +76,8 @@ class Run(Protocol):
     def out_of_memory(self, name: str) -> None:
         """End the run after a `MemoryError` of an agent."""
 
-    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
-        """Answer a question of an agent about the run so far."""
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create and start an agent. Return its final name, or None after logging the reason."""
-
-    def clone_agent(self, original: str, name: str) -> str | None:
-        """Create an agent with a copy of another's mind. Return its final name, or None after logging the reason."""
-
-    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        """Kill an agent on behalf of another. Return False if it is unknown or refuses."""
-
     def end_agent(self, name: str) -> None:
         """End an agent immediately, without asking it. Unknown names have no effect."""
-
-    def read_program(self, path: str) -> tuple[str, str]:
-        """Return name and text of a program file."""
-
-    def list_files(self, folder: str) -> Sequence[str]:
-        """Return the files below a folder."""
-
-    def write_file(self, path: str, text: str) -> None:
-        """Write a text file."""
 
 
 class AgentHost:
@@ -140,6 +95,7 @@ class AgentHost:
         make_body: creates the body. None in a project without an environment.
         intercept: called first with each action. Returns whether it answers the action itself. For tests.
         intercept_stop: the same for the end of the run.
+        system: its run.
         send: delivers a message. Returns False if the receiver is unknown.
         run: runs up to this number of cycles of the mind. Returns whether there is more to do.
     """
@@ -149,7 +105,6 @@ class AgentHost:
         "_ended",
         "_mind",
         "_random",
-        "_run",
         "_scheduler",
         "_seed",
         "body",
@@ -160,16 +115,17 @@ class AgentHost:
         "queued",
         "run",
         "send",
+        "system",
     )
 
     def __init__(self, name: str, run: Run, seed: str) -> None:
         self.name = name
         self.queued = False
-        self.body: Body | None = None
-        self.make_body: Callable[[], Body] | None = None
+        self.body: AgentBody | None = None
+        self.make_body: Callable[[], AgentBody] | None = None
         self.intercept: Callable[[Act], bool] | None = None
         self.intercept_stop: Callable[[float, int], bool] | None = None
-        self._run = run
+        self.system = run
         self._scheduler = run.scheduler
         # Bound directly, because they are called for every message and every turn.
         self.send: Callable[[SpeechAct], bool] = run.deliver
@@ -233,16 +189,16 @@ class AgentHost:
 
     def now(self) -> float:
         """Return the time of the run's clock in seconds since the Unix epoch."""
-        return self._run.clock.now()
+        return self.system.clock.now()
 
     def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* after *delay* seconds."""
-        return AgentTimer(self._run.clock, self._run.activity, delay, callback)
+        return AgentTimer(self.system.clock, self.system.activity, delay, callback)
 
     def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
         """Run a coroutine of the project's Python code beside the mind."""
         if self._coroutines is None:
-            self._coroutines = Coroutines(self._run.activity)
+            self._coroutines = Coroutines(self.system.activity)
         return self._coroutines.start(coroutine, ended)
 
     def act(self, act: Act) -> None:
@@ -256,7 +212,7 @@ class AgentHost:
         else:
             self._mind.complete(act.id, without_environment(act))
 
-    def situated(self) -> Body | None:
+    def situated(self) -> "AgentBody | None":
         """Return the body, created on first use; None without an environment."""
         if self.body is None and self.make_body is not None:
             self.body = self.make_body()
@@ -277,14 +233,10 @@ class AgentHost:
         if self.body is not None:
             self.body.resume_act(act_id)
 
-    def agent_names(self) -> Sequence[str]:
-        """Return the names of all agents, in the order of creation."""
-        return self._run.agent_names()
-
     def print(self, text: str) -> None:
         """Print a line of the program's output. An agent that has ended prints nothing."""
         if not self._ended:
-            self._run.console.print(self.name, text)
+            self.system.console.print(self.name, text)
 
     def log(self, level: str, text: str) -> None:
         """Log a line, subject to the agent's option ``verbose``."""
@@ -292,64 +244,20 @@ class AgentHost:
         if verbose > 0 or level not in ("debug", "info"):
             # Details that an agent logs on request are shown, whatever the level of the console.
             shown = "info" if level == "debug" and verbose > 1 else level
-            self._run.console.log(f"[{self.name}] {level}: {text}", shown)
+            self.system.console.log(f"[{self.name}] {level}: {text}", shown)
 
     def goal_lost(self) -> None:
         """Count a failed goal without a plan for its failure."""
-        self._run.goal_lost()
+        self.system.goal_lost()
 
     def out_of_memory(self) -> None:
         """End the run after a `MemoryError` in a step or event of the mind."""
-        self._run.out_of_memory(self.name)
+        self.system.out_of_memory(self.name)
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
         if self.intercept_stop is None or not self.intercept_stop(delay, exit_code):
-            self._run.stop_system(delay, exit_code)
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create an agent."""
-        return self._run.create_agent(name, source, classes)
-
-    def explain(self, question: str) -> Mapping[str, Any]:
-        """Answer a question about the run so far."""
-        return self._run.explain(question, self.name)
-
-    def clone_agent(self, name: str) -> str | None:
-        """Create an agent with a copy of this one's mind."""
-        return self._run.clone_agent(self.name, name)
-
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """Kill an agent."""
-        return self._run.kill_agent(name, delay, self.name)
-
-    def read_program(self, path: str) -> tuple[str, str]:
-        """Return name and text of a program file."""
-        return self._run.read_program(path)
-
-    def list_files(self, folder: str) -> Sequence[str]:
-        """Return the files below a folder."""
-        return self._run.list_files(folder)
-
-    def write_file(self, path: str, text: str) -> None:
-        """Write a text file."""
-        self._run.write_file(path, text)
-
-    def register_service(self, service: str) -> None:
-        """Register this agent as provider of a service."""
-        self._run.services.register(self.name, service)
-
-    def deregister_service(self, service: str) -> None:
-        """Deregister this agent as provider of a service."""
-        self._run.services.deregister(self.name, service)
-
-    def providers(self, service: str) -> Sequence[str]:
-        """Return the agents that provide a service."""
-        return self._run.services.providers(service)
-
-    def subscribe_to_service(self, service: str) -> None:
-        """Subscribe this agent to all providers of a service."""
-        self._run.services.subscribe(self.name, service)
+            self.system.stop_system(delay, exit_code)
 
 
 def _no_turn(fuel: int) -> bool:

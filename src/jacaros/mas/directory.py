@@ -43,22 +43,6 @@ class Participants(Protocol):
         """Return the mailbox of a name, or None if it is not among the `names`."""
 
 
-class Services(Protocol):
-    """The directory facilitator: which agents provide which services."""
-
-    def register(self, name: str, service: str) -> None:
-        """Register an agent as provider of a service, and notify the subscribers."""
-
-    def deregister(self, name: str, service: str) -> None:
-        """Deregister an agent as provider of a service."""
-
-    def providers(self, service: str) -> Sequence[str]:
-        """Return the known providers of a service, in the order of registration."""
-
-    def subscribe(self, name: str, service: str) -> None:
-        """Subscribe an agent to all providers of a service, by messages."""
-
-
 H = TypeVar("H")
 
 

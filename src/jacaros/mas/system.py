@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
 from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.state.act import Services
 from jacaros.files.python_modules import ProjectModules
 from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
@@ -18,7 +19,7 @@ from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
-from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory, Services
+from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory
 from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
 from jacaros.mas.programs import Programs, asks_why

@@ -44,7 +44,7 @@ from jacaros.testing.recorded import Action, RecordedAct, SentMessage, matches
 
 
 class HarnessPort:
-    """The agent's port to its host (`jacaros.agents.mind.state.act.Architecture`), which records what the agent does.
+    """The agent's host and the rest of its system (ports of `jacaros.agents.mind.state.act`). Records what the agent does.
 
     Attributes:
         mind: the agent.
@@ -74,7 +74,8 @@ class HarnessPort:
         self._name, self._actions, self._others = name, actions, others
         self._programs, self._file = programs, file
         self._by_number: dict[int, RecordedAct] = {}
-        self._services: list[str] = []
+        self._services: dict[str, None] = {}
+        self.system = self.services = self
 
     def now(self) -> float:
         return self.clock.now()
@@ -152,14 +153,14 @@ class HarnessPort:
         self.log("info", f".create_agent({name}, {source}): this test has no other agents")
         return None
 
-    def explain(self, question: str) -> Mapping[str, Any]:
+    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
         raise UsageError(f"cannot answer `{question}`: this test has no recording")
 
-    def clone_agent(self, name: str) -> str | None:
+    def clone_agent(self, original: str, name: str) -> str | None:
         self.log("info", f".clone({name}): this test has no other agents")
         return None
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         if name == self._name:
             self.stop_system(delay, 0)
         return name in self.agent_names()
@@ -173,19 +174,17 @@ class HarnessPort:
     def write_file(self, path: str, text: str) -> None:
         self.files[path] = text
 
-    def register_service(self, service: str) -> None:
-        if service not in self._services:
-            self._services.append(service)
+    def register(self, name: str, service: str) -> None:
+        self._services[service] = None
 
-    def deregister_service(self, service: str) -> None:
-        if service in self._services:
-            self._services.remove(service)
+    def deregister(self, name: str, service: str) -> None:
+        self._services.pop(service, None)
 
     def providers(self, service: str) -> Sequence[str]:
         return [self._name] if service in self._services else []
 
-    def subscribe_to_service(self, service: str) -> None:
-        del service
+    def subscribe(self, name: str, service: str) -> None:
+        pass
 
 
 __tracebackhide__ = methodcaller("errisinstance", AssertionError)

@@ -1,7 +1,5 @@
 """The host of a mind in its run."""
 
-from collections.abc import Mapping, Sequence
-
 from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
 from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.text import text
@@ -84,21 +82,8 @@ class FakeRun:
     def deliver(self, message: SpeechAct) -> bool:
         return message.receiver == "ann"
 
-    def agent_names(self) -> Sequence[str]:
-        return ["ann"]
-
     def stop_system(self, delay: float, exit_code: int) -> None:
         self.lines.append(f"stop {delay} {exit_code}")
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        return name
-
-    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        del delay
-        return name == "ann"
-
-    def read_program(self, path: str) -> tuple[str, str]:
-        return path, ""
 
 
 def host_and_mind() -> tuple[AgentHost, Mind, FakeRun]:
@@ -172,9 +157,6 @@ def test_requests_of_the_mind_go_to_the_run() -> None:
     host.stop_system(1.0, 2)
     assert run_.lines == ["[ann] hello", "warning: [ann] warning: beware", "stop 1.0 2"]
     assert host.send(SpeechAct("tell", "ann", "ann", atom("x"), "mid1"))
-    assert host.agent_names() == ["ann"]
-    assert host.create_agent("bob", None, {}) == "bob"
-    assert host.kill_agent("ann")
-    assert host.read_program("x.asl") == ("x.asl", "")
+    assert host.system is run_
     host.receive(SpeechAct("tell", "bob", "ann", atom("x"), "mid1"))
     assert mind.log == ["receive x"]

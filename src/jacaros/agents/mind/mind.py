@@ -170,9 +170,8 @@ class Mind(Circumstance):
             AslError: the program has errors.
             ActionError: another plan has the same label.
         """
-        program = include_program(
-            path, self.architecture.read_program, context.known_names(self), self.engine.actions, namespace
-        )
+        read, names = self.architecture.system.read_program, context.known_names(self)
+        program = include_program(path, read, names, self.engine.actions, namespace)
         self.register_functions(program.functions)
         plan_changes.include_plans(self, program.plans)
         self.take_up(program)

@@ -6,7 +6,7 @@ from inspect import iscoroutinefunction
 from random import Random
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar, Unpack
 
-from jacaros.agents.mind.state.act import AgentSystem, SpeechAct
+from jacaros.agents.mind.state.act import Architecture, SpeechAct
 from jacaros.agents.python.agent import Literal, ReceivedMessage, content_of, heard, overridden
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.values import Term
@@ -33,7 +33,7 @@ class Mail(Protocol):
         """Wait for the next message; raises TimeoutError."""
 
 
-class Host(AgentSystem, Protocol):
+class Host(Architecture, Protocol):
     """What an agent written in Python may use of the code that runs it."""
 
     name: str
@@ -52,12 +52,11 @@ class Host(AgentSystem, Protocol):
     def session(self) -> Session:
         """The agent's session in the environment."""
 
-    @property
-    def random(self) -> Random:
-        """The agent's random number generator."""
-
     def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
-        """Run a coroutine concurrently with the others of the agent."""
+        """Run a coroutine concurrently with `run`; the result can be awaited.
+
+        It is cancelled when the agent ends. An exception in it ends the agent, as in `run`.
+        """
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
@@ -158,13 +157,7 @@ class PythonAgent:
     # --- time and output -----------------------------------------------------------------------------------
 
     sleep = _of("_host", Host.sleep)
-
-    def start(self, work: Coroutine[object, None, T]) -> Awaitable[T]:
-        """Run a coroutine concurrently with `run`; the result can be awaited.
-
-        It is cancelled when the agent ends. An exception in it ends the agent, as in `run`.
-        """
-        return self._host.start(work)
+    start = _of("_host", Host.start)
 
     def print(self, *values: object) -> None:
         """Print the values as one line, without separators, as ``.print`` does."""
@@ -286,7 +279,7 @@ class PythonAgent:
 
     def agent_names(self) -> tuple[str, ...]:
         """Return the names of all agents, in order of creation."""
-        return tuple(self._host.agent_names())
+        return tuple(self._host.system.agent_names())
 
     def create_agent(self, name: str, source: str | None = None, agent_class: str | None = None) -> str:
         """Create an agent and start it; return its name, which differs from *name* if that is taken.
@@ -300,24 +293,34 @@ class PythonAgent:
             JacarosError: it cannot be created; the reason is logged.
         """
         classes = {} if agent_class is None else {"agentClass": agent_class}
-        made = self._host.create_agent(name, source, classes)
+        made = self._host.system.create_agent(name, source, classes)
         if made is None:
             raise JacarosError(f"cannot create agent {name}; see the log for the reason")
         return made
 
-    kill_agent = _of("_host", AgentSystem.kill_agent)
+    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+        """End an agent after *delay* seconds; return False if it does not exist or refuses."""
+        return self._host.system.kill_agent(name, delay, self.name)
 
     def stop_system(self, exit_code: int = 0, delay: float = 0.0) -> None:
         """End the run after *delay* seconds, with an exit code."""
         self._host.stop_system(delay, exit_code)
 
-    register_service = _of("_host", AgentSystem.register_service)
-    deregister_service = _of("_host", AgentSystem.deregister_service)
-    subscribe_to_service = _of("_host", AgentSystem.subscribe_to_service)
+    def register_service(self, service: str) -> None:
+        """Register a service that this agent provides with the directory facilitator."""
+        self._host.system.services.register(self.name, service)
+
+    def deregister_service(self, service: str) -> None:
+        """Remove the registration."""
+        self._host.system.services.deregister(self.name, service)
+
+    def subscribe_to_service(self, service: str) -> None:
+        """Subscribe this agent to the present and future providers of a service."""
+        self._host.system.services.subscribe(self.name, service)
 
     def providers(self, service: str) -> tuple[str, ...]:
         """Return the agents that provide a service, in order of registration."""
-        return tuple(self._host.providers(service))
+        return tuple(self._host.system.services.providers(service))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r})"

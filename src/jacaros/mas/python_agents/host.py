@@ -48,7 +48,7 @@ class PythonAgentHost(AgentHost):
         self.beliefs = _beliefs(spec)
         self.open_session: Callable[[], Session] | None = None
         self.task_activity = TaskActivity(run.activity, self._settled)
-        self.mail = Messaging(name, self.send, self.agent_names, run.clock, run.activity, self.task_activity)
+        self.mail = Messaging(name, self.send, run.agent_names, run.clock, run.activity, self.task_activity)
         self.mind = _Task(self, mind_options(spec.options))
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
@@ -134,11 +134,11 @@ class PythonAgentHost(AgentHost):
         self._settled()
 
     def _failed(self, error: BaseException) -> None:
-        self._run.goal_lost()
+        self.system.goal_lost()
         for line in fault_lines(error):
-            self._run.console.log(f"[{self.name}] {line}", "error")
+            self.system.console.log(f"[{self.name}] {line}", "error")
         if not self._leaving:
-            self._run.end_agent(self.name)
+            self.system.end_agent(self.name)
 
     def run(self, fuel: int) -> bool:
         """Do nothing: the event loop runs its tasks."""
@@ -146,7 +146,7 @@ class PythonAgentHost(AgentHost):
 
     def _settled(self) -> None:
         """Check whether the run is idle, as after the turn of any agent."""
-        self._run.scheduler.make_ready(self)
+        self.system.scheduler.make_ready(self)
 
     def halt(self) -> None:
         """Cancel its tasks and operations. Their ``finally`` blocks run, and may still act and print."""
@@ -163,7 +163,7 @@ class PythonAgentHost(AgentHost):
         """Leave the environment, after its tasks have ended."""
         super().end()
         if self._tasks:
-            self._run.clock.call_later(_PATIENCE, self._shut)
+            self.system.clock.call_later(_PATIENCE, self._shut)
         else:
             self._shut()
 
@@ -180,7 +180,7 @@ class PythonAgentHost(AgentHost):
         self._closed = True
         if self._tasks:
             what = f"the agent did not end within {_PATIENCE:g} s of its cancellation"
-            self._run.console.log(f"[{self.name}] warning: {what}", "warning")
+            self.system.console.log(f"[{self.name}] warning: {what}", "warning")
         if self._session is not None:
             self._session.close()
 
@@ -198,19 +198,19 @@ class PythonAgentHost(AgentHost):
     @property
     def clock(self) -> Clock:
         """The run's clock."""
-        return self._run.clock
+        return self.system.clock
 
     async def sleep(self, seconds: float) -> None:
         """Wait on the run's clock."""
         self._check()
         with self.task_activity.under_way():
-            await self._run.clock.sleep(seconds)
-        self._run.clock.busy(1)
+            await self.system.clock.sleep(seconds)
+        self.system.clock.busy(1)
 
     async def turn(self) -> None:
         """Let other tasks run. It counts as a reasoning cycle, so that a virtual clock advances."""
         self._check()
-        self._run.clock.busy(1)
+        self.system.clock.busy(1)
         with self.task_activity.under_way():
             await asyncio.sleep(0)
 
@@ -239,7 +239,7 @@ class PythonAgentHost(AgentHost):
     def print(self, text: str) -> None:
         """Print a line of output, also while the agent is ending."""
         if not self._closed and (self._tasks or not self._ended):
-            self._run.console.print(self.name, text)
+            self.system.console.print(self.name, text)
 
 
 class _Task:

@@ -41,7 +41,8 @@ class RecordingHost:
         self.suspended: list[int] = []
         self.resumed: list[int] = []
         self.files: dict[str, str] = {}
-        self.services: list[str] = []
+        self.registered: list[str] = []
+        self.system = self.services = self
         self.sent: list[SpeechAct] = []
         self.stopped = False
         self.memory_errors = 0
@@ -109,16 +110,16 @@ class RecordingHost:
         del name, source
         return None
 
-    def explain(self, question: str) -> Mapping[str, Any]:
+    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
         fact = {"kind": "sample", "text": "/battery", "t": 0.5, "agent": "", "file": "", "line": 0}
         return {"answer": question, "t": 1.0, "facts": (), "because": (fact,)}
 
-    def clone_agent(self, name: str) -> str | None:
-        del name
+    def clone_agent(self, original: str, name: str) -> str | None:
+        del original, name
         return None
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        del name, delay
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
+        del name, delay, killer
         return False
 
     def read_program(self, path: str) -> tuple[str, str]:
@@ -130,16 +131,16 @@ class RecordingHost:
     def write_file(self, path: str, text: str) -> None:
         self.files[path] = text
 
-    def register_service(self, service: str) -> None:
-        self.services.append(service)
+    def register(self, name: str, service: str) -> None:
+        self.registered.append(service)
 
-    def deregister_service(self, service: str) -> None:
-        self.services.remove(service)
+    def deregister(self, name: str, service: str) -> None:
+        self.registered.remove(service)
 
     def providers(self, service: str) -> Sequence[str]:
-        return [self.agent.name] if service in self.services else []
+        return [self.agent.name] if service in self.registered else []
 
-    def subscribe_to_service(self, service: str) -> None:
+    def subscribe(self, name: str, service: str) -> None:
         pass
 
     def run(self, fuel: int = 1000, seconds: float = 1000.0) -> None:

@@ -165,7 +165,7 @@ def _ask(
 def broadcast(ctx: Context, performative: Term, content: Term) -> None:
     """``.broadcast(Performative, Content)`` sends a message to all other agents."""
     act = _name(performative, "the performative")
-    for name in ctx.architecture.agent_names():
+    for name in ctx.architecture.system.agent_names():
         if name != ctx.agent.name:
             _say(ctx.agent, name, act, content)
 
@@ -179,7 +179,7 @@ def my_name(ctx: Context, name: Term) -> bool:
 @internal_action(".all_names", arity=1, pure=True)
 def all_names(ctx: Context, names: Term) -> bool:
     """``.all_names(L)``: *L* is the list of the names of all agents, as atoms, in order of creation."""
-    return ctx.unify(names, make_list([atom(name) for name in ctx.architecture.agent_names()]))
+    return ctx.unify(names, make_list([atom(name) for name in ctx.architecture.system.agent_names()]))
 
 
 @internal_action(".create_agent", arity=(1, 3), brings_in=True, restricted=2)
@@ -196,9 +196,8 @@ def create_agent(ctx: Context, name: Term, source: Term = None, options: Term = 
     path = None if source is None else string(source, "the second argument of .create_agent")
     listed = [] if options is None else elements(options, "the third argument of .create_agent")
     classes = dict(map(_class_option, listed))
-    return _made(
-        ctx, ".create_agent", name, lambda wanted: ctx.architecture.create_agent(wanted, path, classes)
-    )
+    make = ctx.architecture.system.create_agent
+    return _made(ctx, ".create_agent", name, lambda wanted: make(wanted, path, classes))
 
 
 def _made(ctx: Context, action: str, name: Term, make: Callable[[str], str | None]) -> bool:
@@ -228,7 +227,8 @@ def clone(ctx: Context, name: Term) -> bool:
     Raises:
         ActionError: the agent could not be created.
     """
-    return _made(ctx, ".clone", name, ctx.architecture.clone_agent)
+    make, original = ctx.architecture.system.clone_agent, ctx.agent.name
+    return _made(ctx, ".clone", name, lambda wanted: make(original, wanted))
 
 
 @internal_action(".kill_agent", arity=(1, 2))
@@ -238,7 +238,7 @@ def kill_agent(ctx: Context, name: Term, deadline: Term = 0.0) -> bool:
     With a time, the agent first gets the event ``+jag_shutting_down(Ms)``, so that it can prepare.
     """
     delay = number(deadline, "the second argument of .kill_agent") / 1000
-    return ctx.architecture.kill_agent(characters(name), max(delay, 0.0))
+    return ctx.architecture.system.kill_agent(characters(name), max(delay, 0.0), ctx.agent.name)
 
 
 @internal_action(".stopMAS", arity=(0, 2), suspends=True, body_only=True)
@@ -263,19 +263,19 @@ def version(ctx: Context, result: Term) -> bool:
 @internal_action(".df_register", arity=(1, 2))
 def register_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     """``.df_register(Service[, Type])`` registers a service that the agent provides; subscribers are notified."""
-    ctx.architecture.register_service(characters(service))
+    ctx.architecture.system.services.register(ctx.agent.name, characters(service))
 
 
 @internal_action(".df_deregister", arity=(1, 2))
 def deregister_service(ctx: Context, service: Term, _kind: Term = None) -> None:
     """``.df_deregister(Service[, Type])`` removes the registration of a service."""
-    ctx.architecture.deregister_service(characters(service))
+    ctx.architecture.system.services.deregister(ctx.agent.name, characters(service))
 
 
 @internal_action(".df_search", arity=(2, 3), pure=True)
 def find_providers(ctx: Context, service: Term, *rest: Term) -> bool:
     """``.df_search(Service[, Type], L)``: *L* is the list of the agents that provide a service, as atoms."""
-    found = ctx.architecture.providers(characters(service))
+    found = ctx.architecture.system.services.providers(characters(service))
     return ctx.unify(rest[-1], make_list([atom(name) for name in found]))
 
 
@@ -284,7 +284,7 @@ def subscribe_to_service(ctx: Context, service: Term, _kind: Term = None) -> Non
     """``.df_subscribe(Service[, Type])`` subscribes to a service: ``df`` sends a belief ``provider(Agent, Service)`` for
     each present and future provider.
     """
-    ctx.architecture.subscribe_to_service(characters(service))
+    ctx.architecture.system.services.subscribe(ctx.agent.name, characters(service))
 
 
 @internal_action(".random", arity=(1, 3), backtracks=True)

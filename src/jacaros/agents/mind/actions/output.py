@@ -150,7 +150,7 @@ def why(ctx: Context, question: Term, answer: Term) -> bool:
         ActionError: the question is invalid.
     """
     try:
-        found = ctx.agent.architecture.explain(written_question(question))
+        found = ctx.architecture.system.explain(written_question(question), ctx.agent.name)
     except UsageError as refused:
         raise ActionError(str(refused).partition("\n")[0].removeprefix("error: ")) from None
     return ctx.unify(answer, _explanation(found))

@@ -120,7 +120,7 @@ def list_files(ctx: Context, folder: Term, *rest: Term) -> bool:
     path = string(folder, "the first argument of .list_files")
     pattern = string(rest[0], "the second argument of .list_files") if len(rest) == 2 else None
     try:
-        found = ctx.architecture.list_files(path)
+        found = ctx.architecture.system.list_files(path)
         if pattern is not None:
             found = [name for name in found if matches_whole(pattern, name)]
     except OSError as fault:
@@ -142,7 +142,7 @@ def save_agent(ctx: Context, file: Term, goals: Term = None) -> None:
     wanted = [] if goals is None else elements(goals, "the second argument of .save_agent")
     path = characters(file)
     try:
-        ctx.architecture.write_file(path, _program_text(ctx.agent, wanted))
+        ctx.architecture.system.write_file(path, _program_text(ctx.agent, wanted))
     except OSError as fault:
         raise ActionError(f".save_agent: cannot write {path}: {fault.strerror or fault}") from fault
 

@@ -186,11 +186,90 @@ class Timer(Protocol):
         """Cancel the call."""
 
 
+class Services(Protocol):
+    """The directory facilitator: which agents provide which services."""
+
+    def register(self, name: str, service: str) -> None:
+        """Register an agent as provider of a service, and notify the subscribers."""
+
+    def deregister(self, name: str, service: str) -> None:
+        """Deregister an agent as provider of a service."""
+
+    def providers(self, service: str) -> Sequence[str]:
+        """Return the known providers of a service, in the order of registration."""
+
+    def subscribe(self, name: str, service: str) -> None:
+        """Subscribe an agent to all providers of a service, by messages."""
+
+
 class AgentSystem(Protocol):
-    """What agents of every kind need from the agent system."""
+    """What agents of every kind ask of the agent system."""
+
+    @property
+    def services(self) -> Services:
+        """The directory facilitator."""
 
     def agent_names(self) -> Sequence[str]:
         """Return the names of all agents of the system, in order of creation."""
+
+    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
+        """Create and start an agent (from the program file *source*, default NAME.asl). Return its final name, or None
+        after logging the reason.
+
+        *classes* are its classes, by ``agentClass``, ``agentArchClass`` and ``beliefBaseClass``.
+        """
+
+    def clone_agent(self, original: str, name: str) -> str | None:
+        """Create an agent with a copy of another's mind. Return its final name, or None after logging the reason."""
+
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
+        """End an agent on behalf of another, *delay* seconds after announcing it.
+
+        Return False if it does not exist or refuses.
+        """
+
+    def explain(self, question: str, agent: str) -> Mapping[str, Any]:
+        """Answer a question of an agent about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
+
+        Raises:
+            UsageError: the question is invalid.
+        """
+
+    def read_program(self, path: str) -> tuple[str, str]:
+        """Return the name and text of a program file (for ``.include``).
+
+        Raises:
+            FileNotFoundError: it does not exist.
+        """
+
+    def list_files(self, folder: str) -> Sequence[str]:
+        """Return the files in a folder and its subfolders, as sorted paths that begin with *folder*.
+
+        Raises:
+            OSError: the folder cannot be read.
+        """
+
+    def write_file(self, path: str, text: str) -> None:
+        """Write a text file, replacing its contents. A relative path is relative to the project's folder.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+
+
+class Architecture(Protocol):
+    """What a mind needs from its host. No call may re-enter the agent before it returns."""
+
+    @property
+    def system(self) -> AgentSystem:
+        """The system of the agent."""
+
+    @property
+    def random(self) -> Random:
+        """The agent's own random number generator, seeded by the run."""
+
+    def now(self) -> float:
+        """Return seconds since the Unix epoch on the run's clock."""
 
     def print(self, text: str) -> None:
         """Print a line of the program's output."""
@@ -200,39 +279,6 @@ class AgentSystem(Protocol):
 
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds."""
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create an agent (from the program file *source*, default NAME.asl). Return its final name, or None after
-        logging the reason.
-
-        *classes* are its classes, by ``agentClass``, ``agentArchClass`` and ``beliefBaseClass``.
-        """
-
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
-        """End an agent after *delay* seconds; return False if it does not exist or refuses."""
-
-    def register_service(self, service: str) -> None:
-        """Register a service that this agent provides with the directory facilitator."""
-
-    def deregister_service(self, service: str) -> None:
-        """Remove the registration."""
-
-    def providers(self, service: str) -> Sequence[str]:
-        """Return the agents that provide a service, in order of registration."""
-
-    def subscribe_to_service(self, service: str) -> None:
-        """Subscribe this agent to the present and future providers of a service."""
-
-
-class Architecture(AgentSystem, Protocol):
-    """What a mind needs from its host. No call may re-enter the agent before it returns."""
-
-    @property
-    def random(self) -> Random:
-        """The agent's own random number generator, seeded by the run."""
-
-    def now(self) -> float:
-        """Return seconds since the Unix epoch on the run's clock."""
 
     def ready(self) -> None:
         """Report that the agent has work to do: `Mind.run` must be called soon."""
@@ -268,34 +314,3 @@ class Architecture(AgentSystem, Protocol):
 
     def out_of_memory(self) -> None:
         """Report that a step or an event raised a `MemoryError`; the agent continues as long as the host allows."""
-
-    def explain(self, question: str) -> Mapping[str, Any]:
-        """Answer a question about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
-
-        Raises:
-            UsageError: the question is invalid.
-        """
-
-    def clone_agent(self, name: str) -> str | None:
-        """Create an agent with a copy of this mind; return its final name, or None after logging the reason."""
-
-    def read_program(self, path: str) -> tuple[str, str]:
-        """Return the name and text of a program file (for ``.include``).
-
-        Raises:
-            FileNotFoundError: it does not exist.
-        """
-
-    def list_files(self, folder: str) -> Sequence[str]:
-        """Return the files in a folder and its subfolders, as sorted paths that begin with *folder*.
-
-        Raises:
-            OSError: the folder cannot be read.
-        """
-
-    def write_file(self, path: str, text: str) -> None:
-        """Write a text file, replacing its contents.
-
-        Raises:
-            OSError: the file cannot be written.
-        """

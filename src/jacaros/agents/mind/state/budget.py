@@ -5,9 +5,8 @@ A program that never stops growing loses some of its goals, with a reason, inste
 """
 
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
-from jacaros.agents.mind.state.act import Architecture
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.values import String, atom, functor
 from jacaros.files.texts import is_worth_a_line
@@ -57,14 +56,6 @@ class Options:
 _ERROR, _ERROR_MSG = functor("error", 1), functor("error_msg", 1)
 
 
-class Holder(Protocol):
-    """The mind that has the budget."""
-
-    architecture: Architecture
-    current: Any
-    budgets: dict[str, "Budget"]
-
-
 _COUNTED: Final = {
     "belief_limit": "beliefs",
     "event_limit": "events",
@@ -74,7 +65,7 @@ _COUNTED: Final = {
 """What each option limits."""
 
 
-def budgets(holder: Holder) -> dict[str, "Budget"]:
+def budgets(holder: Any) -> dict[str, "Budget"]:
     """The budgets of an agent, by the names of the options."""
     return {option: Budget(holder, what, option) for option, what in _COUNTED.items()}
 
@@ -92,7 +83,7 @@ class Budget:
         losses: how many intentions were lost because a step was refused one.
     """
 
-    def __init__(self, holder: Holder, what: str, option: str) -> None:
+    def __init__(self, holder: Any, what: str, option: str) -> None:
         self._holder, self._what, self._option = holder, what, option
         self.refusals = self.losses = 0
 

@@ -45,6 +45,10 @@ class FakeArchitecture:
     broken: bool = False
     delay: float = 0.0
 
+    @property
+    def system(self) -> "FakeArchitecture":
+        return self
+
     def now(self) -> float:
         return self.time
 
@@ -64,7 +68,7 @@ class FakeArchitecture:
         self.created.append((name, source, dict(classes)))
         return None if self.broken else f"{name}_1" if name in self.agents else name
 
-    def kill_agent(self, name: str, delay: float = 0.0) -> bool:
+    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
         self.delay = delay
         known = name in self.agents
         self.agents = [other for other in self.agents if other != name]
