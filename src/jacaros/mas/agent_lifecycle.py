@@ -3,7 +3,6 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Protocol
 
 from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind, new_engine
@@ -21,13 +20,6 @@ from jacaros.mas.project.unsupported import class_without_effect
 from jacaros.mas.python_code import PythonCode
 
 
-class Situate(Protocol):
-    """Gives a new agent its place in the environment."""
-
-    def __call__(self, host: AgentHost, spec: AgentSpec) -> None:
-        """Give it a body, or a function that creates one."""
-
-
 class AgentLifecycle:
     """Creates and ends the agents of a run.
 
@@ -39,7 +31,7 @@ class AgentLifecycle:
         code: the project's Python code.
         seed: seed of the run.
         plain: run plans without generated code.
-        situate: gives each agent its place in the environment.
+        situate: gives each agent its place in the environment: a body, or a function that creates one.
         when_made: called with every agent before it begins.
 
     Attributes:
@@ -56,7 +48,7 @@ class AgentLifecycle:
         code: PythonCode,
         seed: int,
         plain: bool,
-        situate: Situate,
+        situate: Callable[[AgentHost, AgentSpec], None],
         when_made: Callable[[AgentHost], None] | None = None,
     ) -> None:
         self.programs = programs

@@ -5,9 +5,9 @@ Pending are timers of agents and their operations.
 
 import asyncio
 from collections.abc import Callable
-from typing import Protocol
 
 from jacaros.agents.mind.state.act import Timer
+from jacaros.mas.scheduler import Scheduler
 from jacaros.runtime.clock import Clock
 
 
@@ -60,14 +60,6 @@ turns to become a belief.
 """
 
 
-class Turns(Protocol):
-    """The scheduler of the agents."""
-
-    @property
-    def idle(self) -> bool:
-        """Whether no agent is ready."""
-
-
 class Idleness:
     """Detects when a run is idle. Costs nothing without listeners.
 
@@ -75,10 +67,10 @@ class Idleness:
         activity: counts what the agents wait for.
 
     Attributes:
-        turns: set before the first check.
+        turns: the scheduler of the agents. Set before the first check.
     """
 
-    turns: Turns
+    turns: Scheduler
 
     def __init__(self, activity: Activity) -> None:
         self._activity = activity

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import cache, partial
 from types import MappingProxyType
-from typing import Final, Protocol
+from typing import Final
 
 from jacaros.agents.body.call import (
     SUCCEEDED,
@@ -18,8 +18,9 @@ from jacaros.agents.body.call import (
     undelivered,
 )
 from jacaros.agents.body.percepts import PerceptWriter
-from jacaros.agents.body.presence import AgentPresence, Needs, PerceivingMind
+from jacaros.agents.body.presence import AgentPresence, Needs
 from jacaros.agents.body.values import Outputs, to_value
+from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import NEEDS, Act, Completion
 from jacaros.agents.terms.text import display, text
 from jacaros.agents.terms.values import NIL, Reference, Term, Var, bare, is_list
@@ -252,19 +253,6 @@ def quit_from_environment(presence: AgentPresence, call: Call, finish: Finish) -
 _CONSOLE = "console"
 
 
-class ServedMind(PerceivingMind, Protocol):
-    """The interface of a mind for its body (`jacaros.agents.mind.mind.Mind`)."""
-
-    def complete(self, act_id: int, completion: Completion) -> None:
-        """Handle the outcome of an act."""
-
-    def preempted(self, act_id: int, resource: str) -> None:
-        """Handle that an act has lost a resource."""
-
-    def regained(self, act_id: int) -> None:
-        """Handle that an act has its resource again, or no longer waits for it."""
-
-
 class AgentBody(AgentPresence):
     """Runs the actions of one agent and perceives for it.
 
@@ -283,7 +271,7 @@ class AgentBody(AgentPresence):
     def __init__(
         self,
         agent: str,
-        mind: ServedMind,
+        mind: Mind,
         environment: Environment,
         writer: PerceptWriter,
         show: Callable[[str], None],

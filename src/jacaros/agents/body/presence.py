@@ -3,11 +3,12 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import chain
-from typing import NoReturn, Protocol
+from typing import NoReturn
 
 from jacaros.agents.body.percepts import ADD, REMOVE, PerceptWriter
 from jacaros.agents.body.values import atom_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Act, Percept
 from jacaros.agents.terms.values import String, Term, functor_of, list_items
 from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation, operation
@@ -33,16 +34,6 @@ Notice = Callable[[list[Percept]], None]
 
 Untaken = Callable[[str], bool]
 """Returns whether percepts about properties of a name are still unprocessed."""
-
-
-class PerceivingMind(Protocol):
-    """A mind that perceives."""
-
-    def perceive(self, percepts: list[Percept]) -> None:
-        """Take percepts."""
-
-    def has_untaken(self, name: str) -> bool:
-        """Return whether percepts about properties called *name* are still unprocessed."""
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -79,7 +70,7 @@ class FocusedArtifacts(Focused):
     For each there is a belief ``focusing(Id,Name,Type,WspId,WspName,WspPath)``.
     """
 
-    def __init__(self, agent: str, writer: PerceptWriter, mind: PerceivingMind) -> None:
+    def __init__(self, agent: str, writer: PerceptWriter, mind: Mind) -> None:
         super().__init__()
         self._agent = agent
         self._writer = writer
@@ -264,7 +255,7 @@ class AgentPresence(Presence):
     def __init__(
         self,
         agent: str,
-        mind: PerceivingMind,
+        mind: Mind,
         environment: Environment,
         writer: PerceptWriter,
         own_actions: tuple[str, ...],

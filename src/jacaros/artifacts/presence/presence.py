@@ -300,24 +300,17 @@ class Activity(Protocol):
         """It has ended, or was cancelled."""
 
 
-class Account(Activity, Protocol):
-    """Counts also what a session waits for."""
+class Account:
+    """Counts what a session runs and waits for; this one counts nothing."""
+
+    def begin(self) -> None:
+        """Something with an end has begun."""
+
+    def end(self) -> None:
+        """It has ended, or was cancelled."""
 
     def waiting(self) -> AbstractContextManager[None]:
         """Context of a wait that something else must end, such as for a signal."""
-
-
-class NoAccount:
-    """Counts nothing."""
-
-    def begin(self) -> None:
-        """Do nothing."""
-
-    def end(self) -> None:
-        """Do nothing."""
-
-    def waiting(self) -> AbstractContextManager[None]:
-        """Do nothing."""
         return nullcontext()
 
 

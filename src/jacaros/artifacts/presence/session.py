@@ -19,7 +19,6 @@ from jacaros.artifacts.presence.presence import (
     Account,
     Conditions,
     Direction,
-    NoAccount,
     Observed,
     ObservedProperty,
     Observer,
@@ -185,7 +184,7 @@ class Session:
         self, environment: Environment, name: str, home: str = "/main", account: Account | None = None
     ) -> None:
         self.environment, self.name = environment, name
-        self._account: Account = account if account is not None else NoAccount()
+        self._account = account if account is not None else Account()
         self._observed = Observed(name, self._tell)
         self._conditions = Conditions()
         self._on_change: list[Callable[[PropertyChange], object]] = []

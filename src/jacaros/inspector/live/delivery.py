@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import deque
-from typing import Protocol
+from collections.abc import Callable
 
 from jacaros.inspector.live.records import LiveRecord, json_text
 from jacaros.runtime.clock import real_time
@@ -15,32 +15,25 @@ AGAIN = 2.0
 """Seconds of real time between two restarts of a page that is too slow."""
 
 
-class Past(Protocol):
-    """The records before a page connected (`jacaros.inspector.live.past.Past`)."""
-
-    def records(self) -> list[LiveRecord]:
-        """Return the records that a new page needs."""
-
-
 class Delivery:
     """The records for one page.
 
     A page that is too slow loses records: it receives their number, and then everything from the beginning; see `hello`.
 
     Args:
-        past: records so far.
+        records: returns the records so far, which a new page needs.
         hello: first message of every beginning.
 
     Attributes:
         arrived: set while there is something to send.
     """
 
-    def __init__(self, past: Past, hello: dict[str, object]) -> None:
-        self._past, self._hello = past, hello
+    def __init__(self, records: Callable[[], list[LiveRecord]], hello: dict[str, object]) -> None:
+        self._records, self._hello = records, hello
         self._queue: deque[LiveRecord] = deque()
         self._newest: dict[str, LiveRecord] = {}
         self._notes: deque[str] = deque([json_text(hello)])
-        self._first: deque[LiveRecord] = deque(past.records())
+        self._first: deque[LiveRecord] = deque(records())
         self._missed = 0
         self._again_at = 0.0
         self.arrived = asyncio.Event()
@@ -90,7 +83,7 @@ class Delivery:
     def _begin_again(self) -> None:
         self._notes.append(json_text({"kind": "missed", "records": self._missed}))
         self._notes.append(json_text(self._hello))
-        self._first = deque(self._past.records())
+        self._first = deque(self._records())
         self._missed = 0
         self._newest.clear()
         self._again_at = real_time() + AGAIN

@@ -85,7 +85,7 @@ class LiveView:
 
     def begin(self) -> Delivery:
         """Start delivering to another page."""
-        delivery = Delivery(self._past, hello(self._title, self._live, self._commands.names))
+        delivery = Delivery(self._past.records, hello(self._title, self._live, self._commands.names))
         self._deliveries.append(delivery)
         return delivery
 

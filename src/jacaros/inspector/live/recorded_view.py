@@ -33,7 +33,7 @@ class RecordedView:
 
     def begin(self) -> Delivery:
         """Start delivering to another page."""
-        return Delivery(self, self._hello)
+        return Delivery(self.records, self._hello)
 
     def end(self, delivery: Delivery) -> None:
         """Stop delivering; nothing is kept open."""

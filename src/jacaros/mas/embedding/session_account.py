@@ -1,12 +1,11 @@
 """How sessions of Python code count for the idleness of a run."""
 
-from contextlib import AbstractContextManager, nullcontext
-
+from jacaros.artifacts.presence.presence import Account
 from jacaros.mas.idleness import Activity, Idleness
 
 
-class SessionAccount:
-    """Counts the running operations of sessions: the `jacaros.artifacts.presence.presence.Account` of a run.
+class SessionAccount(Account):
+    """Counts the running operations of sessions. Waits of Python code do not concern the agents.
 
     Args:
         activity: counts what the agents wait for.
@@ -24,7 +23,3 @@ class SessionAccount:
         """An operation has ended."""
         self._activity.end()
         self._idleness.look()
-
-    def waiting(self) -> AbstractContextManager[None]:
-        """Do nothing: waits of Python code do not concern the agents."""
-        return nullcontext()

@@ -1,32 +1,24 @@
 """Observe the agents of a run: their minds, and the messages between them."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.directory import Directory, Mailboxes
-from jacaros.mas.history.deliberations import IN_ALL, Allowance, Links
+from jacaros.mas.history.causes import CauseRecords
+from jacaros.mas.history.deliberations import IN_ALL, Allowance
 from jacaros.mas.history.goals import GoalRecords
 from jacaros.mas.history.intentions import Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.minds import MindRecords, Records
 from jacaros.mas.history.programs import ProgramRecords
-from jacaros.runtime.clock import Clock
+from jacaros.mas.history.run_environment import ObservedSystem
 from jacaros.runtime.trace import Cause
 
 if TYPE_CHECKING:
     from jacaros.mas.python_agents.host import PythonAgentHost
 
 Tell = Callable[[str, Mapping[str, Any]], None]
-
-
-class PopulatedSystem(Protocol):
-    """A running system with its agents (`jacaros.mas.system.System`)."""
-
-    clock: Clock
-    directory: Directory[AgentHost]
-    mailboxes: Mailboxes
 
 
 class AgentRecords:
@@ -39,7 +31,7 @@ class AgentRecords:
         tell: takes the kind of a record and its data.
     """
 
-    def __init__(self, system: PopulatedSystem, links: Links, t: Moments, tell: Tell) -> None:
+    def __init__(self, system: ObservedSystem, links: CauseRecords, t: Moments, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._looks = Looks(system.clock)
         self._goals = GoalRecords(lambda goal: tell("goal", goal))

@@ -1,16 +1,17 @@
 """Records of deliberations: the plan that an agent chose for an event, and why it rejected those before it."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from jacaros.agents.mind.explaining.lost_goals import FailingContexts
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
 from jacaros.agents.mind.state.plan import Plan
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
+from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.programs import PlanNumbers
 from jacaros.mas.history.words import shown_event
-from jacaros.runtime.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause
 
 PER_SECOND = 10
 """Maximum number of contexts of one agent that are examined per second of the run's clock, at about 50 µs each."""
@@ -20,13 +21,6 @@ MOST_OPTIONS = 12
 """Maximum number of plans of one deliberation that are examined."""
 
 Tell = Callable[[str, Mapping[str, Any]], None]
-
-
-class Links(Tracer, Protocol):
-    """Creates the links of causal chains, and records them (`jacaros.mas.history.causes.CauseRecords`)."""
-
-    def need(self, cause: Cause) -> None:
-        """Record a link and those that led to it."""
 
 
 class _Reason(NamedTuple):
@@ -84,7 +78,7 @@ class DeliberationRecords:
         self,
         mind: Mind,
         numbers: PlanNumbers,
-        links: Links,
+        links: CauseRecords,
         t: Callable[[], float],
         in_all: Allowance,
         tell: Tell,

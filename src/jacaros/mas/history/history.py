@@ -2,16 +2,10 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.deployment import Deployment
-from jacaros.mas.directory import Directory
-from jacaros.mas.history.agents import AgentRecords, PopulatedSystem
-from jacaros.mas.history.run_environment import RunEnvironmentRecords, SituatedSystem
-from jacaros.mas.options import RunOptions
-from jacaros.mas.ros_graph import RosGraph
-from jacaros.runtime.clock import Clock
+from jacaros.mas.history.agents import AgentRecords
+from jacaros.mas.history.run_environment import ObservedSystem, RunEnvironmentRecords
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:
@@ -47,16 +41,6 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
     "artifact": ("artifact",),
 }
 """Records that describe a state: the newest of each is kept while the state lasts, identified by these fields."""
-
-
-class ObservedSystem(SituatedSystem, PopulatedSystem, Protocol):
-    """A running system, as its history sees it (`jacaros.mas.system.System`)."""
-
-    clock: Clock
-    directory: Directory[AgentHost]
-    ros: RosGraph
-    deployment: Deployment
-    options: RunOptions
 
 
 def run_data(system: ObservedSystem) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Records of intentions: changes in those of agents that had a turn, at most ten times a second."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.urgency import Urgent
@@ -24,20 +24,8 @@ MOST_AGENTS = 50
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
-class Moments(Protocol):
-    """Returns times."""
-
-    def __call__(self, moment: float | None = None) -> float:
-        """Return the seconds from the beginning of the run to a moment of its clock, or to now, with millisecond
-        precision.
-        """
-
-
-class Looking(Protocol):
-    """Checks one agent."""
-
-    def look(self) -> None:
-        """Record what has changed."""
+Moments = Callable[..., float]
+"""Returns the seconds from the beginning of the run to a moment of its clock (default: now), with millisecond precision."""
 
 
 class Looks:
@@ -49,12 +37,12 @@ class Looks:
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
-        self._due: list[Looking] = []
+        self._due: list[Callable[[], None]] = []
         self._timer: Timer | None = None
 
-    def soon(self, agent: Looking) -> None:
-        """Check an agent soon."""
-        self._due.append(agent)
+    def soon(self, look: Callable[[], None]) -> None:
+        """Call *look*, which checks an agent, soon."""
+        self._due.append(look)
         if self._timer is None:
             self._timer = self._clock.call_later(PERIOD, self.look)
 
@@ -64,8 +52,8 @@ class Looks:
         due, self._due = self._due[:MOST_AGENTS], self._due[MOST_AGENTS:]
         if self._due:
             self._timer = self._clock.call_later(PERIOD, self.look)
-        for agent in due:
-            agent.look()
+        for look in due:
+            look()
 
     def stop(self) -> None:
         """Stop checking until an agent has a turn."""
@@ -126,7 +114,7 @@ class IntentionRecords:
         """Schedule a check of the agent."""
         if not self._is_due:
             self._is_due = True
-            self._looks.soon(self)
+            self._looks.soon(self.look)
 
     def look(self) -> None:
         """Record the intentions that have changed since the last check, and those that have ended."""

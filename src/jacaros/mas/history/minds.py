@@ -11,7 +11,8 @@ from jacaros.agents.mind.state.intention import Frame, Intention
 from jacaros.agents.mind.state.plan import OpenFact, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.terms.values import Annotated, Functor, Term, atom
-from jacaros.mas.history.deliberations import Allowance, DeliberationRecords, Links
+from jacaros.mas.history.causes import CauseRecords
+from jacaros.mas.history.deliberations import Allowance, DeliberationRecords
 from jacaros.mas.history.intentions import IntentionRecords, Looks, Moments
 from jacaros.mas.history.messages import MessageRecords
 from jacaros.mas.history.programs import ProgramRecords
@@ -39,7 +40,7 @@ class Records(NamedTuple):
 
     tell: Callable[[str, Mapping[str, Any]], None]
     t: Moments
-    links: Links
+    links: CauseRecords
     examinations: Allowance
     programs: ProgramRecords
     messages: MessageRecords

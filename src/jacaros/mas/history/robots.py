@@ -2,9 +2,12 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from jacaros.runtime.clock import Clock
+
+if TYPE_CHECKING:
+    from jacaros.sim.node import SimNode
 
 MOST_RAYS = 90
 SCAN_PERIOD = 0.1
@@ -15,17 +18,6 @@ _SCAN = "LaserScan"
 _PATH = "Path"
 
 Tell = Callable[[str, Mapping[str, Any]], None]
-
-
-class WatchedRobots(Protocol):
-    """What the embedded world shows of its robots (`jacaros.sim.node.SimNode`)."""
-
-    def beliefs(self) -> dict[str, tuple[float, float, float]]:
-        """Return the estimated pose of each robot: x, y, yaw."""
-
-    def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
-        """Return the path that each robot follows."""
-
 
 Truths = Callable[[], Mapping[str, tuple[float, float, float]]]
 """Returns the true pose of each robot: x, y, yaw."""
@@ -38,7 +30,7 @@ class RobotRecords:
         clock: clock of the run.
         tell: takes the kind of a record and its data.
         robot_at: returns a robot's name for a topic prefix, such as ``/robot_0``.
-        find_robots: returns the robots of the embedded world, or None.
+        find_robots: returns the node of the embedded world, or None.
         truths: returns their true poses.
     """
 
@@ -47,7 +39,7 @@ class RobotRecords:
         clock: Clock,
         tell: Tell,
         robot_at: Callable[[str], str],
-        find_robots: Callable[[], WatchedRobots | None] = lambda: None,
+        find_robots: "Callable[[], SimNode | None]" = lambda: None,
         truths: Truths = dict,
     ) -> None:
         self._clock, self._tell, self._robot_at = clock, tell, robot_at

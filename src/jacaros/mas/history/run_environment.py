@@ -4,10 +4,14 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.deployment import Deployment
+from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.environment import EnvironmentRecords, robot_finder
 from jacaros.mas.history.graph import GraphRecords
 from jacaros.mas.history.robots import RobotRecords
+from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Tracer
@@ -23,11 +27,15 @@ ONLY_ROBOT = {"": "robot"}
 Tell = Callable[[str, Mapping[str, Any]], None]
 
 
-class SituatedSystem(Protocol):
-    """A running system, as far as this module needs it (`jacaros.mas.system.System`)."""
+class ObservedSystem(Protocol):
+    """A running system, as its history sees it (`jacaros.mas.system.System`)."""
 
     clock: Clock
+    directory: Directory[AgentHost]
+    mailboxes: Mailboxes
     ros: RosGraph
+    deployment: Deployment
+    options: RunOptions
 
     def trace(self, tracer: Tracer | None) -> None:
         """Let *tracer* create the causes. None ends this."""
@@ -51,7 +59,7 @@ class RunEnvironmentRecords:
         causes: numbers the causes of the run.
     """
 
-    def __init__(self, system: SituatedSystem, beginning: float, tell: Tell) -> None:
+    def __init__(self, system: ObservedSystem, beginning: float, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
         self.causes = CauseRecords(system.clock, beginning, tell, self._listener_of)

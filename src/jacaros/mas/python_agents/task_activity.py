@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from jacaros.artifacts.presence.presence import Account
 from jacaros.mas.idleness import Activity
 
 
-class TaskActivity:
+class TaskActivity(Account):
     """Counts the tasks of one agent. The agent is busy unless all of them wait for others.
 
     A task waits for others while it is in `waiting`: for a message, a signal, a condition. A task that waits for
