@@ -6,7 +6,7 @@ feedback and the outcome. Everything here happens on the loop.
 
 import asyncio
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.ros.action import Abort, ActionPolicy, Execute, GoalStatus, Outcome, ServerGoal
 from jacaros.ros.errors import MessageMismatch
@@ -21,41 +21,6 @@ LOOKING = 0.01
 """Seconds within which a server with pre-emption handles new goals and requests to cancel, as in Nav2."""
 TEXT_FIELDS = ("error_msg", "message")
 """Fields of action results that hold a text."""
-
-
-class GoalListener(Protocol):
-    """Sends the events of one goal to its client."""
-
-    def feedback(self, message: Any) -> None:
-        """Send a feedback message."""
-
-    def ended(self, outcome: Outcome) -> None:
-        """Send the outcome; called once."""
-
-
-class GoalReporter(Protocol):
-    """Sends the events of all goals of an action to their clients."""
-
-    def feedback(self, goal_id: str, message: Any) -> None:
-        """Send a feedback message of a goal."""
-
-    def ended(self, goal_id: str, outcome: Outcome) -> None:
-        """Send the outcome of a goal; called once for each."""
-
-
-class SingleGoalListener:
-    """The `GoalListener` of one goal, for a `GoalReporter`."""
-
-    def __init__(self, reporter: GoalReporter, goal_id: str) -> None:
-        self._reporter, self._goal_id = reporter, goal_id
-
-    def feedback(self, message: Any) -> None:
-        """Pass feedback on."""
-        self._reporter.feedback(self._goal_id, message)
-
-    def ended(self, outcome: Outcome) -> None:
-        """Pass the end on."""
-        self._reporter.ended(self._goal_id, outcome)
 
 
 class GoalUnderWay:
@@ -150,16 +115,28 @@ class ServedGoals:
             self._log(f"judging a goal of action {self._name} failed: {reason}")
             return reason
 
-    def begin(self, goal_id: str, request: Any, listener: GoalListener) -> ServerGoal:
-        """Run an accepted goal as a task of its own; *listener* receives feedback and the outcome.
+    def begin(
+        self,
+        goal_id: str,
+        request: Any,
+        feedback: Callable[[Any], None],
+        ended: Callable[[Outcome], None],
+    ) -> ServerGoal:
+        """Run an accepted goal as a task of its own.
+
+        Call *feedback* with each feedback message, and *ended* once with the outcome.
 
         With pre-emption, the code of the newer goal begins when that of the older one has ended.
         """
 
         def send(given: Any) -> None:
-            listener.feedback(checked_message(self._factory, self._feedback_type, given))
+            feedback(checked_message(self._factory, self._feedback_type, given))
 
-        goal = GoalUnderWay(goal_id, request, send, lambda goal, outcome: self._end(goal, outcome, listener))
+        def end(goal: GoalUnderWay, outcome: Outcome) -> None:
+            self._goals.pop(goal.goal_id, None)
+            ended(outcome)
+
+        goal = GoalUnderWay(goal_id, request, send, end)
         self._goals[goal_id] = goal
         if self._policy.preempt:
             self._queue(goal)
@@ -270,10 +247,6 @@ class ServedGoals:
                 f"judging a cancellation of action {self._name} failed: {type(problem).__name__}: {problem}"
             )
             return False
-
-    def _end(self, goal: GoalUnderWay, outcome: Outcome, listener: GoalListener) -> None:
-        self._goals.pop(goal.goal_id, None)
-        listener.ended(outcome)
 
     def _outcome(self, goal: GoalUnderWay, task: asyncio.Task[Any]) -> Outcome:
         """Return the outcome that corresponds to the end of a goal's code."""

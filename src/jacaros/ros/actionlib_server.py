@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
@@ -134,7 +135,9 @@ class ActionlibServer:
             self._finish(goal, State.REJECTED, refusal)
             return
         goal.change(State.ACTIVE)
-        self._served.begin(goal_id, message.goal, _Listener(self, goal))
+        self._served.begin(
+            goal_id, message.goal, partial(self._send_feedback, goal), partial(self._end, goal)
+        )
         self._report()
 
     def _new_id(self) -> str:
@@ -159,7 +162,7 @@ class ActionlibServer:
 
     # Messages to clients:
 
-    def send_feedback(self, goal: _Goal, feedback: Any) -> None:
+    def _send_feedback(self, goal: _Goal, feedback: Any) -> None:
         """Send feedback of a goal."""
         goal.feedback_at = self._node.clock.elapsed
         self._feedback.publish(
@@ -168,7 +171,7 @@ class ActionlibServer:
             )
         )
 
-    def end(self, goal: _Goal, outcome: Outcome) -> None:
+    def _end(self, goal: _Goal, outcome: Outcome) -> None:
         """Send the outcome of an accepted goal."""
         states = {
             GoalStatus.SUCCEEDED: State.SUCCEEDED,
@@ -231,17 +234,3 @@ class ActionlibServer:
 
     def _later(self) -> float:
         return self._node.clock.elapsed + STATUS_KEPT
-
-
-class _Listener:
-    """Sends the events of one goal to its client."""
-
-    def __init__(self, server: ActionlibServer, goal: _Goal) -> None:
-        self._server = server
-        self._goal = goal
-
-    def feedback(self, message: Any) -> None:
-        self._server.send_feedback(self._goal, message)
-
-    def ended(self, outcome: Outcome) -> None:
-        self._server.end(self._goal, outcome)

@@ -79,6 +79,13 @@ class Sample:
     cause: Cause | None
 
 
+class Closable(Protocol):
+    """Something that is closed once."""
+
+    def close(self) -> None:
+        """Close it; a part of a graph leaves the graph."""
+
+
 class Publisher(Protocol):
     """Publishes on a topic.
 

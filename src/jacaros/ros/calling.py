@@ -3,37 +3,18 @@
 import asyncio
 import sys
 from collections.abc import Awaitable, Callable
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
-from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import request_type
+from jacaros.ros.node import Node
 from jacaros.ros.serving import checked_message
-from jacaros.ros.waiting import Absence, Waiting
+from jacaros.ros.waiting import RETRY, Absence, Waiting, settle
 from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
 """Seconds between two checks whether the server of a call is still there."""
-
-RETRY = 0.1
-"""Seconds between two attempts to call a missing service."""
-
-
-class CallingNode(Protocol):
-    """The interface of a node for its clients."""
-
-    @property
-    def clock(self) -> Clock:
-        """The run's clock."""
-
-    @property
-    def log(self) -> Callable[[str], None]:
-        """Called with one line about waiting."""
-
-    @property
-    def factory(self) -> MessageFactory:
-        """Makes the requests."""
 
 
 class AttemptingClient:
@@ -46,9 +27,9 @@ class AttemptingClient:
         type_name: service type in full form.
     """
 
-    _node: CallingNode
+    _node: Node
 
-    def __init__(self, node: CallingNode, name: str, type_name: str) -> None:
+    def __init__(self, node: Node, name: str, type_name: str) -> None:
         self.name = name
         self._node = node
         self._type_name = type_name
@@ -210,13 +191,3 @@ def server_gone(name: str) -> ServerGone:
     return ServerGone(
         f"the server of service {name} went away during the call; it is unknown whether it was executed"
     )
-
-
-def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
-    """Set the response or failure of a call, unless it has ended: timed out or cancelled."""
-    if future.done():
-        return
-    if problem is not None:
-        future.set_exception(problem)
-    else:
-        future.set_result(response)

@@ -7,14 +7,16 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar, NoReturn, Protocol, TypeVar
+from typing import Any, ClassVar, NoReturn, TypeVar
 from weakref import WeakKeyDictionary
 
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
+from jacaros.ros.action_calling import LeavingGoals
 from jacaros.ros.backend import (
     DEADLINES,
     DEFAULT_POLICY,
     Client,
+    Closable,
     Handler,
     Publisher,
     Sample,
@@ -30,7 +32,6 @@ from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, action_type, message_type, service_type
 from jacaros.ros.orphans import OrphanPolicy, Orphans
 from jacaros.ros.parameter import GivenParameters, Parameters, ParameterValue
-from jacaros.ros.pending_goal import LeavingGoals
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.rosout import RosoutWriter
@@ -70,14 +71,7 @@ class NodeSettings:
     orphans: OrphanPolicy = "keep"
 
 
-class Member(Protocol):
-    """An entity of a node in its graph."""
-
-    def close(self) -> None:
-        """Leave the graph, and deregister from the node."""
-
-
-M = TypeVar("M", bound=Member)
+M = TypeVar("M", bound=Closable)
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,14 +146,14 @@ class Node:
         self.leaving_goals: LeavingGoals = {}
         """Goals of all action clients that are being cancelled."""
         self.given_parameters = GivenParameters(settings.parameters)
-        self.members: dict[Member, None] = {}
+        self.members: dict[Closable, None] = {}
         self.actions: WeakKeyDictionary[ActionClient | ActionServer, None] = WeakKeyDictionary()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._first_look: asyncio.Future[None] | None = None
         self._waiting: Waiting | None = None
         self._on_connection: list[Callable[[bool], None]] = []
         self._transforms = TransformBroadcaster(self)
-        self._frames = TransformListener(self)
+        self._frames = TransformListener(self, self.log)
         self._rosout = RosoutWriter(self)
 
     @property
@@ -175,6 +169,14 @@ class Node:
                 f"the {self.name} backend of {self.node_name} is not started: await backend.start() first"
             )
         return self._loop
+
+    async def start(self) -> None:
+        """Join the graph."""
+        raise NotImplementedError
+
+    async def close(self) -> None:
+        """Run the exit hooks and leave the graph."""
+        raise NotImplementedError
 
     def add_interfaces(self, folder: Path) -> None:
         """Search *folder* for type definitions, too; see `jacaros.ros.backend.Backend`."""
@@ -237,7 +239,7 @@ class Node:
         self.members[member] = None
         return member
 
-    def forget(self, member: Member) -> None:
+    def forget(self, member: Closable) -> None:
         """Deregister an entity that has left."""
         self.members.pop(member, None)
 

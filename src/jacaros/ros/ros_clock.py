@@ -7,8 +7,9 @@ no wait is for a time that never comes again, and no timer fires early.
 
 import asyncio
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
+from jacaros.ros.backend import Backend
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer, TimerQueue
@@ -30,13 +31,6 @@ NEARLY = 1e-6
 
 SILENT_AFTER = 3.0
 """Seconds of real time after which a clock that does not move is reported."""
-
-
-class ClockSource(Protocol):
-    """A source of ``/clock`` messages: a backend."""
-
-    def subscription(self, topic: str, type_name: str, callback: Callable[[Any], None], qos: QoS) -> Any:
-        """Call *callback* with each message."""
 
 
 class RosClock:
@@ -111,7 +105,7 @@ class RosClock:
         self._on_jump.append(told)
         return lambda: self._on_jump.remove(told) if told in self._on_jump else None
 
-    def listen(self, source: ClockSource) -> None:
+    def listen(self, source: Backend) -> None:
         """Follow the ``/clock`` of a graph that our node has joined."""
         self._subscription = source.subscription(
             CLOCK_TOPIC, CLOCK_TYPE, lambda sample: self.move_to(to_seconds(sample.message.clock)), CLOCK_QOS

@@ -1,12 +1,8 @@
 """The graph's own log: each line is a message on ``/rosout``."""
 
-from typing import Any, Protocol
-
-from jacaros.ros.backend import Publisher
+from jacaros.ros.backend import Backend, Publisher
 from jacaros.ros.errors import RosError
-from jacaros.ros.names import NodeNames
 from jacaros.ros.qos import QoS
-from jacaros.runtime.clock import Clock
 
 TOPIC = "/rosout"
 QUALITY = QoS(durability="transient_local", depth=1000)
@@ -17,16 +13,6 @@ ROS1_LEVELS = {"debug": 1, "info": 2, "warn": 4, "error": 8, "fatal": 16}
 ROS2_LEVELS = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 
 
-class _Node(Protocol):
-    clock: Clock
-    names: NodeNames
-
-    @property
-    def ros_version(self) -> int: ...
-    def message(self, type_name: str, /, **fields: Any) -> Any: ...
-    def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher: ...
-
-
 class RosoutWriter:
     """Publishes on ``/rosout`` (``rcl_interfaces/msg/Log``, on ROS 1 ``rosgraph_msgs/msg/Log``).
 
@@ -34,7 +20,7 @@ class RosoutWriter:
         node: the backend; the publisher is made for the first line.
     """
 
-    def __init__(self, node: _Node) -> None:
+    def __init__(self, node: Backend) -> None:
         self._node = node
         self._publisher: Publisher | None = None
 
@@ -45,14 +31,12 @@ class RosoutWriter:
         if self._publisher is None:
             kind, qos = (ROS1_TYPE, ROS1_QUALITY) if ros1 else (ROS2_TYPE, QUALITY)
             self._publisher = self._node.publisher(TOPIC, kind, qos)
-        now, names = self._node.clock.now(), self._node.names
+        now, name = self._node.clock.now(), self._node.node_name
         if ros1:
-            message = self._publisher.message(
-                header={"stamp": now}, level=number, name=names.full_name, msg=text
-            )
+            message = self._publisher.message(header={"stamp": now}, level=number, name=name, msg=text)
         else:
             # ROS 2 names loggers as Python does.
-            logger = names.full_name.strip("/").replace("/", ".")
+            logger = name.strip("/").replace("/", ".")
             message = self._publisher.message(stamp=now, level=number, name=logger, msg=text)
         self._publisher.publish(message)
 

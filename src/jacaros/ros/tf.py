@@ -2,16 +2,15 @@
 
 import asyncio
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
-from jacaros.ros.backend import Publisher, Sample, Subscription
+from jacaros.ros.backend import Backend, Publisher, Sample
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
 from jacaros.ros.message import to_seconds
 from jacaros.ros.protocols.tf_buffer import TransformBuffer
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import Waiting, within
-from jacaros.runtime.clock import Clock
 
 TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)
@@ -25,18 +24,6 @@ clock."""
 MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
-class _Node(Protocol):
-    name: str
-    clock: Clock
-    log: Callable[[str], None]
-
-    def message(self, type_name: str, /, **fields: Any) -> Any: ...
-    def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher: ...
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = ...
-    ) -> Subscription: ...
-
-
 class TransformBroadcaster:
     """Publishes on ``/tf`` and ``/tf_static``; both publishers are made on first use.
 
@@ -44,7 +31,7 @@ class TransformBroadcaster:
         node: the backend.
     """
 
-    def __init__(self, node: _Node) -> None:
+    def __init__(self, node: Backend) -> None:
         self._node = node
         self._publishers: dict[bool, Publisher] = {}
         self._static: dict[str, Any] = {}
@@ -72,10 +59,11 @@ class TransformListener:
 
     Args:
         node: the backend.
+        log: called with one line about waits and jumps of time.
     """
 
-    def __init__(self, node: _Node) -> None:
-        self._node = node
+    def __init__(self, node: Backend, log: Callable[[str], None]) -> None:
+        self._node, self._report = node, log
         self._listening = False
         self._buffer = TransformBuffer(self._log)
         self._latest = 0.0
@@ -105,7 +93,7 @@ class TransformListener:
                 raise
         what = f"transform from {source} to {target}"
         help = "is the node that publishes it running?"
-        with Waiting(self._node.clock, self._node.log, what, help, quiet=QUIET):
+        with Waiting(self._node.clock, self._report, what, help, quiet=QUIET):
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(
@@ -159,10 +147,10 @@ class TransformListener:
             look_again()
 
     def _log(self, text: str) -> None:
-        self._node.log(text)
+        self._report(text)
 
 
-def _require_type(node: _Node) -> None:
+def _require_type(node: Backend) -> None:
     try:
         node.message(MESSAGE)
     except UnknownInterface as problem:

@@ -7,7 +7,7 @@ A driver derives from these classes and only defines how a message is sent and r
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from jacaros.ros.backend import Sample, TopicEvent, TopicTrouble
 from jacaros.ros.node import Node, Wanted
@@ -191,17 +191,7 @@ class TopicSubscription(_TopicEnd[N]):
             self.deliver(self._waiting.popleft())
 
 
-class Reader(Protocol):
-    """A subscription that shares a multiplexer."""
-
-    def put(self, message: Any) -> None:
-        """Take a message, from any thread of the multiplexer."""
-
-    def report(self, trouble: TopicTrouble, text: str, key: object = None) -> None:
-        """Report a problem, on the loop."""
-
-
-R = TypeVar("R", bound=Reader)
+R = TypeVar("R", bound=TopicSubscription[Any])
 F = TypeVar("F", bound="TopicMultiplexer[Any]")
 
 

@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Callable
 from types import TracebackType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from jacaros.files.texts import is_worth_a_line
 from jacaros.runtime.clock import Clock, Timer
@@ -12,6 +12,8 @@ T = TypeVar("T")
 
 MISSING_AFTER = 3.0
 """Seconds after which an awaited thing is reported as missing. First discovery on ROS 2 can take two."""
+RETRY = 0.1
+"""Seconds between two attempts to call a missing service."""
 
 
 class Absence:
@@ -109,3 +111,13 @@ async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None)
     finally:
         if timer is not None:
             timer.cancel()
+
+
+def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
+    """Set the response or failure of a call, unless it has ended: timed out or cancelled."""
+    if future.done():
+        return
+    if problem is not None:
+        future.set_exception(problem)
+    else:
+        future.set_result(response)

@@ -11,11 +11,10 @@ from hypothesis import settings
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, rule
 
 from jacaros.ros.action import SERVER_LOST_AFTER, Abort, ActionPolicy, GoalStatus, Outcome
-from jacaros.ros.action_calling import GoalSender, PendingGoal
+from jacaros.ros.action_calling import ENDING, GoalSender, PendingGoal
 from jacaros.ros.action_serving import CLOSED, PREEMPTED, ServedGoals
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.message import MessageFactory
-from jacaros.ros.pending_goal import ENDING
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
@@ -123,7 +122,7 @@ class ServerLife(RuleBasedStateMachine):
         refusal = self.run.do(self.served.judge, request)
         assert refusal == (CLOSED if self.closed else None)
         if refusal is None:
-            self.run.do(self.served.begin, name, request, listener)
+            self.run.do(self.served.begin, name, request, listener.feedback, listener.ended)
         else:
             listener.ends.append(Outcome(GoalStatus.ABORTED, None))
         return name

@@ -23,8 +23,8 @@ from typing import Any, Literal, TypeVar
 
 from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
+from jacaros.ros.action_calling import ENDING
 from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
-from jacaros.ros.pending_goal import ENDING
 from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")

@@ -4,7 +4,7 @@ disposal."""
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from jacaros.artifacts.env.artifact import Artifact, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
@@ -28,6 +28,7 @@ from jacaros.ros.backend import (
     DISCOVERY,
     Backend,
     Client,
+    Closable,
     Publisher,
     Sample,
     Service,
@@ -39,14 +40,6 @@ from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.names import message_type
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-
-
-class Closable(Protocol):
-    """Something that its artifact closes on disposal."""
-
-    def close(self) -> None:
-        """Release it."""
-
 
 C = TypeVar("C", bound=Closable)
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar, cast
 
-from jacaros.ros.backend import Backend, Publisher, Sample
+from jacaros.ros.backend import Backend, Closable, Publisher, Sample
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -20,14 +20,7 @@ from jacaros.sim.world_time import WorldTime
 TICKS_PER_SECOND = 20
 
 
-class Entity(Protocol):
-    """A part of the graph that the robot withdraws at its end."""
-
-    def close(self) -> None:
-        """Withdraw it."""
-
-
-E = TypeVar("E", bound=Entity)
+E = TypeVar("E", bound=Closable)
 
 
 @dataclass(frozen=True)
@@ -45,7 +38,7 @@ class RobotOnGraph:
     robot: Robot
     backend: Backend
     localisation: Localisation
-    _entities: list[Entity] = field(default_factory=list, init=False)
+    _entities: list[Closable] = field(default_factory=list, init=False)
 
     @property
     def prefix(self) -> str:

@@ -19,8 +19,7 @@ from jacaros.ros.backend import (
     TRANSFORMS,
     Backend,
 )
-from jacaros.ros.drivers.memory.graph import MemoryGraph
-from jacaros.ros.drivers.memory.node import MemoryNode
+from jacaros.ros.drivers.memory.graph import MemoryGraph, MemoryNode, MemoryPublisher, MemorySubscription
 from jacaros.ros.drivers.memory.services import (
     MemoryActionServer,
     MemoryClient,
@@ -28,10 +27,9 @@ from jacaros.ros.drivers.memory.services import (
     MemoryParameters,
     MemoryService,
 )
-from jacaros.ros.drivers.memory.topics import MemoryPublisher, MemorySubscription
 from jacaros.ros.errors import ServiceUnavailable
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import Parts
 
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph", "MemoryPublisher", "MemorySubscription"]
 
@@ -70,9 +68,6 @@ class MemoryBackend(MemoryNode):
         action_server=MemoryActionServer,
     )
 
-    def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
-        super().__init__(settings, graph)
-
     async def start(self) -> None:
         """Join the graph."""
         self.join()
@@ -86,14 +81,6 @@ class MemoryBackend(MemoryNode):
         self.graph.leave(self)
         self.left()
         self.lifetime.left()
-
-    def vanish(self) -> None:
-        """Disappear without notice, as a killed process does; see `MemoryGraph.vanish`."""
-        self.vanished = True
-        for member in list(self.members):
-            getattr(member, "vanish", member.close)()
-        self.members.clear()
-        self.graph.leave(self)
 
     def parameters(self, node: str | None = None) -> MemoryParameters:
         """Return the parameters of our own node, or of another."""

@@ -1,20 +1,31 @@
-"""The shared state of the nodes of one process: topics, services, actions, and whether they reach each other.
+"""The nodes of one process, their publishers and subscriptions, and the graph that they share.
+
+Publishing is the innermost loop of every run on this backend: rare features (faults, deadlines) replace
+`MemorySubscription.arrive` instead of being checked for each message.
 
 Tests inject faults: `MemoryGraph.disturb`, `vanish`, `interrupt` and `restore`.
 """
 
 import asyncio
+import itertools
 import random
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Protocol
 
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.lifetime import Lifetime
+from jacaros.ros.node import M, Node, NodeSettings, Wanted
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
-from jacaros.ros.qos import QoS
+from jacaros.ros.qos import QoS, incompatibility
+from jacaros.ros.topics import TopicPublisher, TopicSubscription
+from jacaros.ros.typestore import DefinitionSchema
+from jacaros.runtime.clock import Timer
 
 
 class GraphEntity(Protocol):
@@ -22,79 +33,6 @@ class GraphEntity(Protocol):
 
     def vanish(self) -> None:
         """Disappear without notice."""
-        ...
-
-
-class GraphNode(GraphEntity, Protocol):
-    """A node."""
-
-    declared: DeclaredParameters
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-        ...
-
-    @property
-    def loop(self) -> asyncio.AbstractEventLoop:
-        """The loop on which it runs."""
-        ...
-
-    def set_connected(self, connected: bool) -> None:
-        """Note that the graph was found or lost."""
-        ...
-
-
-class TopicEnd(Protocol):
-    """A publisher or a subscription."""
-
-    type_name: str
-    qos: QoS
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-        ...
-
-
-class GraphSubscription(TopicEnd, Protocol):
-    """A subscription."""
-
-    @property
-    def arrive(self) -> Callable[[Any], None]:
-        """Takes a message from a publisher."""
-        ...
-
-    def meet(self, publisher: "GraphPublisher") -> None:
-        """Connect to a publisher, or report why that is impossible."""
-        ...
-
-    def fits(self, publisher: "GraphPublisher") -> bool:
-        """Return whether messages of a publisher arrive."""
-        ...
-
-    def choose_way(self) -> None:
-        """Select the delivery path for the topic's faults."""
-        ...
-
-
-class GraphPublisher(TopicEnd, Protocol):
-    """A publisher."""
-
-    def connect(self, subscription: GraphSubscription) -> None:
-        """Send to a subscription."""
-        ...
-
-    def disconnect(self, subscription: GraphSubscription) -> None:
-        """Stop sending to a subscription."""
-        ...
-
-    def disconnect_all(self) -> None:
-        """Stop sending to all subscriptions."""
-        ...
-
-    def refused(self, subscription: GraphSubscription) -> None:
-        """Report that a subscription expects another type."""
         ...
 
 
@@ -195,8 +133,8 @@ HIDDEN = ("/rosout", "/parameter_events")
 class Topic:
     """The entities of a topic, and the disturbance of its messages (None: none)."""
 
-    publishers: list[GraphPublisher] = field(default_factory=list)
-    subscriptions: list[GraphSubscription] = field(default_factory=list)
+    publishers: list["MemoryPublisher"] = field(default_factory=list)
+    subscriptions: list["MemorySubscription"] = field(default_factory=list)
     disturbance: Disturbance | None = None
 
     def info(self, name: str) -> TopicInfo:
@@ -221,25 +159,25 @@ class MemoryGraph:
         self._services: dict[str, GraphService] = {}
         self._actions: dict[str, GraphActionServer] = {}
         self._wires: dict[str, list[GoalLine]] = {}
-        self._nodes: dict[str, GraphNode] = {}
+        self._nodes: dict[str, MemoryNode] = {}
         self._awaited: dict[str, list[asyncio.Future[None]]] = {}
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
         self._parameter_listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
 
     # Nodes
 
-    def join(self, node: GraphNode) -> None:
+    def join(self, node: "MemoryNode") -> None:
         """Add *node*; a newer node of the same name replaces it."""
         self._loop = node.loop
         self._nodes[node.node_name] = node
         self._arrived(f"node {node.node_name}")
 
-    def leave(self, node: GraphNode) -> None:
+    def leave(self, node: "MemoryNode") -> None:
         """Remove *node*."""
         if self._nodes.get(node.node_name) is node:
             del self._nodes[node.node_name]
 
-    def node(self, name: str) -> GraphNode | None:
+    def node(self, name: str) -> "MemoryNode | None":
         """Return the node *name*, if it can be reached."""
         return self._nodes.get(name) if self.up else None
 
@@ -424,3 +362,217 @@ class MemoryGraph:
 
     def _all_wires(self) -> list[GoalLine]:
         return [wire for wires in self._wires.values() for wire in wires]
+
+
+class MemoryNode(Node):
+    """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its entities use.
+
+    Args:
+        settings: names, clock and log.
+        graph: the graph to join; default: a new one.
+    """
+
+    def __init__(self, settings: NodeSettings, graph: MemoryGraph | None = None) -> None:
+        self.schema = DefinitionSchema(settings.interface_paths)
+        super().__init__(settings, self.schema, Lifetime(settings.log))
+        self.graph = graph if graph is not None else MemoryGraph()
+        self.declared = DeclaredParameters(
+            self.node_name,
+            self.given_parameters,
+            lambda changed: self.graph.parameters_changed(self.node_name, changed),
+            self.log,
+        )
+        self.vanished = False
+        self._goal_numbers = itertools.count(1)
+
+    def keep(self, member: M) -> M:
+        """Close *member* with the node. Raises `RosError` if the node has vanished."""
+        if self.vanished:
+            member.close()
+            raise RosError(f"node {self.node_name} was taken away from the graph")
+        return super().keep(member)
+
+    def new_goal_id(self) -> str:
+        """Return a numbered id for a goal of this node."""
+        return f"{self.node_name}-{next(self._goal_numbers)}"
+
+    def vanish(self) -> None:
+        """Disappear without notice, as a killed process does; see `MemoryGraph.vanish`."""
+        self.vanished = True
+        for member in list(self.members):
+            getattr(member, "vanish", member.close)()
+        self.members.clear()
+        self.graph.leave(self)
+
+
+class MemoryPublisher(TopicPublisher[MemoryNode]):
+    """Publisher of `MemoryBackend`."""
+
+    def __init__(self, node: MemoryNode, topic: str, type_name: str, qos: QoS) -> None:
+        super().__init__(node, topic, type_name, qos)
+        self._receivers: list[MemorySubscription] = []
+        self.kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
+        self._shared = node.graph.topic(topic)
+        self._shared.publishers.append(self)
+        for subscription in self._shared.subscriptions:
+            subscription.meet(self)
+
+    @property
+    def subscription_count(self) -> int:
+        """Number of connected subscriptions."""
+        return len(self._receivers)
+
+    def _send(self, message: Any) -> None:
+        self.kept.append(message)
+        for subscription in self._receivers:
+            subscription.arrive(message)
+
+    def connect(self, subscription: "MemorySubscription") -> None:
+        """Send to a new subscription from now on, and send it the latched messages immediately."""
+        self._receivers.append(subscription)
+        if subscription.qos.durability != "volatile":
+            for message in self.kept:
+                subscription.arrive(message)
+
+    def disconnect(self, subscription: "MemorySubscription") -> None:
+        """Stop sending to a subscription."""
+        if subscription in self._receivers:
+            self._receivers.remove(subscription)
+
+    def disconnect_all(self) -> None:
+        """Stop sending to all subscriptions."""
+        self._receivers = []
+
+    def refused(self, subscription: "MemorySubscription") -> None:
+        """Report that a subscription expects another type; one of our own reports it itself."""
+        if subscription.node_name != self.node_name:
+            self._node.log(
+                f"topic {self.topic}: {subscription.node_name} expects {subscription.type_name} and does not receive "
+                f"what is published here as {self.type_name}"
+            )
+
+    def _leave(self) -> None:
+        self._shared.publishers.remove(self)
+        self._receivers = []
+
+
+class MemorySubscription(TopicSubscription[MemoryNode]):
+    """Subscription of `MemoryBackend`."""
+
+    def __init__(self, node: MemoryNode, wanted: Wanted) -> None:
+        super().__init__(node, wanted)
+        deadline = wanted.qos.deadline
+        self._deadline = None if deadline is None else _Deadline(node, deadline, self.report_deadline)
+        self._shared = node.graph.topic(self.topic)
+        self.arrive: Callable[[Any], None] = self.put
+        """Takes a message from a publisher."""
+        self._shared.subscriptions.append(self)
+        self.choose_way()
+        for publisher in self._shared.publishers:
+            self.meet(publisher)
+
+    @property
+    def publisher_count(self) -> int:
+        """Number of connected publishers."""
+        if not self._node.graph.up:
+            return 0
+        return sum(1 for publisher in self._shared.publishers if self.fits(publisher))
+
+    @property
+    def latched(self) -> bool:
+        """Whether stored messages are received."""
+        if self.qos.durability != "best_available":
+            return super().latched
+        offers = [publisher.qos.durability for publisher in self._shared.publishers if self.fits(publisher)]
+        return all(offer == "transient_local" for offer in offers)
+
+    def meet(self, publisher: MemoryPublisher) -> None:
+        """Connect to a publisher, or report why that is impossible."""
+        if publisher.type_name != self.type_name:
+            publisher.refused(self)
+            self.report_type_mismatch(publisher.node_name, publisher.type_name)
+        elif (problem := incompatibility(publisher.qos, self.qos)) is not None:
+            self.report_qos(problem)
+        elif self._node.graph.up:
+            publisher.connect(self)
+
+    def choose_way(self) -> None:
+        """Select the delivery path once, so the common case has no checks."""
+        put = self.put if self._deadline is None else self._put_in_time
+        disturbance = self._shared.disturbance
+        if disturbance is None:
+            self.arrive = put
+            return
+
+        def arrive(message: Any) -> None:
+            if not self._closed:
+                put(message)
+
+        def suffer(message: Any) -> None:
+            for delay in disturbance(message):
+                if delay <= 0.0:
+                    put(message)
+                else:
+                    self._node.clock.call_later(delay, partial(arrive, message))
+
+        self.arrive = suffer
+
+    def fits(self, publisher: MemoryPublisher) -> bool:
+        """Return whether messages of a publisher arrive."""
+        return publisher.type_name == self.type_name and incompatibility(publisher.qos, self.qos) is None
+
+    def _put_in_time(self, message: Any) -> None:
+        assert self._deadline is not None
+        self._deadline.kept()
+        self.put(message)
+
+    def _leave(self) -> None:
+        self._shared.subscriptions.remove(self)
+        for publisher in self._shared.publishers:
+            publisher.disconnect(self)
+        if self._deadline is not None:
+            self._deadline.stop()
+
+
+class _Deadline:
+    """Detects missed deadlines, starting with the first message, as in DDS.
+
+    Args:
+        node: has the clock.
+        seconds: maximum time between two messages.
+        missed: called at every period without a message; with True for the first after a message.
+    """
+
+    def __init__(self, node: MemoryNode, seconds: float, missed: Callable[[bool], None]) -> None:
+        self._clock = node.clock
+        self._seconds = seconds
+        self._missed = missed
+        self._last = 0.0
+        self._missing = False
+        self._timer: Timer | None = None
+
+    def kept(self) -> None:
+        """Note that a message has arrived."""
+        self._last = self._clock.elapsed
+        self._missing = False
+        if self._timer is None:
+            self._wait(self._seconds)
+
+    def stop(self) -> None:
+        """Stop watching."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _wait(self, seconds: float) -> None:
+        self._timer = self._clock.call_later(seconds, self._check)
+
+    def _check(self) -> None:
+        rest = self._last + self._seconds - self._clock.elapsed
+        if rest > 1e-9:
+            self._wait(rest)
+            return
+        first, self._missing = not self._missing, True
+        self._last = self._clock.elapsed
+        self._wait(self._seconds)
+        self._missed(first)

@@ -5,19 +5,18 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, Outcome
+from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import ServedGoals
 from jacaros.ros.backend import Handler
-from jacaros.ros.calling import PendingCalls, server_gone, settle
-from jacaros.ros.drivers.memory.graph import GoalLine, GraphActionServer, GraphService, MemoryGraph
-from jacaros.ros.drivers.memory.node import MemoryNode
+from jacaros.ros.calling import PendingCalls, server_gone
+from jacaros.ros.drivers.memory.graph import GoalLine, GraphActionServer, GraphService, MemoryNode
 from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
 from jacaros.ros.names import request_type
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.serving import Responder, checked_message
-from jacaros.ros.waiting import Absence, Waiting, within
+from jacaros.ros.waiting import Absence, Waiting, settle, within
 
 
 class MemoryService:
@@ -160,8 +159,14 @@ class MemoryActionServer:
         if refusal is not None:
             self._graph.tell(wire.sender.rejected, goal_id, refusal)
             return
-        self._graph.tell(wire.sender.accepted, goal_id)
-        self._goals.begin(goal_id, request, _News(self._graph, wire, goal_id))
+        tell, sender = self._graph.tell, wire.sender
+        tell(sender.accepted, goal_id)
+
+        def feedback(message: Any) -> None:
+            if self._graph.up:  # otherwise it is lost, as messages are
+                tell(sender.feedback, goal_id, message)
+
+        self._goals.begin(goal_id, request, feedback, partial(tell, sender.ended, goal_id))
 
     def cancel(self, goal_id: str, wire: GoalLine) -> None:
         """Handle a request to cancel."""
@@ -182,22 +187,6 @@ class MemoryActionServer:
     def _leave(self) -> None:
         self._graph.withdraw_action(self)
         self._node.forget(self)
-
-
-class _News:
-    """Sends the events of one goal to its client."""
-
-    def __init__(self, graph: MemoryGraph, wire: GoalLine, goal_id: str) -> None:
-        self._graph = graph
-        self._wire = wire
-        self._goal_id = goal_id
-
-    def feedback(self, message: Any) -> None:
-        if self._graph.up:  # otherwise it is lost, as messages are
-            self._graph.tell(self._wire.sender.feedback, self._goal_id, message)
-
-    def ended(self, outcome: Outcome) -> None:
-        self._graph.tell(self._wire.sender.ended, self._goal_id, outcome)
 
 
 class MemoryGoalWire:

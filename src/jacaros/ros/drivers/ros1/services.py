@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import rospy  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, call_when_offered, settle
+from jacaros.ros.calling import AttemptingClient, call_when_offered
 from jacaros.ros.drivers.ros1.master import Master, call_failure
 from jacaros.ros.drivers.ros1.node import Ros1Node
 from jacaros.ros.errors import (
@@ -23,7 +23,7 @@ from jacaros.ros.errors import (
 from jacaros.ros.handoff import LoopEnded, ask, in_thread, post
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.serving import Responder
-from jacaros.ros.waiting import within
+from jacaros.ros.waiting import settle, within
 
 
 class Ros1Service:

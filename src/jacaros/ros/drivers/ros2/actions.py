@@ -131,7 +131,7 @@ class Ros2ActionServer:
         goal = self._goals[identity] = _ServedGoal(self, GoalInfo(goal_id=request.goal_id, stamp=stamp))
         self._publish_status()
         goal.status = EXECUTING
-        self._under_way.begin(identity, request.goal, goal)
+        self._under_way.begin(identity, request.goal, goal.feedback, goal.ended)
         self._publish_status()
 
     def _cancel(self, request: Any, respond: Respond) -> None:

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch, settle
+from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.drivers.ros2.graph import service_mismatch, service_servers, service_servers_in
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
 from jacaros.ros.serving import Responder
-from jacaros.ros.waiting import within
+from jacaros.ros.waiting import settle, within
 
 SETTLING = 0.5
 """Seconds between discovering a server and the first request: answers before it has discovered the client are lost."""

@@ -8,11 +8,12 @@ the bridge has already accepted each goal, so a rejected goal is aborted, with t
 """
 
 import uuid
+from functools import partial
 from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender, GoalWire
-from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, SingleGoalListener, text_of
+from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, text_of
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Sample
@@ -292,20 +293,15 @@ class Ros2GoalService:
         if reason is not None:
             self._end(goal_id, self._aborted(reason))
         else:
-            self._goals.begin(goal_id, request, SingleGoalListener(self, goal_id))
+            self._goals.begin(goal_id, request, partial(self._feedback, goal_id), partial(self._end, goal_id))
 
     def cancel(self, goal_id: str) -> None:
         """Handle a request to cancel; the bridge has already accepted it."""
         self._goals.cancel(goal_id)
 
-    def feedback(self, goal_id: str, message: Any) -> None:
-        """Send feedback of a goal."""
+    def _feedback(self, goal_id: str, message: Any) -> None:
         values = self._node.translator.encode(feedback_type(self._type_name), message)
         self._node.send({"op": "action_feedback", "id": goal_id, "action": self.name, "values": values})
-
-    def ended(self, goal_id: str, outcome: Outcome) -> None:
-        """Send the outcome of a goal."""
-        self._end(goal_id, outcome)
 
     def _end(self, goal_id: str, outcome: Outcome) -> None:
         self._node.send(

@@ -11,7 +11,6 @@ from functools import partial
 from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
-from jacaros.ros.calling import settle
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
 from jacaros.ros.handoff import post
@@ -22,7 +21,7 @@ from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
 from jacaros.ros.topics import TopicMultiplexer
-from jacaros.ros.waiting import within
+from jacaros.ros.waiting import settle, within
 from jacaros.runtime.clock import Timer
 
 FIRST_LOOK = 5.0

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch, settle
+from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.errors import (
     CallFailed,
@@ -24,7 +24,7 @@ from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.serving import Responder
-from jacaros.ros.waiting import within
+from jacaros.ros.waiting import settle, within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
 """Parts of the server's error for a request that does not match its definition."""
