@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, get_args
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.sel_ev import observe_steps
@@ -12,7 +12,6 @@ from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, 
 from jacaros.agents.mind.state.triggers import Goal
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
@@ -24,11 +23,9 @@ from jacaros.mas.debugging.breakpoints import (
 )
 from jacaros.mas.debugging.reload import reload_programs
 from jacaros.mas.debugging.unpaused import command_standstill, not_paused
-from jacaros.mas.directory import Directory
-from jacaros.mas.options import RunOptions
-from jacaros.mas.ros_graph import RosGraph
-from jacaros.mas.scheduler import Runnable, Scheduler
-from jacaros.runtime.clock import Clock, WallClock, outside_run
+from jacaros.mas.history.run_environment import ObservedSystem
+from jacaros.mas.scheduler import Runnable
+from jacaros.runtime.clock import WallClock, outside_run
 
 Step = Literal["cycle", "step", "event"]
 """The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
@@ -69,17 +66,6 @@ class DebugState:
 Listener = Callable[[DebugState], None]
 
 
-class DebuggedSystem(Protocol):
-    """A running system, as its debugger sees it (`jacaros.mas.system.System`)."""
-
-    clock: Clock
-    options: RunOptions
-    scheduler: Scheduler
-    directory: Directory[AgentHost]
-    lifecycle: AgentLifecycle
-    ros: RosGraph
-
-
 class Debugger:
     """Pauses, steps and continues a run, and changes its speed and programs.
 
@@ -90,7 +76,7 @@ class Debugger:
         system: the system.
     """
 
-    def __init__(self, system: DebuggedSystem) -> None:
+    def __init__(self, system: ObservedSystem) -> None:
         self._system = system
         self._breakpoints: dict[str, Breakpoint] = {}
         self._listeners: tuple[Listener, ...] = ()

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.mas.history.causes import CauseRecords
@@ -13,6 +14,7 @@ from jacaros.mas.history.graph import GraphRecords
 from jacaros.mas.history.robots import RobotRecords
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
+from jacaros.mas.scheduler import Scheduler
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Tracer
 
@@ -28,10 +30,12 @@ Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class ObservedSystem(Protocol):
-    """A running system, as its history sees it (`jacaros.mas.system.System`)."""
+    """A running system, as its history and its debugger see it (`jacaros.mas.system.System`)."""
 
     clock: Clock
+    scheduler: Scheduler
     directory: Directory[AgentHost]
+    lifecycle: AgentLifecycle
     mailboxes: Mailboxes
     ros: RosGraph
     deployment: Deployment
