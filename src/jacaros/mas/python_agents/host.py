@@ -56,7 +56,7 @@ class PythonAgentHost(AgentHost):
         self._observer: Observer | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
         self._leaving = self._closed = False
-        agent._host = self
+        agent._host = self  # pyright: ignore[reportAttributeAccessIssue] - `send` is a field that holds a function
 
     @property
     def agent(self) -> PythonAgent:

@@ -354,6 +354,10 @@ class UrgentQueue(CalmQueue[Item]):
 
     __slots__ = ()
 
+    def first_urgency(self) -> int:
+        """Return the urgency of the first item, which is the greatest; 0 without any."""
+        return self.urgency(self[0]) if self else 0
+
     def append(self, item: Item) -> None:
         """Put an item after those that are as urgent or more."""
         urgency = self.urgency(item)
@@ -370,7 +374,7 @@ class UrgentQueue(CalmQueue[Item]):
 
 
 def _holds_urgent(queue: "deque[Event] | deque[Intention]") -> bool:
-    return isinstance(queue, UrgentQueue) and bool(queue) and queue.urgency(queue[0]) > 0
+    return isinstance(queue, UrgentQueue) and queue.first_urgency() > 0
 
 
 def has_urgent_plans(agent: Circumstance) -> bool:
