@@ -388,5 +388,4 @@ def plans_changed(agent: Circumstance) -> None:
         if not has_urgent_plans(agent):
             return
         agent.selections = Urgent(agent)
-        agent.unusual = True
     agent.selections.look_anew()
