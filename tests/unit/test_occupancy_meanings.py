@@ -8,7 +8,7 @@ import pytest
 
 from jacaros.artifacts.map import map_files
 from jacaros.artifacts.map.cells import FREE, OBSTACLE
-from jacaros.artifacts.map.grids import Grid
+from jacaros.artifacts.map.map_files import Grid
 from jacaros.files import maps
 from jacaros.inspector.map_drawing import map_drawing
 from jacaros.sim import World

@@ -10,9 +10,8 @@ from jacaros.artifacts import Artifact, InvalidArtifact, UnknownArtifactType
 from jacaros.artifacts.env.environment import Blackboard, Console
 from jacaros.artifacts.robots.battery import ArtSimBattery
 from jacaros.artifacts.robots.connection_artifact import ArtRos
-from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
-from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan
 from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
+from jacaros.artifacts.robots.sensors import ArtBaseScan, ArtBumper, ArtCliff, ArtScan
 from jacaros.artifacts.robots.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
@@ -20,9 +19,7 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelMuxAndOdometry,
     ArtVelocity,
 )
-from jacaros.artifacts.thesis.cleaning import ArtCleaning
-from jacaros.artifacts.thesis.perception import ArtPerception
-from jacaros.artifacts.thesis.tutorial import ArtTutorial
+from jacaros.artifacts.thesis import ArtCleaning, ArtPerception, ArtTutorial
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.files.texts import shown_from

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.artifacts.robots.charge import Charge
+from jacaros.artifacts.robots.battery import Charge
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.scene import UNKNOWN, RobotView

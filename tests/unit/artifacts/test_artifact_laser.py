@@ -6,7 +6,7 @@ import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.artifacts.robots.laser import ArtBaseScan, ArtScan, sampled
+from jacaros.artifacts.robots.sensors import ArtBaseScan, ArtScan, sampled
 
 
 def scan(lab: Lab, ranges: list[float], topic: str = "/scan", longest: float = 8.0) -> None:

@@ -8,7 +8,7 @@ from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Environment, Out, Structure
 from jacaros.artifacts.env.errors import OperationFailed
-from jacaros.artifacts.thesis.cleaning import ArtCleaning
+from jacaros.artifacts.thesis import ArtCleaning
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -5,10 +5,21 @@ import math
 import pytest
 
 from jacaros.artifacts.robots.approach import Outlook, Step, pulse_for
-from jacaros.artifacts.robots.control import Limits, Line, Velocity, bearing, distance, steer
-from jacaros.artifacts.robots.drive_model import DriveModel
-from jacaros.artifacts.robots.journey import DriveTo, Sequence, TurnTo, go_to
-from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
+from jacaros.artifacts.robots.drive_model import DriveModel, Limits, Velocity
+from jacaros.artifacts.robots.maneuver import (
+    DriveTo,
+    Line,
+    Maneuver,
+    Sequence,
+    Straight,
+    Timed,
+    Turn,
+    TurnTo,
+    bearing,
+    distance,
+    go_to,
+    steer,
+)
 from jacaros.plane.pose import ORIGIN, Pose, normalised
 
 LIMITS = Limits(speed=0.65, turn_speed=1.0)

@@ -9,8 +9,8 @@ import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Structure
-from jacaros.artifacts.robots import drift
-from jacaros.artifacts.robots.control import Velocity
+from jacaros.artifacts.robots import odometry as drift
+from jacaros.artifacts.robots.drive_model import Velocity
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.plane.pose import Pose
 

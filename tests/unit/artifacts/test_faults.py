@@ -9,10 +9,10 @@ from robot_lab import STANDSTILL, Lab, Watcher, in_lab
 from jacaros.artifacts import Atom, Structure
 from jacaros.artifacts.kit.faults import FAR, SILENCE, Faults, Stamps
 from jacaros.artifacts.robots.battery import ArtSimBattery
-from jacaros.artifacts.robots.laser import ArtBaseScan
 from jacaros.artifacts.robots.odometry import ArtOdometry
+from jacaros.artifacts.robots.sensors import ArtBaseScan
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.artifacts.thesis.tutorial import ArtTutorial
+from jacaros.artifacts.thesis import ArtTutorial
 from jacaros.runtime.clock import VirtualClock
 
 ODOMETRY = "nav_msgs/msg/Odometry"

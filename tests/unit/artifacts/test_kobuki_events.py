@@ -4,7 +4,7 @@ import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Structure
-from jacaros.artifacts.robots.kobuki_events import ArtBumper, ArtCliff
+from jacaros.artifacts.robots.sensors import ArtBumper, ArtCliff
 
 
 def send(lab: Lab, topic: str, kind: str, **fields: int) -> None:

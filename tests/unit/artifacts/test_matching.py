@@ -9,7 +9,7 @@ from robot_lab import STANDSTILL, Lab, in_lab
 from jacaros.artifacts import Structure
 from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.artifacts.thesis.cleaning import ArtCleaning
+from jacaros.artifacts.thesis import ArtCleaning
 from jacaros.ros.backend import DISCOVERY, Publisher, Sample
 from jacaros.ros.guarded import guarded_by
 

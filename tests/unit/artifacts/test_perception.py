@@ -3,7 +3,7 @@
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.artifacts.thesis.perception import ArtPerception
+from jacaros.artifacts.thesis import ArtPerception
 
 
 def test_the_texts_of_the_newest_message_are_properties() -> None:

@@ -8,12 +8,11 @@ import pytest
 from robot_lab import Lab, Watcher, in_lab
 
 from jacaros.artifacts import Structure, operation
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, RangeOfView, Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.kit.sensing_artifact import RangeOfView
-from jacaros.artifacts.robots.laser import ArtBaseScan
 from jacaros.artifacts.robots.odometry import ArtOdometry
-from jacaros.artifacts.thesis.tutorial import ArtTutorial
+from jacaros.artifacts.robots.sensors import ArtBaseScan
+from jacaros.artifacts.thesis import ArtTutorial
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.trace import Cause
 

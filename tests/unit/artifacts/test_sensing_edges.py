@@ -9,17 +9,14 @@ from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, Reading, ReadingPolicy, Values
-from jacaros.artifacts.kit.sensing_artifact import RangeOfView
-from jacaros.artifacts.map.cells import OBSTACLE
-from jacaros.artifacts.map.localisation import Localisation
-from jacaros.artifacts.map.occupancy import HIT, OccupancyCells
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, RangeOfView, Reading, ReadingPolicy, Values
+from jacaros.artifacts.map.cells import HIT, OBSTACLE, OccupancyCells
+from jacaros.artifacts.map.mapper import Localisation
 from jacaros.artifacts.mapping.declared import Conversion, Line
-from jacaros.artifacts.mapping.decoding import converted
+from jacaros.artifacts.mapping.decoding import converted, extractor
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.artifacts.mapping.read_fields import conversion
-from jacaros.artifacts.mapping.rows import extractor
 from jacaros.plane.pose import Pose
 from jacaros.runtime.clock import VirtualClock, run
 

@@ -6,7 +6,7 @@ import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.artifacts.thesis.tutorial import ArtTutorial
+from jacaros.artifacts.thesis import ArtTutorial
 
 ADD = "example_interfaces/srv/AddTwoInts"
 

@@ -1,14 +1,14 @@
 """Building blocks of artifacts for robots.
 
-================================ ======================================================================
-file                             content
-================================ ======================================================================
-`ros_artifact`                   the parent class, built from `connected_artifact` (topics, services,
-                                 actions) and `sensing_artifact` (sensor readings)
-`options`                        arguments of ``makeArtifact``
-`reading`                        reading policies for sensors
-`acting`, `services`             action goals, service calls, and services that an artifact offers
-`connection`                     whether a publisher or subscriber is connected
-`faults`                         bad messages, and failing callbacks
-================================ ======================================================================
+=================== ===================================================================================
+file                content
+=================== ===================================================================================
+`ros_artifact`      the parent class: topics, services, actions and sensor readings, closed on disposal
+`options`           arguments of ``makeArtifact``
+`reading`           reading policies for sensors; the range of view
+`acting`            action goals
+`services`          service calls, and services that an artifact offers
+`connection`        publishers and subscribers at the other end
+`faults`            bad messages, and failing callbacks
+=================== ===================================================================================
 """

@@ -14,12 +14,12 @@ expire         values are withdrawn after some seconds without a message
 finite         messages with NaN or an infinite number are refused
 =============  ==========================================================================================
 
-The range of view, for messages with many elements, is in `sensing_artifact`.
+`RangeOfView` is for messages with many elements.
 """
 
 import asyncio
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from jacaros.artifacts.kit.options import Reader, bands, one_of, positive, yes_or_no
@@ -262,3 +262,61 @@ def not_finite(values: Values) -> float | None:
         elif isinstance(value, list | tuple) and (found := not_finite(tuple(value))) is not None:
             return found
     return None
+
+
+MOVED = 0.01
+"""Metres that a robot must move before the elements in view are computed again."""
+
+Place = Callable[[Values], tuple[float, float]]
+"""Return the position of an element: x and y in metres, in the frame of the robot's position."""
+
+
+def first_two(element: Values) -> tuple[float, float]:
+    """Return the position of an element whose first two values are x and y."""
+    x, y = element[:2]
+    assert isinstance(x, int | float)
+    assert isinstance(y, int | float)
+    return float(x), float(y)
+
+
+class RangeOfView:
+    """The elements of the newest message within a range of the robot.
+
+    Until the robot's position is known, nothing is in view.
+
+    Args:
+        reach: metres, inclusive.
+        show: called with the elements in view, in the order of the message, whenever they change.
+        place: returns the position of an element.
+    """
+
+    def __init__(
+        self, reach: float, show: Callable[[list[Values], Cause | None], None], place: Place = first_two
+    ) -> None:
+        self._reach, self._show, self._place = reach, show, place
+        self._elements: list[tuple[float, float, Values]] = []
+        self._here: tuple[float, float] | None = None
+        self._shown: list[Values] = []
+
+    def take(self, elements: Iterable[Values], cause: Cause | None = None) -> None:
+        """Take the elements of a message; an element whose position is not finite is never in view."""
+        self._elements = [(*self._place(each), each) for each in elements]
+        self._look(cause)
+
+    def stand(self, x: float, y: float, cause: Cause | None = None) -> None:
+        """Update the position of the robot."""
+        before = self._here
+        if before is None or math.dist(before, (x, y)) > MOVED:
+            self._here = (x, y)
+            self._look(cause)
+
+    def _look(self, cause: Cause | None) -> None:
+        if self._here is None:
+            return
+        here_x, here_y = self._here
+        seen = [
+            element for x, y, element in self._elements if math.hypot(x - here_x, y - here_y) <= self._reach
+        ]
+        if seen != self._shown:
+            self._shown = seen
+            self._show(seen, cause)

@@ -1,22 +1,26 @@
-"""Maps in the format of ROS's map_server: a YAML file, and an image next to it (PGM; PNG can be read, too).
+"""Foreign maps: occupancy grids of messages, and files in the format of ROS's map_server.
 
-Places have a key of their own, ``places``, which map_server ignores.
-"""
+Such a file is YAML, with an image next to it (PGM; PNG can be read, too). Places have a key of their own, ``places``,
+which map_server ignores."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from jacaros.artifacts.map.cells import FREE, Cell
-from jacaros.artifacts.map.grids import Grid
+from jacaros.artifacts.map.cells import FREE, OBSTACLE, Cell
 from jacaros.errors import JacarosError
 from jacaros.files.maps import (
     BLACK,
     GREY,
+    OCCUPIED,
+    UNKNOWN,
     WHITE,
     GreyImage,
     ImageError,
     header_text,
+    meanings,
     pgm_bytes,
     read_header,
     read_image,
@@ -24,6 +28,50 @@ from jacaros.files.maps import (
 from jacaros.files.texts import file_text
 from jacaros.files.yaml import Problem, YamlFileError, read_document
 from jacaros.plane.pose import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A grid of free, occupied and unknown cells.
+
+    Attributes:
+        resolution: side of a cell, in metres.
+        width: cells per row.
+        origin: pose of the corner of the first cell.
+        cells: what each cell means (see `jacaros.files.maps`); rows from the bottom.
+    """
+
+    resolution: float
+    width: int
+    origin: Pose
+    cells: bytes
+
+    @staticmethod
+    def of(message: Any) -> "Grid":
+        """Read a ``nav_msgs/msg/OccupancyGrid``."""
+        info = message.info
+        return Grid(float(info.resolution), int(info.width), Pose.of(info.origin), meanings(message.data))
+
+    def labels(self, size: float) -> dict[Cell, str]:
+        """Return free cells and obstacles as cells of another *size* (metres), which must not be smaller.
+
+        A cell is an obstacle if any part of it is, and free if its known parts are free.
+        """
+        found: dict[Cell, str] = {}
+        corner, step = self.origin, self.resolution / size
+        sine, cosine = step * math.sin(corner.yaw), step * math.cos(corner.yaw)
+        for index, meaning in enumerate(self.cells):
+            if meaning != UNKNOWN:
+                row, column = divmod(index, self.width)
+                u, v = column + 0.5, row + 0.5
+                x = corner.x / size + cosine * u - sine * v
+                y = corner.y / size + sine * u + cosine * v
+                cell = (math.floor(x + 0.5), math.floor(y + 0.5))
+                if meaning == OCCUPIED:
+                    found[cell] = OBSTACLE
+                else:
+                    found.setdefault(cell, FREE)
+        return found
 
 
 class MapFileError(JacarosError):

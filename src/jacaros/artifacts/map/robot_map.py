@@ -8,13 +8,10 @@ from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text, yes_or_no
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
-from jacaros.artifacts.map.cells import Cell, LabelledCells
-from jacaros.artifacts.map.frontiers import around, frontier, nearest
-from jacaros.artifacts.map.grids import Grid
-from jacaros.artifacts.map.legs import Leg, next_leg
-from jacaros.artifacts.map.mapper import Mapper
-from jacaros.artifacts.map.occupancy import OccupancyCells
-from jacaros.artifacts.map.scans import ScanOptions
+from jacaros.artifacts.map.cells import Cell, LabelledCells, OccupancyCells
+from jacaros.artifacts.map.map_files import Grid
+from jacaros.artifacts.map.mapper import Mapper, ScanOptions
+from jacaros.artifacts.map.routes import Leg, around, frontier, nearest, next_leg
 from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
 from jacaros.plane.pose import ORIGIN, Pose

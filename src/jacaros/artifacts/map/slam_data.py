@@ -9,10 +9,8 @@ from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.options import not_negative, positive, text
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.map.cells import FREE, GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells
-from jacaros.artifacts.map.inflation import inflated
-from jacaros.artifacts.map.picture import picture
-from jacaros.artifacts.map.route import DEGREES, compass, route
+from jacaros.artifacts.map.cells import FREE, GOAL, OBSTACLE, UNKNOWN, Cell, LabelledCells, picture
+from jacaros.artifacts.map.routes import DEGREES, compass, inflated, route
 from jacaros.plane.pose import normalised
 
 ME = Atom("me")

@@ -1,25 +1,34 @@
 """The artifact that a mapping file declares, and the construction of its class. Types have the names of mapping
 files: ``turtlebot.yaml``, ``fleet.yaml#arm``."""
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.mapping.checking import type_problems
-from jacaros.artifacts.mapping.declared import MappingError, MappingFile
+from jacaros.artifacts.mapping.declared import (
+    ArtifactPart,
+    MappingError,
+    MappingFile,
+    OperationKind,
+    OperationPart,
+    unlike,
+)
 from jacaros.artifacts.mapping.deriving import Derivation
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameUpdater
-from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.host import Host, TypeSearch
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
-from jacaros.artifacts.mapping.operation_methods import methods, motion_uses
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
-from jacaros.artifacts.mapping.type_search import TypeSearch
+from jacaros.artifacts.resources.arbiter import WHEELS
+from jacaros.ros.guarded import VELOCITIES
 
 
 class MappedArtifact(Host):
@@ -100,7 +109,7 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         "mapping": mapping,
         "part": part,
         "further_uses": motion_uses(part),
-        **methods(part, parameter_words),
+        **methods(part),
     }
     tuned = any(each.declaration is not None for each in part.parameters)
     return type(_class_name(name), (TunedArtifact if tuned else MappedArtifact,), members)
@@ -150,3 +159,66 @@ def _make(path: Path, file: str, artifact: str) -> type[MappedArtifact]:
         what = f"has no artifact {artifact}" if artifact else f"has {len(names)} artifacts"
         raise UnknownArtifactType(f"{file}#{artifact}", (), f"`{file}` {what}; write {write}")
     return mapped_type(mapping, artifact)
+
+
+# Operations of a mapping as methods, with names, arities and outputs as if written in Python.
+
+
+def methods(artifact: ArtifactPart) -> dict[str, Callable[..., Any]]:
+    """Return the operations of an artifact, by names that cannot clash with methods of a class."""
+    return {f"mapped {number}": _method(artifact, number) for number in range(len(artifact.operations))}
+
+
+def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
+    part = artifact.operations[number]
+    inputs = len(part.parameters)
+
+    async def run(self: Any, *arguments: object) -> None:
+        outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
+        await self.operating.run(number, arguments[:inputs], outs)
+
+    names = [*part.parameters, *unlike(part.parameters, artifact.output_names(part))]
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]  # read by inspect.signature
+        [inspect.Parameter(name, kind) for name in ("self", *names)]
+    )
+    run.__annotations__ = dict.fromkeys(names[inputs:], Out)
+    run.__qualname__ = run.__name__ = part.name
+    run.__doc__ = description(part)
+    run.parameter_words = lambda: parameter_words(artifact, part)  # type: ignore[attr-defined]  # for manuals
+    return operation(name=part.name, pausable=is_pausable(part), uses=part.uses)(run)
+
+
+def is_pausable(part: OperationPart) -> bool:
+    """Return whether it reacts when its intention is suspended."""
+    return part.kind is OperationKind.PUBLISH or (
+        part.kind is OperationKind.ACTION and part.suspend != "go_on"
+    )
+
+
+def motion_uses(artifact: ArtifactPart) -> tuple[str, ...]:
+    """Return the resources of operations that are motions without declaring resources: repeated velocities."""
+    moves = any(
+        part.kind is OperationKind.PUBLISH
+        and part.rate is not None
+        and not part.uses
+        and (part.type_name is None or part.type_name.text in VELOCITIES)
+        for part in artifact.operations
+    )
+    return (WHEELS,) if moves else ()
+
+
+def description(part: OperationPart) -> str:
+    """Describe an operation."""
+    of_type = f" ({part.type_name.text})" if part.type_name is not None else ""
+    named = ", ".join(each.text for each in part.properties)
+    usual = {
+        OperationKind.PUBLISH: f"Publishes on {part.target.text}{of_type}.",
+        OperationKind.SERVICE: f"Calls the service {part.target.text}{of_type}.",
+        OperationKind.ACTION: f"Runs a goal of the action {part.target.text}{of_type}.",
+        OperationKind.SET: f"Sets the parameter {part.target.text} of {part.node or 'our own node'}.",
+        OperationKind.GET: f"Gives the parameter {part.target.text} of {part.node or 'our own node'}.",
+        OperationKind.REFRESH: f"Updates {named} to the newest values.",
+        OperationKind.READ: f"Gives the newest values of {named}.",
+    }
+    return part.description or usual[part.kind]

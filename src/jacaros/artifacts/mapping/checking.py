@@ -15,10 +15,9 @@ from jacaros.artifacts.mapping.declared import (
     Written,
     WrongPath,
 )
-from jacaros.artifacts.mapping.decoding import reader
+from jacaros.artifacts.mapping.decoding import extractor, reader
 from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import Interfaces
-from jacaros.artifacts.mapping.rows import extractor
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface

@@ -200,6 +200,19 @@ def value_names(fields: tuple[FieldPart, ...]) -> list[str]:
     ]
 
 
+def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
+    """Return the same names, with numbers appended to duplicates."""
+    seen, found = set(taken), []
+    for name in names:
+        plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+        wanted, number = plain, 2
+        while wanted in seen or not wanted.isidentifier():
+            wanted, number = f"{plain}{number}" if plain.isidentifier() else f"value{number}", number + 1
+        seen.add(wanted)
+        found.append(wanted)
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class RangeOfView:
     """The range within which elements are shown.

@@ -7,9 +7,7 @@ from typing import Any
 from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart, WrongPath
 from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
-from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants
-from jacaros.artifacts.mapping.message_units import check_unit
-from jacaros.artifacts.mapping.paths import follow
+from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow
 from jacaros.artifacts.mapping.read_fields import ANGLES
 from jacaros.artifacts.mapping.read_operations import ALL_OF_IT
 from jacaros.files.yaml import Problem

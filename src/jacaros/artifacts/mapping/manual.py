@@ -22,23 +22,23 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     ValuePart,
     WrongPath,
+    unlike,
     value_names,
 )
-from jacaros.artifacts.mapping.decoding import octet, owner_of
+from jacaros.artifacts.mapping.decoding import fields_of, octet, owner_of
 from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.interfaces import (
     Interfaces,
     chosen,
     constants,
     constants_by_field,
+    follow,
     stored_interfaces,
+    unit_at,
+    words_of,
 )
-from jacaros.artifacts.mapping.message_units import unit_at, words_of
-from jacaros.artifacts.mapping.operation_methods import unlike
-from jacaros.artifacts.mapping.paths import follow
 from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
 from jacaros.artifacts.mapping.read_properties import TRANSFORM
-from jacaros.artifacts.mapping.rows import fields_of
 from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface

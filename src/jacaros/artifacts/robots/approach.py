@@ -9,9 +9,7 @@ about to change.
 import math
 from dataclasses import dataclass
 
-from jacaros.artifacts.robots.control import Limits, Velocity
-from jacaros.artifacts.robots.drive_model import DriveModel
-from jacaros.artifacts.robots.response import HELD, Axis
+from jacaros.artifacts.robots.drive_model import HELD, Axis, DriveModel, Limits, Velocity
 from jacaros.plane.pose import Pose
 
 BRAKING_SHARE = 0.6

@@ -11,9 +11,8 @@ from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, distance
-from jacaros.artifacts.robots.drive_model import DriveModel
-from jacaros.artifacts.robots.maneuver import Maneuver
+from jacaros.artifacts.robots.drive_model import STANDSTILL, DriveModel, Limits, Velocity
+from jacaros.artifacts.robots.maneuver import Maneuver, distance
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions
 from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
 from jacaros.plane.pose import Pose

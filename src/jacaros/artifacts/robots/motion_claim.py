@@ -10,8 +10,7 @@ from weakref import WeakKeyDictionary
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.robots.control import Velocity
-from jacaros.artifacts.robots.drive_model import DriveModel
+from jacaros.artifacts.robots.drive_model import DriveModel, Velocity
 from jacaros.ros.backend import Backend
 from jacaros.ros.guarded import guarded_by
 from jacaros.runtime.clock import Clock

@@ -1,18 +1,21 @@
-"""``ArtOdometry``: the pose of a robot according to odometry, continuously or on demand."""
+"""The pose of a robot: ``ArtOdometry``, frames in which it drives, and advice about drift."""
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
+from weakref import WeakSet
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.faults import Faults, Header
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.robots.control import Velocity
-from jacaros.plane.pose import Pose, yaw_of
-from jacaros.ros.backend import Sample
+from jacaros.artifacts.robots.drive_model import Velocity
+from jacaros.plane.pose import Pose, normalised, yaw_of
+from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.errors import TransformUnavailable
+from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import SENSOR_DATA
 from jacaros.runtime.clock import Clock
 
@@ -85,7 +88,7 @@ class Odometer:
         on_reading: called with every good message.
         frame: see `Header`.
         placed: converts odometry to the driving frame, None while that is unknown; see
-            `jacaros.artifacts.robots.driving_frame`.
+            `jacaros.artifacts.robots.odometry`.
 
     Attributes:
         newest: None until the first message.
@@ -223,3 +226,123 @@ def pose_values(odometry: Odometry) -> tuple[float, float, float]:
     """x and y in metres, heading in degrees."""
     pose = odometry.pose
     return (pose.x, pose.y, math.degrees(pose.yaw))
+
+
+# The frame in which a robot drives: odometry's own, or one that localisation corrects, such as ``map``.
+
+OLDEST_TRANSFORM = 2.0
+"""Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
+
+
+class DrivingFrame:
+    """Convert odometry to another frame (REP 105), by the newest transform between the two.
+
+    Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in
+    ``map``.
+
+    Args:
+        ros: the graph; its tf is subscribed to from now on.
+        name: name of the frame.
+
+    Raises:
+        CapabilityMissing: the graph has no tf.
+    """
+
+    def __init__(self, ros: Backend, name: str) -> None:
+        self._ros, self.name = ros, name
+        ros.tf_listen()
+
+    def placed(self, odometry: Odometry) -> Odometry | None:
+        """Return the odometry with the pose in this frame; None while the transform is unknown."""
+        header = odometry.sample.message.header
+        try:
+            transform = self._ros.tf_lookup(self.name, header.frame_id)
+        except TransformUnavailable:
+            return None
+        told = to_seconds(header.stamp)
+        # Both stamps are from the robot's clock, which may be wrong but is the same for both.
+        if told and transform.stamp and told - transform.stamp > OLDEST_TRANSFORM:
+            return None
+        position = transform.apply(odometry.position)
+        heading = normalised(odometry.pose.yaw + transform.yaw)
+        return replace(odometry, position=position, pose=Pose(position[0], position[1], heading))
+
+
+# Advice for robots that drive by odometry although a localisation finds them elsewhere.
+
+LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
+TOLERANCE = (0.05, math.radians(3.0))
+"""Metres and radians that odometry may drift: the accuracy of a navigation goal."""
+LEAP = (0.5, math.radians(30.0))
+"""A larger change between two poses is a new estimate, as after a pose from rviz, and not a drift."""
+OUTDATED, AHEAD = 1.0, 0.1
+"""Seconds over which the motion is extrapolated: from the newest odometry back to a pose, and forward to one. Over a slow
+network odometry does not yet show that the robot turns, and a pose that is further ahead would look like a drift."""
+
+_advised: WeakSet[Backend] = WeakSet()
+
+
+class Drift:
+    """Compare odometry with localised poses (``amcl_pose``), and log once per run that they drift apart.
+
+    Args:
+        ros: the graph.
+        odometer: odometry of the robot in its own frame.
+        driving: whether a motion relies on that odometry now.
+        log: takes the advice.
+    """
+
+    def __init__(
+        self, ros: Backend, odometer: Odometer, driving: Callable[[], bool], log: Callable[[str], None]
+    ) -> None:
+        self._ros, self._odometer, self._driving, self._log = ros, odometer, driving, log
+        self._first: Pose | None = None
+        self._last: Pose | None = None
+
+    def take(self, sample: Sample) -> None:
+        """Handle a localised pose; the callback of the subscription."""
+        at = self._odometry_at(to_seconds(sample.message.header.stamp))
+        if at is None or self._ros in _advised:
+            return
+        correction = Pose.of(sample.message.pose.pose).then(at.inverse())
+        if (
+            self._first is None
+            or self._last is None
+            or _exceeds(self._apart(self._last, correction, at), LEAP)
+        ):
+            self._first = correction
+        self._last = correction
+        metres, angle = self._apart(self._first, correction, at)
+        if _exceeds((metres, angle), TOLERANCE) and self._driving():
+            _advised.add(self._ros)
+            self._log(
+                f"note: odometry and localisation have drifted {metres:.2f} m and {math.degrees(angle):.1f} degrees "
+                "apart; the option `frame(map)` corrects it"
+            )
+
+    def _odometry_at(self, stamp: float) -> Pose | None:
+        """Return the pose in odometry at *stamp*, extrapolated from the newest: localisation is late by its computation."""
+        odometer = self._odometer
+        newest = odometer.newest
+        if newest is None or not odometer.trusted:
+            return None
+        late = to_seconds(newest.sample.message.header.stamp) - stamp
+        if not -AHEAD <= late <= OUTDATED:
+            return None
+        ahead = newest.pose.yaw - 0.5 * late * newest.velocity.angular
+        metres = late * newest.velocity.linear
+        return Pose(
+            newest.pose.x - metres * math.cos(ahead),
+            newest.pose.y - metres * math.sin(ahead),
+            newest.pose.yaw - late * newest.velocity.angular,
+        )
+
+    @staticmethod
+    def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
+        """Return how far two corrections put the robot apart: metres and radians."""
+        a, b = one.then(at), other.then(at)
+        return math.dist(a[:2], b[:2]), abs(normalised(a.yaw - b.yaw))
+
+
+def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:
+    return any(value > limit for value, limit in zip(apart, limits, strict=True))

@@ -15,16 +15,26 @@ from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.resources.arbiter import WHEELS
-from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
-from jacaros.artifacts.robots.drift import LOCALISED, Drift
-from jacaros.artifacts.robots.drive_model import DriveModel
-from jacaros.artifacts.robots.driving_frame import DrivingFrame
-from jacaros.artifacts.robots.journey import DriveTo, TurnTo, go_to
-from jacaros.artifacts.robots.maneuver import Maneuver, Straight, Timed, Turn
+from jacaros.artifacts.robots.drive_model import (
+    STANDSTILL,
+    DriveModel,
+    Limits,
+    Velocity,
+    read_quality,
+    write_quality,
+)
+from jacaros.artifacts.robots.maneuver import DriveTo, Maneuver, Straight, Timed, Turn, TurnTo, go_to
 from jacaros.artifacts.robots.motion import Motion, MotionFailed, MotionSettings, Wheels
 from jacaros.artifacts.robots.motion_claim import motions_of
-from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry, pose_values
-from jacaros.artifacts.robots.quality_file import read_quality, write_quality
+from jacaros.artifacts.robots.odometry import (
+    LOCALISED,
+    ODOMETRY,
+    Drift,
+    DrivingFrame,
+    Odometer,
+    Odometry,
+    pose_values,
+)
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.names import frame_name

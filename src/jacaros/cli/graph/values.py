@@ -5,8 +5,14 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any
 
-from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
-from jacaros.artifacts.mapping.message_units import unit_of, words_of
+from jacaros.artifacts.mapping.interfaces import (
+    Interfaces,
+    chosen,
+    constants,
+    constants_by_field,
+    unit_of,
+    words_of,
+)
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 

@@ -6,8 +6,7 @@ import pytest
 from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.artifacts.map.grids import Grid
-from jacaros.artifacts.map.map_files import MapFileError, load, save
+from jacaros.artifacts.map.map_files import Grid, MapFileError, load, save
 from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.files.maps import meanings
 from jacaros.plane.pose import ORIGIN, Pose

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from jacaros.artifacts.map.localisation import Localisation
+from jacaros.artifacts.map.mapper import Localisation
 from jacaros.plane.pose import Pose
 
 

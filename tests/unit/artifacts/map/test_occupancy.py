@@ -2,8 +2,7 @@
 
 import pytest
 
-from jacaros.artifacts.map.cells import FREE, OBSTACLE
-from jacaros.artifacts.map.occupancy import OccupancyCells
+from jacaros.artifacts.map.cells import FREE, OBSTACLE, OccupancyCells
 
 
 def grid(size: float = 1.0) -> OccupancyCells:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from jacaros.artifacts.map.scans import ScanOptions, moved, read_scan
+from jacaros.artifacts.map.mapper import ScanOptions, moved, read_scan
 from jacaros.plane.pose import ORIGIN, Pose
 
 

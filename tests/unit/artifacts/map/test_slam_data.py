@@ -10,7 +10,7 @@ from robot_lab import Lab, Watcher, in_lab
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.map.cells import Cell
-from jacaros.artifacts.map.route import route
+from jacaros.artifacts.map.routes import route
 from jacaros.artifacts.map.slam_data import ArtSlamData
 
 

@@ -5,9 +5,7 @@ import math
 import pytest
 
 from jacaros.artifacts.map.cells import Cell
-from jacaros.artifacts.map.frontiers import around, frontier, nearest
-from jacaros.artifacts.map.inflation import inflated
-from jacaros.artifacts.map.legs import Leg, next_leg
+from jacaros.artifacts.map.routes import Leg, around, frontier, inflated, nearest, next_leg
 from jacaros.plane.pose import Pose
 
 

@@ -7,11 +7,10 @@ import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.mapping.declared import FieldPart, TopicPart
-from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable
+from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable, extractor
 from jacaros.artifacts.mapping.encoding import WrongValue, builder
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
-from jacaros.artifacts.mapping.rows import extractor
 
 SCAN = "sensor_msgs/msg/LaserScan"
 BATTERY = "sensor_msgs/msg/BatteryState"

@@ -7,8 +7,8 @@ import pytest
 
 from jacaros.artifacts.robots import approach
 from jacaros.artifacts.robots.approach import Approach, NotMoving, Outlook, Tolerance, Unsettled, pulse_for
-from jacaros.artifacts.robots.control import Limits, Line, Velocity, steer
-from jacaros.artifacts.robots.drive_model import DriveModel
+from jacaros.artifacts.robots.drive_model import DriveModel, Limits, Velocity
+from jacaros.artifacts.robots.maneuver import Line, steer
 from jacaros.plane.pose import Pose
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)

@@ -5,10 +5,17 @@ import random
 
 import pytest
 
-from jacaros.artifacts.robots.control import Limits, Velocity
-from jacaros.artifacts.robots.drive_model import DriveModel, DriveQuality
-from jacaros.artifacts.robots.filtering import Filtered
-from jacaros.artifacts.robots.response import SHARES, Axis, ramp, vertex
+from jacaros.artifacts.robots.drive_model import (
+    SHARES,
+    Axis,
+    DriveModel,
+    DriveQuality,
+    Filtered,
+    Limits,
+    Velocity,
+    ramp,
+    vertex,
+)
 from jacaros.plane.pose import Pose
 
 LIMITS = Limits(speed=0.6, turn_speed=2.0, acceleration=0.8, turn_acceleration=4.0)

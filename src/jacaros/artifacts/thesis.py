@@ -1,12 +1,15 @@
-"""``ArtCleaning``: the household of the thesis, with the tasks of each room."""
+"""Artifacts of the thesis's scenarios: the household, percepts as texts, the ROS tutorial."""
 
-from typing import ClassVar
+import math
+from typing import Any, ClassVar
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
+from jacaros.artifacts.kit.options import positive, text, yes_or_no
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Publisher
+from jacaros.ros.backend import Client, Publisher, Sample
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
 """The rooms by number, in the thesis's words: programs compare and print them."""
@@ -153,3 +156,122 @@ class ArtCleaning(RosArtifact):
     def _use(self, tool: str) -> None:
         if self._tools is not None:
             self._tools.publish(self._tools.message(data=tool))
+
+
+# ``ArtPerception``: percepts that another program sends as texts.
+
+
+class ArtPerception(RosArtifact):
+    """Shows the texts of ``/jason/perception`` (``perception_msgs/msg/perception``, a list of texts).
+
+    Each message replaces the percepts of the previous one; an unchanged text causes no event.
+
+    Options:
+        topic(T): another topic.
+        split(true): show the parts between commas, with numbers as numbers.
+
+    Properties:
+        perception(Text): one for each text of the newest message, such as ``"box1,1.0,2.0,3.1"``; with `split`
+            ``perception("box1", 1.0, 2.0, 3.1)``.
+
+    Signals:
+        tick_perception: `getPerception` was called.
+    """
+
+    known_options: ClassVar = {"topic": text, "split": yes_or_no}
+
+    def open(self) -> None:
+        """Subscribe; there are no percepts before the first message."""
+        self._texts: list[str] = []
+        self.subscription(
+            str(self.options.get("topic", "jason/perception")), "perception_msgs/msg/perception", self._take
+        )
+
+    def _take(self, sample: Sample) -> None:
+        self._texts = [str(each) for each in sample.message.perception]
+        split = self.options.get("split", False)
+        elements = [tuple(map(_value, each.split(","))) if split else (each,) for each in self._texts]
+        self.start(self.show_elements, "perception", elements, cause=sample.cause)
+
+    @operation(name="getPerception")
+    def get_perception(self) -> None:
+        """Signal ``tick_perception``; the properties are always current."""
+        self.signal("tick_perception")
+
+    @operation(name="getPerception")
+    def give_perception(self, texts: Out) -> None:
+        """Give the texts of the newest message to the caller, as a list; empty before the first."""
+        texts.set(self._texts)
+
+
+def _value(part: str) -> str | float:
+    """Return a number if the text is a finite one."""
+    try:
+        number = float(part)
+    except ValueError:
+        return part.strip()
+    return number if math.isfinite(number) else part.strip()
+
+
+# ``ArtTutorial``: the talker and the adding service of the ROS tutorials.
+
+
+class ArtTutorial(RosArtifact):
+    """Shows the messages of ``/chatter`` and adds numbers with the service ``add_two_ints``.
+
+    The robot's name is the prefix of the topic and the properties, not of the service, as in the thesis.
+
+    Options:
+        mode, rate, expire: see `ReadingPolicy`; `latest_only` is false here because every message counts.
+        service(Name): another name of the service.
+        timeout(S): how long an addition may take (10 s).
+
+    Properties:
+        chatter(Text): the newest message, empty before the first.
+        twoIntsSum(S): the result of the last addition, 0 before the first.
+    """
+
+    known_options: ClassVar = {**READING_OPTIONS, "service": text, "timeout": positive}
+    robot_in_properties = True
+
+    _chatter: Reading
+    _adder: Client
+
+    def open(self) -> None:
+        """Define the properties, subscribe, and look for the service without waiting for it."""
+        name = self.robot_property("chatter")
+        self.define_property(self.robot_property("twoIntsSum"), 0)
+        self._chatter = self.reading(name, ReadingPolicy.from_options(self.options, latest_only=False), "")
+        self.subscription("chatter", "std_msgs/msg/String", self._hear)
+        service = str(self.options.get("service", "/add_two_ints"))
+        self._adder = self.client(service, "example_interfaces/srv/AddTwoInts")
+
+    def _hear(self, sample: Sample) -> None:
+        self._chatter.take((str(sample.message.data),), sample.cause)
+
+    @operation(name="getCurrentMessage")
+    async def get_current_message(self) -> None:
+        """Update the property ``chatter`` to the newest message; fails with ``no_message(5)`` if none exists for 5
+        s."""
+        await self.refresh(self.robot_property("chatter"), self._chatter, "no_message")
+
+    @operation
+    async def sum(self, a: int, b: int) -> None:
+        """Add with the service and show the result in ``twoIntsSum``.
+
+        Fails with ``service_unavailable(Name)``, ``service_timeout(Seconds)`` or ``service_failed(Name)``.
+        """
+        self.update_property(self.robot_property("twoIntsSum"), await self._added(a, b))
+
+    @operation(name="sum")
+    async def give_sum(self, a: int, b: int, result: Out) -> None:
+        """Add with the service, show the result and give it to the caller."""
+        total = await self._added(a, b)
+        self.update_property(self.robot_property("twoIntsSum"), total)
+        result.set(total)
+
+    async def _added(self, a: int, b: int) -> int:
+        timeout = self.options.get("timeout", 10.0)
+        assert isinstance(timeout, float)
+        response: Any = await self.call(self._adder, timeout, a=a, b=b)
+        return int(response.sum)

@@ -1,1 +1,0 @@
-"""Artifacts of the thesis's scenarios: the household, the ROS tutorial."""
