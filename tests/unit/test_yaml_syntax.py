@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import load_mapping, read_mapping
+from jacaros.artifacts.mapping.file import MappingError, load_mapping, read_mapping
 from jacaros.files.yaml import Problem, read_document
 
 LAUGHS = "a: &a [1,1,1,1,1,1,1,1,1,1]\n" + "".join(

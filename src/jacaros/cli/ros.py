@@ -15,7 +15,7 @@ from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES
 
 if TYPE_CHECKING:
-    from jacaros.artifacts.mapping.declared import MappingFile
+    from jacaros.artifacts.mapping.file import MappingFile
     from jacaros.cli.graph.joining import Joined
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -6,7 +6,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile
+from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
 from jacaros.metrics.comments import Stretch, between
 
 

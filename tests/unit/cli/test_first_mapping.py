@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.artifacts.mapping.checking import check_mapping
-from jacaros.artifacts.mapping.declared import FieldPart, Place, read_path
+from jacaros.artifacts.mapping.fields import FieldPart, Place, read_path
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import StoredInterfaces, stored_interfaces
 from jacaros.artifacts.mapping.manual import word_for_field

@@ -3,8 +3,10 @@
 ======================= =====================================================================================
 file                    content
 ======================= =====================================================================================
-`declared`              the content of a file, as data: parts, paths, conversions
-`file`, `read_*`        reading it; needs neither artifacts nor a middleware
+`fields`                the content of a file and how it is read: names, paths, fields, conversions,
+`properties`            what agents perceive,
+`operations`            what they do,
+`file`                  and whole artifacts; needs neither artifacts nor a middleware
 `interfaces`            message types: fields, paths through them, constants, units
 `checking`, `manual`    checking a mapping against message types; documentation
 `decoding`, `encoding`  values and rows of values from messages; messages from values

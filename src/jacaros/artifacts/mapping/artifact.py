@@ -11,20 +11,21 @@ from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.mapping.checking import type_problems
-from jacaros.artifacts.mapping.declared import (
+from jacaros.artifacts.mapping.deriving import Derivation
+from jacaros.artifacts.mapping.fields import unlike
+from jacaros.artifacts.mapping.file import (
     ArtifactPart,
     MappingError,
     MappingFile,
-    OperationKind,
-    OperationPart,
-    unlike,
+    find_mapping,
+    load_mapping,
+    shipped_mappings,
 )
-from jacaros.artifacts.mapping.deriving import Derivation
-from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.frames import FrameUpdater
 from jacaros.artifacts.mapping.host import Host, TypeSearch
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
 from jacaros.artifacts.mapping.operating import Operations
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
 from jacaros.artifacts.resources.arbiter import WHEELS

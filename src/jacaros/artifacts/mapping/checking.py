@@ -3,21 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.artifacts.mapping.declared import (
-    ArtifactPart,
-    FieldPart,
-    MappingError,
-    MappingFile,
-    OperationKind,
-    OperationPart,
-    Place,
-    TopicPart,
-    Written,
-    WrongPath,
-)
 from jacaros.artifacts.mapping.decoding import extractor, reader
 from jacaros.artifacts.mapping.encoding import builder, fitting
+from jacaros.artifacts.mapping.fields import FieldPart, Place, Written, WrongPath
+from jacaros.artifacts.mapping.file import ArtifactPart, MappingError, MappingFile
 from jacaros.artifacts.mapping.interfaces import Interfaces
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
+from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface

@@ -9,13 +9,13 @@ from functools import lru_cache
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.mapping.declared import (
+from jacaros.artifacts.mapping.fields import (
+    ANGLES,
+    LISTS,
     WHOLE,
     Conversion,
     FieldPart,
     Path,
-    RangeOfView,
-    TopicPart,
     Written,
     WrongPath,
     read_path,
@@ -29,7 +29,7 @@ from jacaros.artifacts.mapping.interfaces import (
     follow,
     getter,
 )
-from jacaros.artifacts.mapping.read_fields import ANGLES, LISTS
+from jacaros.artifacts.mapping.properties import RangeOfView, TopicPart
 from jacaros.files.yaml import Problem
 from jacaros.plane.pose import pitch_of, roll_of, yaw_of
 from jacaros.ros.errors import UnknownInterface

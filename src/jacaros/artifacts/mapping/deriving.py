@@ -3,9 +3,10 @@
 from collections import deque
 from functools import partial
 
-from jacaros.artifacts.mapping.declared import ArtifactPart, DerivedPart, FramePart
+from jacaros.artifacts.mapping.file import ArtifactPart
 from jacaros.artifacts.mapping.frames import StampedFrames
 from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.properties import DerivedPart, FramePart
 from jacaros.artifacts.streams.declarations import Spec, Values
 from jacaros.artifacts.streams.operators import HIDE, SHOW
 from jacaros.artifacts.streams.pattern import Pattern

@@ -5,11 +5,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure, text
-from jacaros.artifacts.mapping.declared import Conversion, OperationPart, Source, ValuePart, WrongPath
 from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
+from jacaros.artifacts.mapping.fields import ANGLES, Conversion, WrongPath
 from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow
-from jacaros.artifacts.mapping.read_fields import ANGLES
-from jacaros.artifacts.mapping.read_operations import ALL_OF_IT
+from jacaros.artifacts.mapping.operations import ALL_OF_IT, OperationPart, Source, ValuePart
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType

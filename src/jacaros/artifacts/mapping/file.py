@@ -2,30 +2,39 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Annotated
 
-from jacaros.artifacts.mapping.declared import (
+from jacaros.artifacts.mapping.fields import (
     NOTHING,
-    ArtifactPart,
-    MappingError,
-    MappingFile,
-    OperationKind,
+    START,
+    UNNAMED,
     Place,
-    TopicPart,
+    Written,
+    each_of,
+    entry,
+    place_of,
+    read_namespace,
+    value_names,
 )
-from jacaros.artifacts.mapping.read_fields import UNNAMED, each_of, namespace, place_of
-from jacaros.artifacts.mapping.read_operations import read_operation
-from jacaros.artifacts.mapping.read_properties import (
-    derived_problems,
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, read_operation
+from jacaros.artifacts.mapping.properties import (
+    DerivedPart,
+    FramePart,
+    ParameterPart,
+    TopicPart,
     read_derived,
     read_frame,
     read_parameter,
     read_property,
     read_signal,
 )
-from jacaros.files.texts import is_file
-from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
+from jacaros.artifacts.streams.declarations import OPERATORS, Spec
+from jacaros.files.entries import Entry, declared_entries, values
+from jacaros.files.texts import is_file, suggestion
+from jacaros.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Folder of the mappings that come with the package."""
@@ -33,19 +42,114 @@ SHIPPED = Path(__file__).parent.parent / "mappings"
 ENDINGS = (".yaml", ".yml")
 
 _NAME = re.compile(r"[^\s#/]+")
-_KEYS = (
-    "description",
-    "namespace",
-    "tf_prefix",
-    "connected",
-    "interfaces",
-    "properties",
-    "signals",
-    "frames",
-    "parameters",
-    "derived",
-    "operations",
-)
+
+
+def _operations(node: Node) -> tuple[OperationPart, ...]:
+    """Read operations; a list has several of one name."""
+    found: list[OperationPart] = []
+    for name, value in node.entries():
+        if isinstance(value.value, list) and any(isinstance(item, dict) for item in value.value):
+            for item in value.sequence():
+                named = Node(name.value, item.line, item.column, item.problems, name.what)
+                found.append(read_operation(named, item))
+        else:
+            found.append(read_operation(name, value))
+    return tuple(found)
+
+
+def _tf_prefix(node: Node) -> str:
+    if node.value is not None:
+        node.text()
+    return str(node.value).strip("/") if node.value else ""
+
+
+def _connected(node: Node) -> bool | float:
+    if isinstance(node.value, bool):
+        return node.value
+    value = node.value
+    if isinstance(value, int | float) and 0.0 < value < float("inf"):
+        return float(value)
+    help = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
+    node.wrong("`connected` must be true, false, or a number of seconds above zero", help)
+    return True
+
+
+def _named(read: Callable[[Node, Node], object]) -> Entry:
+    """Return the entry of a mapping from names to parts, each read by *read*."""
+    return entry(lambda node: tuple(read(*pair) for pair in node.entries()))
+
+
+@dataclass(frozen=True, slots=True)
+class ArtifactPart:
+    """One artifact.
+
+    Attributes:
+        tf_prefix: None: the namespace.
+        connected: whether to show that topics are connected; a number: seconds without a message after which they are
+            not.
+        interfaces: folders with definitions of types.
+        properties, signals: from topics.
+        derived: properties derived from events of others.
+    """
+
+    name: str
+    place: Place
+    description: Annotated[str, entry(Node.text)] = ""
+    namespace: Annotated[str, entry(read_namespace)] = ""
+    tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
+    connected: Annotated[bool | float, entry(_connected)] = False
+    interfaces: Annotated[tuple[Path, ...], Entry("")] = ()
+    properties: Annotated[tuple[TopicPart, ...], _named(read_property)] = ()
+    signals: Annotated[tuple[TopicPart, ...], _named(read_signal)] = ()
+    frames: Annotated[tuple[FramePart, ...], _named(read_frame)] = ()
+    parameters: Annotated[tuple[ParameterPart, ...], _named(read_parameter)] = ()
+    derived: Annotated[tuple[DerivedPart, ...], _named(read_derived)] = ()
+    operations: Annotated[tuple[OperationPart, ...], entry(_operations)] = ()
+
+    @property
+    def topics(self) -> tuple[TopicPart, ...]:
+        """Properties and signals from topics."""
+        return (*self.properties, *self.signals)
+
+    def arity(self, operation: OperationPart) -> int:
+        """Return the number of arguments of an operation, including outputs."""
+        return len(operation.parameters) + len(self.output_names(operation))
+
+    def output_names(self, operation: OperationPart) -> list[str]:
+        """Return names for the output parameters of an operation."""
+        if operation.kind is not OperationKind.READ:
+            return value_names(operation.outputs)
+        wanted = operation.properties[0].text if operation.properties else ""
+        fields = {each.name: each.fields or () for each in self.properties}
+        fields |= {each.name: each.fields for each in self.frames}
+        return value_names(fields.get(wanted, ()))
+
+
+_KEYS = tuple(declared_entries(ArtifactPart))
+"""The keys of an artifact."""
+
+
+@dataclass(frozen=True, slots=True)
+class MappingFile:
+    """A complete file.
+
+    Attributes:
+        file: its name, as shown in messages.
+        text: its text, for excerpts.
+        artifacts: by name, in the order of the file.
+    """
+
+    file: str
+    text: str = field(repr=False)
+    artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
+
+    def where(self, place: Place) -> str:
+        """Format a position for the log."""
+        return f"{self.file}:{place.line}"
+
+
+class MappingError(YamlFileError):
+    """Raised for a mapping file with mistakes; holds all of them."""
 
 
 def shipped_mappings() -> list[str]:
@@ -122,7 +226,7 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
             document.wrong("the file is empty", "begin with properties: or operations:")
         return {}
     if not isinstance(document.value, dict) or "artifacts" not in document.value:
-        return {path.stem: _artifact(path.stem, Place(1, 1), document, path.parent)}
+        return {path.stem: _artifact(path.stem, START, document, path.parent)}
     entries = document.mapping("artifacts", *_KEYS, anchors=True)
     for name, _ in document.entries():
         if name.value in _KEYS and name.value != "interfaces":
@@ -160,58 +264,19 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
 def _artifact(
     name: str, place: Place, node: Node, folder: Path, shared: tuple[Path, ...] = ()
 ) -> ArtifactPart:
-    entries = node.mapping(*_KEYS, anchors=True)
-    topics = [read_property(*pair) for pair in _pairs(entries, "properties")]
-    topics += [read_signal(*pair) for pair in _pairs(entries, "signals")]
-    prefix = entries.get("tf_prefix")
-    if prefix is not None and prefix.value is not None:
-        prefix.text()
-    part = ArtifactPart(
-        name,
-        place,
-        entries["description"].text() if "description" in entries else "",
-        namespace(entries["namespace"]) if "namespace" in entries else "",
-        (str(prefix.value).strip("/") if prefix.value else "") if prefix is not None else None,
-        _connected(entries["connected"]) if "connected" in entries else False,
-        tuple(topics),
-        tuple(read_frame(*pair) for pair in _pairs(entries, "frames")),
-        tuple(read_parameter(*pair) for pair in _pairs(entries, "parameters")),
-        tuple(read_operation(*pair) for pair in _variants(entries)),
-        (*shared, *(_interfaces(entries["interfaces"], folder) if "interfaces" in entries else ())),
-        tuple(read_derived(*pair) for pair in _pairs(entries, "derived")),
+    part = ArtifactPart(name, place, interfaces=shared)
+    found = values(
+        node.mapping(*_KEYS, anchors=True),
+        part,
+        interfaces=lambda folders, _: (*shared, *_interfaces(folders, folder)),
     )
-    node.problems += _names(part)
-    node.problems += _arities(part)
-    node.problems += _references(part)
-    node.problems += derived_problems(part)
-    node.problems += _switches(part)
-    node.problems += _own_parameters(part)
+    part = replace(part, **found)
+    for check in (_names, _arities, _references, _streams, _switches, _own_parameters):
+        node.problems += check(part)
     return part
 
 
-def _pairs(entries: dict[str, Node], key: str) -> Iterator[tuple[Node, Node]]:
-    return entries[key].entries() if key in entries else iter(())
-
-
-def _variants(entries: dict[str, Node]) -> Iterator[tuple[Node, Node]]:
-    """Yield names and values of operations; a list has several of one name."""
-    for name, node in _pairs(entries, "operations"):
-        if not isinstance(node.value, list) or not any(isinstance(item, dict) for item in node.value):
-            yield name, node
-            continue
-        for item in node.sequence():
-            yield Node(name.value, item.line, item.column, item.problems, name.what), item
-
-
-def _connected(node: Node) -> bool | float:
-    if isinstance(node.value, bool):
-        return node.value
-    value = node.value
-    if isinstance(value, int | float) and 0.0 < value < float("inf"):
-        return float(value)
-    help = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
-    node.wrong("`connected` must be true, false, or a number of seconds above zero", help)
-    return True
+# What is checked of a whole artifact.
 
 
 def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
@@ -326,3 +391,38 @@ def _references(part: ArtifactPart) -> Iterator[Problem]:
                 f"no operation requests `{topic.name}`, which is updated on demand",
                 f"add an operation: look: {{refresh: {topic.name}}}",
             )
+
+
+_EVENTS = frozenset({"count", "absent"})
+"""Operators that use only the events, not their values, so each element of an array may be one."""
+
+
+def _streams(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield streams that the artifact does not have, or that an operator cannot use."""
+    topics: dict[str, TopicPart] = {each.name: each for each in part.topics}
+    known = [*topics, *(each.name for each in part.frames)]
+    for derived in part.derived:
+        for source in derived.sources:
+            if source.text and source.text not in known:
+                yield _unknown_stream(source, known)
+            elif (topic := topics.get(source.text)) is not None and derived.spec is not None:
+                yield from _unfit(derived.spec, topic, source.place)
+        known.append(derived.name)
+
+
+def _unknown_stream(source: Written, known: list[str]) -> Problem:
+    listed = f"properties, signals, frames and entries above this one: {', '.join(known) or 'none'}"
+    return source.place.problem(f"unknown property `{source.text}`", suggestion(source.text, known, listed))
+
+
+def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
+    if topic.each is not None and spec.operator not in _EVENTS:
+        yield place.problem(
+            f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one",
+            f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`",
+        )
+    needed = spec.place + 1
+    if OPERATORS[spec.operator].valued and topic.fields is not None:
+        count = sum(field.count for field in topic.fields)
+        if count < needed:
+            yield place.problem(f"`{topic.name}` has {count} values, not {needed}", "write a smaller `value`")

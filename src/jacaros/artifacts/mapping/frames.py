@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.reading import Values
-from jacaros.artifacts.mapping.declared import DerivedPart, FieldPart, FramePart
 from jacaros.artifacts.mapping.decoding import converted
+from jacaros.artifacts.mapping.fields import FieldPart
 from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.properties import DerivedPart, FramePart
 from jacaros.files.texts import is_worth_a_line
 from jacaros.plane.pose import pitch_of, roll_of
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable

@@ -7,7 +7,8 @@ from typing import ClassVar
 from jacaros.artifacts.env.artifact import internal_operation
 from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place, Written
+from jacaros.artifacts.mapping.fields import Place, Written
+from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
 from jacaros.files.yaml import Problem, shown
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.ros.errors import CapabilityMissing, RosError

@@ -7,8 +7,18 @@ from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Any, Protocol
 
-from jacaros.artifacts.mapping.declared import ALL, HERE, Conversion, Path, Step, WrongPath
-from jacaros.artifacts.mapping.read_fields import ANGLES, SYMBOLS, UNITS, units_of
+from jacaros.artifacts.mapping.fields import (
+    ALL,
+    ANGLES,
+    HERE,
+    SYMBOLS,
+    UNITS,
+    Conversion,
+    Path,
+    Step,
+    WrongPath,
+    units_of,
+)
 from jacaros.files.texts import suggestion
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import BUILT_IN, installed

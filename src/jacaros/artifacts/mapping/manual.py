@@ -8,25 +8,20 @@ from contextlib import suppress
 
 from jacaros.artifacts.env.values import text
 from jacaros.artifacts.mapping.checking import message_types
-from jacaros.artifacts.mapping.declared import (
-    ArtifactPart,
+from jacaros.artifacts.mapping.decoding import fields_of, octet, owner_of
+from jacaros.artifacts.mapping.encoding import builder, fitting
+from jacaros.artifacts.mapping.fields import (
+    ANGLES,
+    UNITS,
     Conversion,
-    DerivedPart,
     FieldPart,
-    MappingFile,
-    OperationKind,
-    OperationPart,
-    ParameterPart,
     Path,
-    Source,
-    TopicPart,
-    ValuePart,
     WrongPath,
+    units_of,
     unlike,
     value_names,
 )
-from jacaros.artifacts.mapping.decoding import fields_of, octet, owner_of
-from jacaros.artifacts.mapping.encoding import builder, fitting
+from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
 from jacaros.artifacts.mapping.interfaces import (
     Interfaces,
     chosen,
@@ -37,8 +32,8 @@ from jacaros.artifacts.mapping.interfaces import (
     unit_at,
     words_of,
 )
-from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
-from jacaros.artifacts.mapping.read_properties import TRANSFORM
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source, ValuePart
+from jacaros.artifacts.mapping.properties import TRANSFORM, DerivedPart, ParameterPart, TopicPart
 from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface

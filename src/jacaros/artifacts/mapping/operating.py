@@ -12,19 +12,12 @@ from jacaros.artifacts.kit.acting import error_code, error_text, missing_number
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.kit.services import MESSAGES, failure_reason
 from jacaros.artifacts.mapping.checking import check_answer, message_types
-from jacaros.artifacts.mapping.declared import (
-    FieldPart,
-    OperationKind,
-    OperationPart,
-    Source,
-    Success,
-    ValuePart,
-    read_path,
-)
 from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
+from jacaros.artifacts.mapping.fields import FieldPart, read_path
 from jacaros.artifacts.mapping.host import Host, ask_type
 from jacaros.artifacts.mapping.interfaces import getter
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source, Success, ValuePart
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.resources.arbiter import WHEELS

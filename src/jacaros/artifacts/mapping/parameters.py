@@ -11,9 +11,10 @@ from collections.abc import Mapping
 from shlex import quote
 
 from jacaros.artifacts.env.values import Atom, text
-from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion, ParameterPart
 from jacaros.artifacts.mapping.decoding import Convert, Unshowable, converted
+from jacaros.artifacts.mapping.fields import AS_IT_IS, Conversion
 from jacaros.artifacts.mapping.host import Host
+from jacaros.artifacts.mapping.properties import ParameterPart
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION, Backend
 from jacaros.ros.errors import (

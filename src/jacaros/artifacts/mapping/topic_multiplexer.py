@@ -10,10 +10,11 @@ from typing import Any
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
 from jacaros.artifacts.kit.reading import Outlet, RangeOfView, Reading
-from jacaros.artifacts.mapping.declared import TopicPart, Written
 from jacaros.artifacts.mapping.decoding import Extract, Row, Unshowable, extractor, perceived
 from jacaros.artifacts.mapping.deriving import stamp_of
+from jacaros.artifacts.mapping.fields import Written
 from jacaros.artifacts.mapping.host import Host, TypeSearch
+from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from jacaros.artifacts.mapping.fields import RESERVED
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants
-from jacaros.artifacts.mapping.read_fields import RESERVED
 from jacaros.cli.graph.known_topics import KNOWN, Body
 from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
 from jacaros.ros.fields import FieldType

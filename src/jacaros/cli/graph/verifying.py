@@ -4,15 +4,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from jacaros.artifacts.mapping.checking import UNCERTAIN, check_topic, type_problems
-from jacaros.artifacts.mapping.declared import (
-    ArtifactPart,
-    FramePart,
-    OperationKind,
-    OperationPart,
-    Place,
-    TopicPart,
-    Written,
-)
+from jacaros.artifacts.mapping.fields import Place, Written
+from jacaros.artifacts.mapping.file import ArtifactPart
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
+from jacaros.artifacts.mapping.properties import FramePart, TopicPart
 from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.listening import root
 from jacaros.files.texts import did_you_mean

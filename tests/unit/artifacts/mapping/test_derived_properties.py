@@ -11,8 +11,7 @@ from mapped_lab import settle, with_mapped
 from robot_lab import TWIST, Lab, Watcher, apart
 
 from jacaros.artifacts import ArtifactId
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.file import MappingError, read_mapping
 
 POINT = "geometry_msgs/msg/PointStamped"
 MAPPING = f"""

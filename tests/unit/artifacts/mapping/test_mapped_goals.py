@@ -9,8 +9,7 @@ from robot_lab import Lab
 
 from jacaros.artifacts import ArtifactId, Out
 from jacaros.artifacts.mapping.checking import check_mapping
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.file import MappingError, read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.ros.action import Abort, ActionPolicy, ServerGoal
 from jacaros.ros.parameter import Declaration

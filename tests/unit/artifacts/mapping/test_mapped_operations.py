@@ -8,8 +8,7 @@ from mapped_lab import mapped, settle, with_mapped
 from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.file import MappingError, read_mapping
 from jacaros.artifacts.robots.motion_claim import motions_of
 from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by

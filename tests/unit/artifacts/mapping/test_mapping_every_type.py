@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from jacaros.artifacts.env.values import Atom, Structure, plain
-from jacaros.artifacts.mapping.declared import FieldPart, Place, TopicPart, read_path
 from jacaros.artifacts.mapping.decoding import extractor
+from jacaros.artifacts.mapping.fields import FieldPart, Place, read_path
 from jacaros.artifacts.mapping.interfaces import known_types, stored_interfaces
+from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 

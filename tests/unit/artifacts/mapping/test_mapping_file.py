@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.mapping.declared import MappingError, MappingFile
-from jacaros.artifacts.mapping.file import find_mapping, load_mapping, read_mapping
+from jacaros.artifacts.mapping.file import MappingError, MappingFile, find_mapping, load_mapping, read_mapping
 from jacaros.mas.mappings import check_mapping_file
 from jacaros.ros.qos import LATCHED, SENSOR_DATA, QoS
 

@@ -9,8 +9,7 @@ from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import Out
 from jacaros.artifacts.mapping.artifact import mapped_type
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import load_mapping
+from jacaros.artifacts.mapping.file import MappingError, load_mapping
 from jacaros.cli.main import call
 
 SHELF = """

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.artifacts.mapping.checking import check_mapping
-from jacaros.artifacts.mapping.declared import MappingError
-from jacaros.artifacts.mapping.file import read_mapping
+from jacaros.artifacts.mapping.file import MappingError, read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
 from jacaros.mas.mappings import check_mapping_file
 

@@ -6,11 +6,12 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.mapping.declared import FieldPart, TopicPart
 from jacaros.artifacts.mapping.decoding import MessageHandle, Unshowable, extractor
 from jacaros.artifacts.mapping.encoding import WrongValue, builder
+from jacaros.artifacts.mapping.fields import FieldPart
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.artifacts.mapping.properties import TopicPart
 
 SCAN = "sensor_msgs/msg/LaserScan"
 BATTERY = "sensor_msgs/msg/BatteryState"

@@ -11,10 +11,10 @@ from robot_lab import Lab, Watcher, in_lab
 from jacaros.artifacts import ArtifactId, Out
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.mapping.artifact import mapped_type
-from jacaros.artifacts.mapping.declared import OperationKind
 from jacaros.artifacts.mapping.encoding import builder, fitting
 from jacaros.artifacts.mapping.file import find_mapping, load_mapping, shipped_mappings
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.artifacts.mapping.operations import OperationKind
 from jacaros.files.yaml import Problem
 from jacaros.ros.action import ServerGoal
 from jacaros.ros.fields import FieldType

@@ -1,24 +1,168 @@
-"""Read ``fields``: the parts of a message that an agent perceives, and their conversion; and names."""
+"""What a mapping file declares about single values, and how it is read: places, names, types, paths, fields and their
+conversions. Keys are declared at the fields of the parts, as `jacaros.files.entries` describes."""
 
 import re
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Annotated, Any, NamedTuple, TypeVar
 
-from jacaros.artifacts.mapping.declared import (
-    WHOLE,
-    Conversion,
-    FieldPart,
-    Line,
-    Path,
-    Place,
-    Written,
-    WrongPath,
-    read_path,
-)
+from jacaros.files.entries import Entry, values
 from jacaros.files.texts import suggestion
-from jacaros.files.yaml import Node
+from jacaros.files.yaml import Node, Problem
 from jacaros.ros.errors import NameInvalid
 from jacaros.ros.names import action_type, message_type, service_type
+
+P = TypeVar("P")
+
+
+def entry(read: Callable[[Node], object], key: str = "") -> Entry:
+    """Return the entry of a key (by default the name of the field) whose value *read* converts."""
+    return Entry("", "", key, lambda node, _: read(node))
+
+
+def with_entries(part: P, entries: dict[str, Node]) -> P:
+    """Return a part with the values of the entries that are declared at its fields."""
+    return replace(part, **values(entries, part))  # type: ignore[type-var]
+
+
+class Place(NamedTuple):
+    """A position in the file, counted from 1."""
+
+    line: int
+    column: int
+
+    def problem(self, message: str, help: str = "") -> Problem:
+        """Make a problem at this position."""
+        return Problem(self.line, self.column, message, help)
+
+
+START = Place(1, 1)
+"""The first character of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A text and its position."""
+
+    text: str
+    place: Place
+
+
+NOTHING = Written("", START)
+
+
+def place_of(node: Node) -> Place:
+    """Return the position of a value."""
+    return Place(node.line, node.column)
+
+
+def written(node: Node) -> Written:
+    """Read a text with its position."""
+    return Written(node.text(), place_of(node))
+
+
+# Paths into messages: ``pose.pose.position.x``, ``ranges[0]``, ``transforms[*].child_frame_id``.
+
+ALL = "*"
+"""Stands for all elements of an array."""
+HERE = "i"
+"""Stands for the index of the current element, where there is one property for each."""
+
+_PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
+_INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
+
+Step = str | int
+"""The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
+
+
+class WrongPath(ValueError):
+    """Raised for an invalid path, with what to write."""
+
+    def __init__(self, message: str, help: str = "") -> None:
+        super().__init__(message)
+        self.help = help
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path.
+
+    Attributes:
+        text: as written.
+        steps: names, numbers, `ALL` and `HERE`; names have a dot in front so that ``"*"`` is not a name.
+        of_message: whether it begins at the message although its neighbours begin at an element.
+    """
+
+    text: str
+    steps: tuple[Step, ...]
+    of_message: bool = False
+
+    @property
+    def lists(self) -> int:
+        """Nesting depth of lists caused by `ALL`."""
+        return self.steps.count(ALL)
+
+
+WHOLE = Path(".", ())
+
+
+def read_path(text: str) -> Path:
+    """Read a path.
+
+    Raises:
+        WrongPath: it is invalid.
+    """
+    of_message = text.startswith("/")
+    rest = text.removeprefix("/")
+    if rest in (".", ""):
+        if not text:
+            raise WrongPath("empty path", "write the path of a field, or . for the whole message")
+        return Path(text, (), of_message)
+    steps: list[Step] = []
+    for part in rest.split("."):
+        found = _PART.fullmatch(part)
+        if found is None:
+            raise WrongPath(
+                f"`{text}` is not a path: `{part}` is not a field",
+                "write it like pose.position.x or ranges[0]",
+            )
+        steps.append(f".{found['name']}")
+        for index in _INDEX.findall(found["indices"]):
+            steps.append(index if index in (ALL, HERE) else int(index))
+    return Path(text, tuple(steps), of_message)
+
+
+def path_of(node: Node, help: str = "") -> Path:
+    """Read a path; the whole message after a mistake."""
+    if not isinstance(node.value, str):
+        node.wrong(
+            f"{node.what} must be a path, found {shown(node.value)}",
+            help or "write the path of a field, as in pose.x",
+        )
+        return WHOLE
+    try:
+        return read_path(node.value)
+    except WrongPath as error:
+        node.wrong(str(error), error.help)
+        return WHOLE
+
+
+def shown(value: Any) -> str:
+    """Format a value of a file for a message."""
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list):
+        return "a list"
+    return "nothing" if value is None else repr(value)
+
+
+def each_of(node: Node) -> list[Node]:
+    """Return the items of a list; a single one needs no brackets."""
+    return list(node.sequence()) if isinstance(node.value, list) else [node]
+
+
+# Conversions.
 
 ANGLES = ("yaw", "pitch", "roll")
 LISTS = ("count", "min", "max", "mean")
@@ -27,6 +171,26 @@ CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset"
 DOWN = "down"
 """Value of ``round: down``, the next lower integer, so that a battery at 99.7 % does not count as full."""
 FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """``factor * value + shift``, from the message's number to the agent's."""
+
+    factor: float = 1.0
+    shift: float = 0.0
+
+    def there(self, value: float) -> float:
+        """Convert to the agent's number."""
+        return self.factor * value + self.shift
+
+    def back(self, value: float) -> float:
+        """Convert to the message's number."""
+        return (value - self.shift) / self.factor
+
+    def then(self, other: "Line") -> "Line":
+        """Return this conversion followed by *other*."""
+        return Line(self.factor * other.factor, self.shift * other.factor + other.shift)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,38 +260,102 @@ def conversion(of_message: str, of_agent: str) -> Line:
     return Line(here.size / there.size, (here.zero - there.zero) / there.size)
 
 
-def place_of(node: Node) -> Place:
-    """Return the position of a value."""
-    return Place(node.line, node.column)
+@dataclass(frozen=True, slots=True)
+class Conversion:
+    """The conversion of a value between message and agent.
+
+    Attributes:
+        kind: ``yaw``, ``pitch``, ``roll``, ``name``, ``atom``, ``object``, ``count``, ``min``, ``max``, ``mean`` or
+            "".
+        prefix: prefix of the constants for ``name``.
+        names: atoms for values.
+        unit: the agent's unit, for the manual; empty if none is given.
+        knows_message_unit: whether the mapping gives the unit of the message.
+        line: the linear conversion of units, scale and offset; None if the number stays unchanged.
+        digits: decimals; None: all.
+        floor: integers, rounded down instead of to the nearest.
+    """
+
+    kind: str = ""
+    prefix: str = ""
+    names: tuple[tuple[object, str], ...] = ()
+    line: Line | None = None
+    digits: int | None = None
+    unit: str = ""
+    knows_message_unit: bool = False
+    floor: bool = False
+
+    @property
+    def needs_number(self) -> bool:
+        """Whether only a number can be converted."""
+        return self.line is not None or self.digits is not None
 
 
-def path_of(node: Node, help: str = "") -> Path:
-    """Read a path; the whole message after a mistake."""
-    if not isinstance(node.value, str):
-        node.wrong(
-            f"{node.what} must be a path, found {shown(node.value)}",
-            help or "write the path of a field, as in pose.x",
-        )
-        return WHOLE
-    try:
-        return read_path(node.value)
-    except WrongPath as error:
-        node.wrong(str(error), error.help)
-        return WHOLE
+AS_IT_IS = Conversion()
+"""No conversion."""
 
 
-def shown(value: Any) -> str:
-    """Format a value of a file for a message."""
-    if isinstance(value, dict):
-        return "a mapping"
-    if isinstance(value, list):
-        return "a list"
-    return "nothing" if value is None else repr(value)
+def _shares(node: Node) -> tuple[float, ...]:
+    if isinstance(node.value, list):
+        found = tuple(item.number(0.0, 1.0) for item in node.sequence())
+        if not found:
+            node.wrong("`sample` is empty", "write the number of elements, or their positions: [0, 0.5, 1]")
+        return found or (0.0,)
+    count = node.whole(1, 1)
+    return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
 
 
-def each_of(node: Node) -> list[Node]:
-    """Return the items of a list; a single one needs no brackets."""
-    return list(node.sequence()) if isinstance(node.value, list) else [node]
+def _otherwise(node: Node) -> float | Path:
+    if isinstance(node.value, str):
+        return path_of(node)
+    return node.number()
+
+
+@dataclass(frozen=True, slots=True)
+class FieldPart:
+    """One entry of ``fields`` of a property: a path and a conversion.
+
+    Attributes:
+        shares: positions in a list at which values are sampled, 0 to 1; None: not a sample.
+        otherwise: replacement for numbers that are not finite; None: none.
+        dead_band: dead band of this value; None: that of the property.
+        name: name for the manual.
+    """
+
+    path: Path
+    place: Place
+    conversion: Conversion = AS_IT_IS
+    shares: Annotated[tuple[float, ...] | None, entry(_shares, "sample")] = None
+    otherwise: Annotated[float | Path | None, entry(_otherwise)] = None
+    dead_band: Annotated[float | None, entry(lambda node: node.number(0.0))] = None
+    name: Annotated[str, entry(Node.text)] = ""
+
+    @property
+    def count(self) -> int:
+        """Number of values that the field yields."""
+        return 1 if self.shares is None else len(self.shares)
+
+
+def value_names(fields: tuple[FieldPart, ...]) -> list[str]:
+    """Return a word for each value of the fields."""
+    return [
+        field.name or "value" if field.shares is None else f"{field.name}{place + 1}"
+        for field in fields
+        for place in range(field.count)
+    ]
+
+
+def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
+    """Return the same names, with numbers appended to duplicates."""
+    seen, found = set(taken), []
+    for name in names:
+        plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+        wanted, number = plain, 2
+        while wanted in seen or not wanted.isidentifier():
+            wanted, number = f"{plain}{number}" if plain.isidentifier() else f"value{number}", number + 1
+        seen.add(wanted)
+        found.append(wanted)
+    return found
 
 
 def read_fields(node: Node) -> tuple[FieldPart, ...]:
@@ -149,16 +377,8 @@ def read_field(node: Node) -> FieldPart:
         return FieldPart(WHOLE, place)
     entries = node.mapping(*FIELD, required=("path",))
     path = path_of(entries["path"]) if "path" in entries else WHOLE
-    band = entries.get("dead_band")
-    return FieldPart(
-        path,
-        place,
-        read_conversion(entries),
-        _shares(entries["sample"]) if "sample" in entries else None,
-        _otherwise(entries["otherwise"]) if "otherwise" in entries else None,
-        band.number(0.0) if band is not None else None,
-        entries["name"].text() if "name" in entries else _name(path, entries),
-    )
+    part = FieldPart(path, place, read_conversion(entries), name=_name(path, entries))
+    return with_entries(part, entries)
 
 
 def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
@@ -211,12 +431,7 @@ def _line(entries: dict[str, Node], kind: str) -> Line | None:
         Line(1.0, entries["offset"].number()) if "offset" in entries else None,
     ]
     there = [step for step in steps if step is not None]
-    if not there:
-        return None
-    whole = Line()
-    for step in there:
-        whole = whole.then(step)
-    return whole
+    return reduce(Line.then, there) if there else None
 
 
 def _factor(node: Node) -> float:
@@ -262,22 +477,6 @@ def _unit(node: Node) -> str | None:
     return None
 
 
-def _shares(node: Node) -> tuple[float, ...]:
-    if isinstance(node.value, list):
-        found = tuple(item.number(0.0, 1.0) for item in node.sequence())
-        if not found:
-            node.wrong("`sample` is empty", "write the number of elements, or their positions: [0, 0.5, 1]")
-        return found or (0.0,)
-    count = node.whole(1, 1)
-    return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
-
-
-def _otherwise(node: Node) -> float | Path:
-    if isinstance(node.value, str):
-        return path_of(node)
-    return node.number()
-
-
 def constant(node: Node, expected: str = "a number, a text or a list", help: str = "") -> object:
     """Read a constant: a number, truth value, text, or a list of them."""
     value = node.value
@@ -292,6 +491,8 @@ def constant(node: Node, expected: str = "a number, a text or a list", help: str
     return 0
 
 
+# Names and types.
+
 UNNAMED = "unnamed"
 """Replaces an invalid name."""
 
@@ -303,12 +504,12 @@ _ROS = re.compile(r"[~/]?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 _GLUED = re.compile(r"([a-z_]+):(\S+)")
 _TYPE = re.compile(r"[a-z]\w*/(msg/)?[A-Z]\w*")
 NAMESPACE = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?")
-_READERS = {"msg": message_type, "srv": service_type, "action": action_type}
-_EXAMPLES = {
-    "msg": "nav_msgs/msg/Odometry",
-    "srv": "std_srvs/srv/Trigger",
-    "action": "nav2_msgs/action/NavigateToPose",
+_KINDS: dict[str, tuple[Callable[[str], str], str, str]] = {
+    "msg": (message_type, "messages", "nav_msgs/msg/Odometry"),
+    "srv": (service_type, "a service", "std_srvs/srv/Trigger"),
+    "action": (action_type, "an action", "nav2_msgs/action/NavigateToPose"),
 }
+"""Kinds of types: how one is read, what it is the type of, and an example."""
 
 
 def belief_name(node: Node) -> str:
@@ -343,7 +544,7 @@ def ros_name(node: Node) -> Written:
     return Written(str(value), place_of(node))
 
 
-def namespace(node: Node) -> str:
+def read_namespace(node: Node) -> str:
     """Read a namespace; empty if none exists."""
     value = node.value
     if value in (None, "", "/"):
@@ -354,8 +555,13 @@ def namespace(node: Node) -> str:
     return str(value).strip("/")
 
 
+def type_of(kind: str) -> Entry:
+    """Return the entry of a type; *kind* is ``msg``, ``srv`` or ``action``."""
+    return entry(lambda node: type_written(node, kind), "type")
+
+
 def type_written(node: Node, kind: str) -> Written | None:
-    """Read a type in full form; *kind* is ``msg``, ``srv`` or ``action``. None after a mistake."""
+    """Read a type in full form. None after a mistake."""
     full = _full_type(node.value, kind)
     if full is None:
         node.wrong(*_wrong_type(node.value, kind))
@@ -365,26 +571,21 @@ def type_written(node: Node, kind: str) -> Written | None:
 
 def _full_type(value: object, kind: str) -> str | None:
     try:
-        full = _READERS[kind](value) if isinstance(value, str) else None
+        full = _KINDS[kind][0](value) if isinstance(value, str) else None
     except NameInvalid:
         return None
     return full if full is not None and full.split("/")[1] == kind else None
 
 
-_OF = {"msg": "messages", "srv": "a service", "action": "an action"}
-
-
 def _wrong_type(value: object, kind: str) -> tuple[str, str]:
     """Return the problem with a type, and what to write."""
-    for other, of in _OF.items():
+    _, of, example = _KINDS[kind]
+    for other, (_, of_other, _) in _KINDS.items():
         if other != kind and isinstance(value, str) and value.count("/") == 2 and _full_type(value, other):
-            return (
-                f"{value} is the type of {of}, not of {_OF[kind]}",
-                f"write a type such as {_EXAMPLES[kind]}",
-            )
+            return f"{value} is the type of {of_other}, not of {of}", f"write a type such as {example}"
     slashed = value.replace(".", "/").replace("::", "/") if isinstance(value, str) else ""
-    near = slashed if slashed and _full_type(slashed, kind) else f"it like {_EXAMPLES[kind]}"
-    return f"{shown(value)} is not a type of {_OF[kind]}", f"write {near}"
+    near = slashed if slashed and _full_type(slashed, kind) else f"it like {example}"
+    return f"{shown(value)} is not a type of {of}", f"write {near}"
 
 
 def is_type(value: object) -> bool:
