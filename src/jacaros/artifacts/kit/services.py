@@ -30,6 +30,7 @@ artifact disposed      a failed call                               aborted
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
 from typing import Any
 
 from jacaros.artifacts.env.errors import ArtifactId
@@ -39,9 +40,19 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.ros.action import Abort, ServerGoal
 from jacaros.ros.backend import Backend, Client, Handler
-from jacaros.ros.errors import CallTimedOut, RosError, ServerGone, ServiceError, ServiceUnavailable
+from jacaros.ros.errors import (
+    CallTimedOut,
+    ParameterRefused,
+    ParameterUnknown,
+    RosError,
+    ServerGone,
+    ServiceError,
+    ServiceUnavailable,
+    TransformUnavailable,
+)
 from jacaros.ros.message import field_names
 from jacaros.ros.names import response_type, result_type
+from jacaros.ros.parameter import Parameters, ParameterValue
 
 ABORTED = "aborted"
 """Functor of the failure reason whose first argument is the result's ``error_code``."""
@@ -164,8 +175,17 @@ class CallFailure(Exception):
         self.functor, self.arguments = functor, arguments
 
 
-def failure_reason(error: RosError, name: object, timeout: object) -> tuple[str, *tuple[object, ...]]:
-    """Return the functor and arguments of the reason for a call that failed, with the name of what was called."""
+def failure_reason(
+    error: RosError, name: object, timeout: object, parameter: object = ""
+) -> tuple[str, *tuple[object, ...]]:
+    """Return the functor and arguments of the reason for a call that failed.
+
+    Args:
+        error: what failed.
+        name: name of what was called.
+        timeout: seconds that it was given.
+        parameter: name of the parameter that was asked for, if any.
+    """
     match error:
         case ServiceUnavailable():
             return "service_unavailable", name
@@ -173,7 +193,34 @@ def failure_reason(error: RosError, name: object, timeout: object) -> tuple[str,
             return "service_timeout", timeout
         case ServerGone():
             return ("server_lost",)
+        case ParameterUnknown():
+            return "parameter_unknown", parameter
+        case ParameterRefused():
+            return "parameter_refused", parameter
+        case TransformUnavailable():
+            return "transform_unavailable", Atom(error.reason)
     return "service_failed", name
+
+
+async def set_parameter(
+    parameters: Parameters, name: str, value: ParameterValue, timeout: float | None
+) -> None:
+    """Set a parameter of a node; an integer is accepted for a floating-point number, which agents do not distinguish.
+
+    Raises:
+        RosError: the parameter is unknown or refused, or the node does not answer.
+    """
+    if isinstance(value, int) and not isinstance(value, bool):
+        with suppress(ParameterUnknown):  # setting it gives a better error
+            if isinstance(await parameters.get(name, timeout), float):
+                value = float(value)
+    await parameters.set(name, value, timeout)
+
+
+def refusal(name: str, response: Any) -> tuple[str, str]:
+    """Return the message about a service that refused, and the text of its response."""
+    text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
+    return f"service {name} refused{f': {text}' if text else ''}", text
 
 
 async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_succeed: bool) -> Any:
@@ -195,9 +242,8 @@ async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_s
     except ServiceError as error:
         raise CallFailure(str(error), *failure_reason(error, name, timeout)) from None
     if must_succeed and not succeeded(client, response):
-        text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
-        told = f": {text}" if text else ""
-        raise CallFailure(f"service {client.name} refused{told}", "refused", text)
+        message, text = refusal(client.name, response)
+        raise CallFailure(message, "refused", text)
     return response
 
 

@@ -1,19 +1,22 @@
-"""Check a mapping against the definitions of its message types."""
+"""Check a mapping against the definitions of its message types, and prepare its operations for them."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
-from jacaros.artifacts.mapping.decoding import extractor, reader
-from jacaros.artifacts.mapping.encoding import builder, fitting
-from jacaros.artifacts.mapping.fields import FieldPart, Place, Written, WrongPath
+from jacaros.artifacts.env.values import plain
+from jacaros.artifacts.mapping.decoding import Read, extractor, reader
+from jacaros.artifacts.mapping.encoding import Adapt, Fill, builder, fitting, unchanged
+from jacaros.artifacts.mapping.fields import FieldPart, Written, read_path
 from jacaros.artifacts.mapping.file import ArtifactPart, MappingError, MappingFile
-from jacaros.artifacts.mapping.interfaces import Interfaces
-from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
+from jacaros.artifacts.mapping.interfaces import Interfaces, getter, known_types, tried
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Success
 from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
 UNCERTAIN = "is not known here"
@@ -56,8 +59,6 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
 
 
 def _cure(type_name: str, error: UnknownInterface) -> str:
-    from jacaros.artifacts.mapping.interfaces import known_types  # here: only needed after a mistake
-
     return suggestion(type_name, known_types(type_name.split("/")[1]), str(error), 2)
 
 
@@ -84,15 +85,10 @@ def _check_operation(
     operation: OperationPart, written: Written, interfaces: Interfaces, problems: list[Problem]
 ) -> None:
     types = message_types(operation.kind, written.text)
-    if not known(written, types[0], interfaces, problems):
-        return
-    builder(fitting(operation, types[0], interfaces), types[0], interfaces, problems)
-    if operation.at_end is not None:
-        builder(operation.at_end, types[0], interfaces, problems)
-    if types[1:]:
-        check_answer(operation, types[1], interfaces, problems)
-    for feedback in operation.feedback:
-        check_topic(feedback, types[2], interfaces, problems)
+    if known(written, types[0], interfaces, problems):
+        codec(operation, written.text, interfaces, problems)
+        for feedback in operation.feedback:
+            check_topic(feedback, types[2], interfaces, problems)
 
 
 def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
@@ -104,23 +100,71 @@ def message_types(kind: OperationKind, type_name: str) -> tuple[str, ...]:
     return (type_name,)
 
 
-def check_answer(
-    operation: OperationPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
-) -> None:
-    """Check outputs, success and error fields against a response or result."""
-    code = () if operation.code is None else (operation.code,)
-    for field in (*operation.outputs, *code, *operation.aborted):
-        _tried(
-            field.place, lambda field=field: reader(field, FieldType(type_name), None, interfaces), problems
-        )
-    success = operation.success
+@dataclass(frozen=True, slots=True)
+class Codec:
+    """How an operation builds its message, and reads the answer.
+
+    Attributes:
+        fill: builds the message, request or goal.
+        end: builds the last message of repeated publishing; None: there is none.
+        outputs: read the output parameters from the response or result.
+        code: reads the Code of ``aborted(Code,Text)``; None: the usual field.
+        aborted: read what follows Code and Text.
+        succeeded: returns whether an answer shows success.
+    """
+
+    fill: Fill
+    end: Fill | None
+    outputs: tuple[Read, ...] = ()
+    code: Read | None = None
+    aborted: tuple[Read, ...] = ()
+    succeeded: Callable[[Any], bool] = lambda answer: True
+
+
+def codec(
+    part: OperationPart,
+    type_name: str,
+    interfaces: Interfaces,
+    problems: list[Problem],
+    adapt: Adapt = unchanged,
+) -> Codec | None:
+    """Prepare an operation for a type.
+
+    Args:
+        part: the operation.
+        type_name: type of its topic, service or action.
+        interfaces: knows the types.
+        problems: receives mistakes; the result is then None.
+        adapt: as for `builder`.
+    """
+    before, types = len(problems), message_types(part.kind, type_name)
+    values = fitting(part, types[0], interfaces)
+    fill, at_end = builder(values, types[0], interfaces, problems, adapt), part.at_end
+    if at_end is None and fill is not None and types[0] in VELOCITIES:  # a robot always ends with zero
+        at_end = tuple(each for each in values if ".header" in each.target.steps)
+    end = None if at_end is None else builder(at_end, types[0], interfaces, problems, adapt)
+    if not types[1:]:
+        return Codec(fill, end) if fill is not None and len(problems) == before else None
+
+    def read(fields: tuple[FieldPart, ...]) -> tuple[Read, ...]:
+        answer = FieldType(types[1])
+        made = [tried(each.place, problems, reader, each, answer, None, interfaces) for each in fields]
+        return tuple(each for each in made if each is not None)
+
+    outputs, aborted = read(part.outputs), read(part.aborted)
+    code = read((part.code,)) if part.code is not None else ()
+    success = part.success
     if success is not None:
-        field = FieldPart(success.path, success.place)
-        _tried(success.place, lambda: reader(field, FieldType(type_name), None, interfaces), problems)
+        read((FieldPart(success.path, success.place),))
+    if fill is None or len(problems) > before:
+        return None
+    if success is None and not part.any_success and "success" in interfaces.fields(types[1]):
+        success = Success(read_path("success"), part.place)
+    return Codec(fill, end, outputs, code[0] if code else None, aborted, _succeeded(success))
 
 
-def _tried(place: Place, make: Callable[..., Any], problems: list[Problem]) -> None:
-    try:
-        make()
-    except (WrongPath, UnknownInterface) as error:
-        problems.append(place.problem(str(error), getattr(error, "help", "")))
+def _succeeded(success: Success | None) -> Callable[[Any], bool]:
+    if success is None:
+        return lambda answer: True
+    get, value = getter(success.path), success.value
+    return lambda answer: bool(plain(get(answer, 0)) == value)

@@ -3,7 +3,7 @@ Large values that an agent only passes on are given by reference (`MessageHandle
 
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,7 +16,6 @@ from jacaros.artifacts.mapping.fields import (
     Conversion,
     FieldPart,
     Path,
-    Written,
     WrongPath,
     read_path,
 )
@@ -28,6 +27,7 @@ from jacaros.artifacts.mapping.interfaces import (
     constants,
     follow,
     getter,
+    tried,
 )
 from jacaros.artifacts.mapping.properties import RangeOfView, TopicPart
 from jacaros.files.yaml import Problem
@@ -496,6 +496,10 @@ def fields_of(part: TopicPart, root: FieldType, interfaces: Interfaces) -> tuple
     return tuple(FieldPart(read_path(name), part.place, name=name) for name in names)
 
 
+View = Callable[[Any, Any, int], tuple[float, float] | None]
+"""Returns the position of an element, as `Read` does its values; None if it is certainly out of view."""
+
+
 def extractor(
     part: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]
 ) -> Extract | None:
@@ -507,9 +511,9 @@ def extractor(
         interfaces: knows the types.
         problems: receives mistakes; the result is then None.
     """
-    maker = _Maker(part, type_name, interfaces, problems)
-    made = maker.make()
-    return made if maker.good else None
+    before = len(problems)
+    made = _Maker(part, type_name, interfaces, problems).make()
+    return made if len(problems) == before else None
 
 
 class _Maker:
@@ -518,75 +522,49 @@ class _Maker:
     ) -> None:
         self.part, self.interfaces, self.problems = part, interfaces, problems
         self.message = FieldType(type_name)
-        self.element = self._element()
-        self.good = True
-
-    def _element(self) -> FieldType | None:
-        each = self.part.each
-        if each is None:
-            return None
-        try:
-            leaf = follow(each, self.message, self.interfaces.fields)
-        except (WrongPath, UnknownInterface) as error:
-            self.wrong(self.part.each_place, error)
-            return FieldType(self.message.base)
-        if not leaf.array or each.lists:
-            self.wrong(self.part.each_place, WrongPath(f"`each` is for arrays, but `{each.text}` is {leaf}"))
-        return FieldType(leaf.base)
-
-    def wrong(self, place: Any, error: Exception) -> None:
-        """Report a mistake."""
-        self.good = False
-        self.problems.append(place.problem(str(error), getattr(error, "help", "")))
+        self.element: FieldType | None = None
 
     def make(self) -> Extract:
         """Return the function; unusable after a mistake."""
-        before = len(self.problems)
-        if self.part.frame is not None:
-            self._require_frame(self.part.frame)
-        fields = self._fields()
+        part, problems = self.part, self.problems
+        if part.each is not None:
+            self.element = tried(part.each_place, problems, self._element) or self.message
+        if part.frame is not None:
+            tried(part.frame.place, problems, self._require_frame)
+        root = self.element or self.message
+        fields = tried(part.place, problems, fields_of, part, root, self.interfaces) or ()
         takes = [take for field in fields if (take := self._reader(field)) is not None]
         notes = [
-            (field.name, take) for field in self.part.annotations if (take := self._reader(field)) is not None
+            (field.name, take) for field in part.annotations if (take := self._reader(field)) is not None
         ]
-        view = self._view() if self.part.view is not None else None
-        key = self._key(fields)
-        self.good = len(self.problems) == before and self.good
-        if self.part.each is None:
-            return self._single(takes, notes, view)
-        return self._several(getter(self.part.each), takes, notes, view, key)
+        view = self._view(part.view) if part.view is not None else None
+        if part.each is None:
+            return _single(takes, notes, view)
+        field = part.key or (fields[0] if fields else None)
+        return _several(
+            getter(part.each), takes, notes, view, self._reader(field) if field is not None else None
+        )
 
-    def _require_frame(self, frame: Written) -> None:
+    def _element(self) -> FieldType:
+        each = self.part.each
+        assert each is not None
+        leaf = follow(each, self.message, self.interfaces.fields)
+        if not leaf.array or each.lists:
+            raise WrongPath(f"`each` is for arrays, but `{each.text}` is {leaf}")
+        return FieldType(leaf.base)
+
+    def _require_frame(self) -> None:
         try:
             follow(FRAME, self.message, self.interfaces.fields)
         except (WrongPath, UnknownInterface):
             text = f"`frame` is for messages with a header, but {self.message} has none"
-            self.wrong(frame.place, WrongPath(text, "leave it out"))
-
-    def _fields(self) -> Sequence[FieldPart]:
-        try:
-            return fields_of(self.part, self.element or self.message, self.interfaces)
-        except UnknownInterface as error:
-            self.wrong(self.part.place, error)
-            return ()
+            raise WrongPath(text, "leave it out") from None
 
     def _reader(self, field: FieldPart) -> Read | None:
-        try:
-            return reader(field, self.message, self.element, self.interfaces)
-        except (WrongPath, UnknownInterface) as error:
-            self.wrong(field.place, error)
-            return None
+        return tried(field.place, self.problems, reader, field, self.message, self.element, self.interfaces)
 
-    def _key(self, fields: Sequence[FieldPart]) -> Read | None:
-        if self.part.each is None:
-            return None
-        field = self.part.key or (fields[0] if fields else None)
-        return self._reader(field) if field is not None else None
-
-    def _view(self) -> Callable[[Any, Any, int], tuple[float, float] | None]:
+    def _view(self, view: RangeOfView) -> View:
         """Return a function that gives the position of an element; None if it is certainly out of view."""
-        view = self.part.view
-        assert view is not None
         if view.distance is not None:
             far = self._number(view.distance, view)
             return lambda whole, part, i: (0.0, 0.0) if far(whole, part, i) <= view.metres else None
@@ -596,15 +574,16 @@ class _Maker:
         return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
 
     def _number(self, path: Path, view: RangeOfView) -> Callable[[Any, Any, int], float]:
+        from_message = self.element is None or path.of_message
         root = self.message if self.element is None or path.of_message else self.element
-        try:
+
+        def check() -> None:
             leaf = follow(path, root, self.interfaces.fields)
             if leaf.array or path.lists or leaf.base not in (*FLOATS, *INTEGER_RANGES):
                 raise WrongPath(f"`range_of_view` needs numbers, but `{path.text}` is {leaf}")
-        except (WrongPath, UnknownInterface) as error:
-            self.wrong(view.place, error)
+
+        tried(view.place, self.problems, check)
         get: Getter = getter(path)
-        from_message = self.element is None or path.of_message
 
         def number(whole: Any, part: Any, i: int) -> float:
             try:
@@ -614,32 +593,32 @@ class _Maker:
 
         return number
 
-    def _single(self, takes: list[Read], notes: list[tuple[str, Read]], view: Any) -> Extract:
-        def rows(message: Any) -> list[Row]:
-            place = view(message, message, 0) if view is not None else (0.0, 0.0)
-            if place is None or not all(map(math.isfinite, place)):
-                return []
-            return [
-                Row(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0), place)
-            ]
 
-        return rows
+def _single(takes: list[Read], notes: list[tuple[str, Read]], view: View | None) -> Extract:
+    def rows(message: Any) -> list[Row]:
+        place = view(message, message, 0) if view is not None else (0.0, 0.0)
+        if place is None or not all(map(math.isfinite, place)):
+            return []
+        return [Row(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0), place)]
 
-    def _several(
-        self, get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: Any, key: Read | None
-    ) -> Extract:
-        def rows(message: Any) -> list[Row]:
-            found = []
-            for place, element in enumerate(get(message, 0)):
-                at = view(message, element, place) if view is not None else (0.0, 0.0)
-                if at is None or not all(map(math.isfinite, at)):
-                    continue
-                values = _row_values(takes, message, element, place)
-                told = _noted(notes, message, element, place)
-                found.append(Row(_hashable(key(message, element, place)) if key else place, values, told, at))
-            return found
+    return rows
 
-        return rows
+
+def _several(
+    get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: View | None, key: Read | None
+) -> Extract:
+    def rows(message: Any) -> list[Row]:
+        found = []
+        for place, element in enumerate(get(message, 0)):
+            at = view(message, element, place) if view is not None else (0.0, 0.0)
+            if at is None or not all(map(math.isfinite, at)):
+                continue
+            values = _row_values(takes, message, element, place)
+            told = _noted(notes, message, element, place)
+            found.append(Row(_hashable(key(message, element, place)) if key else place, values, told, at))
+        return found
+
+    return rows
 
 
 def _row_values(takes: list[Read], message: Any, element: Any, place: int) -> tuple[object, ...]:

@@ -7,10 +7,10 @@ from typing import Any
 from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
 from jacaros.artifacts.mapping.fields import ANGLES, Conversion, WrongPath
-from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow
+from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow, tried
 from jacaros.artifacts.mapping.operations import ALL_OF_IT, OperationPart, Source, ValuePart
 from jacaros.files.yaml import Problem
-from jacaros.ros.errors import MessageMismatch, UnknownInterface
+from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 from jacaros.ros.values import single_value
@@ -38,12 +38,21 @@ Give = Callable[[Sequence[object], float], Any]
 """Returns one value."""
 
 
+Adapt = Callable[[str, object], object]
+"""Changes a constant, given the name of its field, such as a frame name."""
+
+
+def unchanged(field: str, value: object) -> object:
+    """Return the constant."""
+    return value
+
+
 def builder(
     values: Sequence[ValuePart],
     type_name: str,
     interfaces: Interfaces,
     problems: list[Problem],
-    adapt: Callable[[str, object], object] = lambda field, value: value,
+    adapt: Adapt = unchanged,
 ) -> Fill | None:
     """Return a function that builds the fields of a message.
 
@@ -57,10 +66,9 @@ def builder(
     before = len(problems)
     made: list[tuple[ValuePart, Give]] = []
     for part in values:
-        try:
-            made.append((part, _give(part, type_name, interfaces, problems, adapt)))
-        except (WrongPath, UnknownInterface, MessageMismatch) as error:
-            problems.append(part.place.problem(str(error), getattr(error, "help", "")))
+        give = tried(part.place, problems, _give, part, type_name, interfaces, problems, adapt)
+        if give is not None:
+            made.append((part, give))
     problems += _gaps(values)
     if len(problems) > before:
         return None
@@ -129,7 +137,7 @@ def _give(
     type_name: str,
     interfaces: Interfaces,
     problems: list[Problem],
-    adapt: Callable[[str, object], object],
+    adapt: Adapt,
 ) -> Give:
     root = FieldType(type_name)
     leaf = follow(part.target, root, interfaces.fields)
@@ -310,7 +318,7 @@ def _each(
     leaf: FieldType,
     interfaces: Interfaces,
     problems: list[Problem],
-    adapt: Callable[[str, object], object],
+    adapt: Adapt,
 ) -> Give:
     """Return a function that builds a list of messages from a list of structures, lists or single values."""
     path = part.target.text

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path as FilePath
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from jacaros.artifacts.mapping.fields import (
     ALL,
@@ -15,16 +15,20 @@ from jacaros.artifacts.mapping.fields import (
     UNITS,
     Conversion,
     Path,
+    Place,
     Step,
     WrongPath,
     units_of,
 )
 from jacaros.files.texts import suggestion
+from jacaros.files.yaml import Problem
+from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import BUILT_IN, installed
 from jacaros.ros.message import TIMES, MessageFactory
 from jacaros.ros.typestore import DefinitionSchema, stored_types
 
+T = TypeVar("T")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
 
 
@@ -130,6 +134,15 @@ def known_types(kind: str) -> list[str]:
     ]
     whole = [name for name in stored_types() if not name.endswith(PARTS)]
     return [*own, *(name for name in whole if f"/{kind}/" in name)]
+
+
+def tried(place: Place, problems: list[Problem], make: Callable[..., T], *arguments: object) -> T | None:
+    """Return what *make* returns, or None after a mistake, which *problems* receives."""
+    try:
+        return make(*arguments)
+    except (WrongPath, UnknownInterface, MessageMismatch) as error:
+        problems.append(place.problem(str(error), getattr(error, "help", "")))
+        return None
 
 
 # Follow paths through message types and messages.

@@ -1,39 +1,31 @@
-"""Operations of a mapped artifact: messages, services, actions, parameters of nodes, and properties on demand."""
+"""Operations of a mapped artifact: messages, services, actions, parameters of nodes, and properties on demand.
+
+A robot that was sent a velocity is always sent zero at the end.
+"""
 
 import asyncio
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from jacaros.artifacts.env.artifact import Out
-from jacaros.artifacts.env.execution import OperationExecution
-from jacaros.artifacts.env.values import Atom, Structure, plain
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.acting import error_code, error_text, missing_number
 from jacaros.artifacts.kit.connection import Matching
-from jacaros.artifacts.kit.services import MESSAGES, failure_reason
-from jacaros.artifacts.mapping.checking import check_answer, message_types
-from jacaros.artifacts.mapping.decoding import Read, Unshowable, reader
-from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
-from jacaros.artifacts.mapping.fields import FieldPart, read_path
+from jacaros.artifacts.kit.services import failure_reason, refusal, set_parameter
+from jacaros.artifacts.mapping.checking import Codec, codec, message_types
+from jacaros.artifacts.mapping.decoding import Read, Unshowable
+from jacaros.artifacts.mapping.encoding import WrongValue
 from jacaros.artifacts.mapping.host import Host, ask_type
-from jacaros.artifacts.mapping.interfaces import getter
-from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source, Success, ValuePart
+from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
-from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
+from jacaros.artifacts.mapping.topic_multiplexer import Updater
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client, Publisher
-from jacaros.ros.errors import (
-    CapabilityMissing,
-    MessageMismatch,
-    NameInvalid,
-    ParameterRefused,
-    ParameterUnknown,
-    RosError,
-)
-from jacaros.ros.fields import FieldType
+from jacaros.ros.errors import CapabilityMissing, MessageMismatch, NameInvalid, RosError
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.qos import DEFAULT_QOS
 
@@ -63,69 +55,61 @@ class Operations:
         await self._runners[number].run(inputs, outs)
 
 
-class _RemoteOperation:
-    """Common code of services and actions: build a request, read the answer."""
+class _Operation:
+    """An operation with a message, whose type may have to be looked up in the graph."""
 
     what = "service"
 
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
-        self._fill: Fill | None = None
-        self._takes: list[Read] = []
-        self._check = part.success
+        self._known: Codec | None = None
         if part.type_name is not None:
             self._open(part.type_name.text)
 
     def _open(self, type_name: str) -> None:
         host, part = self._host, self._part
-        types = message_types(part.kind, type_name)
         problems: list[Problem] = []
-        fill = builder(fitting(part, types[0], host.ros), types[0], host.ros, problems, host.adapted)
-        check_answer(part, types[1], host.ros, problems)
-        self._more(types, problems)
+        known = codec(part, type_name, host.ros, problems, host.adapted)
+        self._prepare(type_name, problems)
         if problems:
             host.report(problems)
             host.fail(f"`{part.name}` does not match the type {type_name}", "wrong_mapping", part.name)
-        answer = FieldType(types[1])
-        self._takes = [reader(field, answer, None, host.ros) for field in part.outputs]
-        if part.success is None and not part.any_success and "success" in host.ros.fields(types[1]):
-            self._check = Success(read_path("success"), part.place)
         self._connect(type_name)
-        self._fill = fill
+        self._known = known
 
-    def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
-        """Prepare further fields of a subclass."""
+    def _prepare(self, type_name: str, problems: list[Problem]) -> None:
+        """Prepare what only some operations have."""
 
     def _connect(self, type_name: str) -> None:
-        """Make the client."""
+        """Make the publisher or the client."""
+        raise NotImplementedError
 
-    async def _ready(self) -> None:
-        if self._fill is None:
+    @property
+    def _codec(self) -> Codec:
+        assert self._known is not None
+        return self._known
+
+    async def ready(self) -> None:
+        """Know the type."""
+        if self._known is None:
             self._open(await ask_type(self._host, self.what, self._part.target))
 
     def _fields(self, inputs: Sequence[object]) -> dict[str, Any]:
-        assert self._fill is not None
         try:
-            return self._fill(inputs, self._host.clock.now())
+            return self._codec.fill(inputs, self._host.clock.now())
         except WrongValue as error:
             self._host.fail(str(error), "wrong_value", error.field)
 
-    def _succeeded(self, answer: Any) -> bool:
-        if self._check is None:
-            return True
-        found = plain(getter(self._check.path)(answer, 0))
-        return bool(found == self._check.value)
-
     def _give(self, answer: Any, outs: Sequence[Out]) -> None:
         try:
-            values = [value for take in self._takes for value in take(answer, answer, 0)]
+            values = [value for take in self._codec.outputs for value in take(answer, answer, 0)]
         except Unshowable as error:
             self._host.fail(str(error), error.functor, error.path)
         for out, value in zip(outs, values, strict=True):
             out.set(value)
 
 
-class _ServiceOperation(_RemoteOperation):
+class _ServiceOperation(_Operation):
     """One operation with ``service``."""
 
     _client: Client
@@ -135,61 +119,49 @@ class _ServiceOperation(_RemoteOperation):
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Call the service."""
-        await self._ready()
+        await self.ready()
         assert self._part.timeout is not None
         response = await self._host.call(self._client, self._part.timeout, **self._fields(inputs))
         self._check_success(response)
         self._give(response, outs)
-
-    async def ready(self) -> None:
-        """Know the type."""
-        await self._ready()
 
     async def switch(self) -> None:
         """Call the service."""
         self._check_success(await self._client.call(self._fields(()), self._part.timeout))
 
     def _check_success(self, response: Any) -> None:
-        if self._succeeded(response):
-            return
-        name = self._client.name
-        text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
-        told = f": {text}" if text else ""
-        self._host.fail(f"service {name} refused{told}", "service_refused", Atom(name.lstrip("/")), text)
+        if not self._codec.succeeded(response):
+            name = self._client.name
+            message, text = refusal(name, response)
+            self._host.fail(message, "service_refused", Atom(name.lstrip("/")), text)
 
 
 NOT_SHOWN = Atom("unknown")
 """Replaces a value of a failed goal's result that agents cannot have, such as NaN."""
 
 
-class _ActionOperation(_RemoteOperation):
+class _ActionOperation(_Operation):
     """One operation with ``action``."""
 
     what = "action"
     _client: ActionClient
 
     def __init__(self, host: Host, part: OperationPart) -> None:
-        self._updaters: list[Updater] = [feedback_updater(host, each) for each in part.feedback]
+        self._updaters = [Updater(host, each) for each in part.feedback]
         self._under_way = 0
-        self._code: Read | None = None
-        self._aborted: list[Read] = []
         self.switches: tuple[_ServiceOperation | _SetParameter, ...] = ()
         super().__init__(host, part)
 
-    def _more(self, types: tuple[str, ...], problems: list[Problem]) -> None:
-        part, answer, ros = self._part, FieldType(types[1]), self._host.ros
-        if not problems:
-            self._code = None if part.code is None else reader(part.code, answer, None, ros)
-            self._aborted = [reader(field, answer, None, ros) for field in part.aborted]
+    def _prepare(self, type_name: str, problems: list[Problem]) -> None:
         for updater in self._updaters:
-            updater.prepare(types[2], problems)
+            updater.prepare(message_types(self._part.kind, type_name)[2], problems)
 
     def _connect(self, type_name: str) -> None:
         self._client = self._host.action_client(self._part.target.text, type_name)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Run a goal to its end."""
-        await self._ready()
+        await self.ready()
         for each in self.switches:
             await each.ready()
         host, part = self._host, self._part
@@ -205,7 +177,7 @@ class _ActionOperation(_RemoteOperation):
             resume=resume,
             aborted=self._explain,
         )
-        if not self._succeeded(result):
+        if not self._codec.succeeded(result):
             text = error_text(result)
             code, *more = self._explain(result)
             told = f": {text}" if text else ""
@@ -214,8 +186,9 @@ class _ActionOperation(_RemoteOperation):
 
     def _explain(self, result: Any) -> tuple[object, ...]:
         """Return the error code of a result, and the further values that the mapping declares."""
-        code = error_code(result) if self._code is None else self._shown(self._code, result)[0]
-        return (code, *(value for take in self._aborted for value in self._shown(take, result)))
+        known = self._codec
+        code = error_code(result) if known.code is None else self._shown(known.code, result)[0]
+        return (code, *(value for take in known.aborted for value in self._shown(take, result)))
 
     def _shown(self, take: Read, result: Any) -> Sequence[object]:
         try:
@@ -239,6 +212,155 @@ class _ActionOperation(_RemoteOperation):
                 updater.withdraw()
 
 
+class _PublishOperation(_Operation):
+    """One operation with ``publish``."""
+
+    what = "topic"
+
+    _publisher: Publisher
+    _matching: Matching
+
+    def __init__(self, host: Host, part: OperationPart) -> None:
+        self._motions = Motions()
+        self._drives = self._moves = self._moved = False
+        self._arguments: Sequence[object] = ()
+        super().__init__(host, part)
+
+    def _connect(self, type_name: str) -> None:
+        host, part = self._host, self._part
+        self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
+        self._matching = host.matching_of(
+            self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
+        )
+        self._drives = type_name in VELOCITIES
+        if self._drives:
+            self._motions = motions_of(host.ros, host.robot_prefix)
+            host.at_dispose(host.ros.add_exit_hook(self._stand))
+            host.at_dispose(guarded_by(host.ros).on_standstill(self._stand))
+            host.at_dispose(self._halt)
+
+    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
+        """Publish, once or repeatedly."""
+        await self.ready()
+        if self._part.rate is not None:
+            await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
+            return
+        stops = self._motions.stops
+        for pause in self._pauses(inputs):
+            await self._host.sleep(pause)
+            await self._host.pause_point()
+            if self._motions.stops != stops:
+                self._host.fail(f"`{self._part.name}` was aborted", "aborted", 0.0)
+        self._send_once(inputs)
+
+    def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
+        """Yield pauses until messages arrive; a message that stops a robot does not wait."""
+        if self._matching.exists() or (self._drives and not self._filled(inputs)[1]):
+            return iter(())
+        return self._matching.pauses(always=self._drives)
+
+    async def switch(self) -> None:
+        """Publish once."""
+        self._send_once(())
+
+    def _send_once(self, inputs: Sequence[object]) -> None:
+        self._send(inputs)
+        if self._part.at_end is not None:
+            self._end(inputs)
+
+    def _seconds(self, inputs: Sequence[object]) -> float:
+        duration = self._part.duration
+        assert duration is not None
+        value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
+            self._host.fail(
+                f"expected a number of seconds as duration, found {value!r}", "wrong_value", "duration"
+            )
+        return float(value)
+
+    async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
+        """Publish until the time is over. Pauses do not count, and the motions of one robot take turns."""
+        host, left = self._host, seconds
+        pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
+        # Without wheels, two calls of the same operation exclude each other.
+        use = WHEELS if self._drives else f"{host.current.request.artifact.path}.{self._part.name}"
+        driving = Driving(host, self._motions, use, lambda: self._end(inputs))
+        try:
+            with driving:
+                await driving.ready()
+                for pause in pauses:
+                    await driving.wait(pause)
+                    await driving.ready()
+                while left > 1e-9:
+                    await driving.ready()
+                    began, driving.claim.gap = host.clock.elapsed, None
+                    self._send(inputs)
+                    await driving.wait(min(period, left))
+                    left -= host.clock.elapsed - began
+                    self._heed_gap(driving.claim.gap, seconds - left)
+        except Aborted:
+            host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
+
+    def _heed_gap(self, gap: Structure | Atom | None, covered: float) -> None:
+        """Fail if the robot was not watched for a while."""
+        if gap is not None and self._drives:
+            text = f"the open-loop motion `{self._part.name}` was interrupted ({gap})"
+            self._host.fail(text, "interrupted", round(covered, 3))
+
+    def _warn_unmatched(self, message: str, help: str) -> None:
+        """Log once that a topic has no subscribers: its name or type may be wrong."""
+        self._host.report_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
+
+    def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
+        """Return the fields of the message, and whether it moves the robot."""
+        fields = self._fields(inputs)
+        missing = missing_number(fields)
+        if missing is not None:
+            self._host.fail(f"field `{missing}` is not a number; nothing was sent", "wrong_value", missing)
+        moves = self._codec.end is not None and any(_numbers(fields))
+        if moves and not all(map(math.isfinite, _numbers(fields))):
+            self._host.fail("the velocity is infinite; nothing was sent", "wrong_value", "velocity")
+        return fields, moves
+
+    def _send(self, inputs: Sequence[object]) -> None:
+        self._arguments = inputs
+        fields, moves = self._filled(inputs)
+        try:
+            message = self._publisher.message(**fields)
+            self._moved = self._moved or moves
+            self._publisher.publish(message)
+        except MessageMismatch as error:
+            self._host.fail(str(error), "wrong_value", error.field)
+        self._moves = moves
+        if self._drives and not moves:
+            self._motions.stops += 1
+
+    def _end(self, inputs: Sequence[object]) -> None:
+        """Publish the last message, if any."""
+        if (end := self._codec.end) is not None:
+            self._moves = False
+            self._publisher.publish(self._publisher.message(**end(inputs, self._host.clock.now())))
+
+    def _halt(self) -> None:
+        """Stop the robot when the artifact ends."""
+        if self._moves:
+            self._end(self._arguments)
+
+    def _stand(self) -> None:
+        """Stop a robot that was ever sent a velocity when the process ends. This may run in a thread, so it only
+        publishes."""
+        if self._moved:
+            self._end(self._arguments)
+
+
+def _numbers(fields: Any) -> list[float]:
+    if isinstance(fields, dict):
+        return [number for name, each in fields.items() if name != "header" for number in _numbers(each)]
+    if isinstance(fields, list | tuple):
+        return [number for each in fields for number in _numbers(each)]
+    return [float(fields)] if isinstance(fields, int | float) else []
+
+
 class _ParameterOperation:
     """Common code of the operations on parameters of nodes."""
 
@@ -251,13 +373,9 @@ class _ParameterOperation:
         except CapabilityMissing as error:
             host.fail(f"{part.name}: {error}", "ros_error", host.name)
 
-    def _fail(self, error: RosError) -> None:
+    def _fail(self, error: RosError) -> NoReturn:
         node = Atom(self._parameters.node.lstrip("/"))
-        if isinstance(error, ParameterUnknown):
-            self._host.fail(str(error), "parameter_unknown", Atom(self._name))
-        if isinstance(error, ParameterRefused):
-            self._host.fail(str(error), "parameter_refused", Atom(self._name))
-        self._host.fail(str(error), *failure_reason(error, node, self._part.timeout))
+        self._host.fail(str(error), *failure_reason(error, node, self._part.timeout, Atom(self._name)))
 
 
 class _SetParameter(_ParameterOperation):
@@ -266,26 +384,16 @@ class _SetParameter(_ParameterOperation):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Set the parameter."""
         try:
-            await self._host.step(self._set(self._value(inputs)))
+            await self._host.step(self.switch(inputs))
         except RosError as error:
             self._fail(error)
 
     async def ready(self) -> None:
         """Do nothing: everything is known."""
 
-    async def switch(self) -> None:
+    async def switch(self, inputs: Sequence[object] = ()) -> None:
         """Set the parameter."""
-        await self._set(self._value(()))
-
-    async def _set(self, value: Any) -> None:
-        # Agents do not distinguish 1 from 1.0, but nodes do.
-        if isinstance(value, int) and not isinstance(value, bool):
-            try:
-                if isinstance(await self._parameters.get(self._name, self._part.timeout), float):
-                    value = float(value)
-            except ParameterUnknown:
-                pass  # setting it gives a better error
-        await self._parameters.set(self._name, value, self._part.timeout)
+        await set_parameter(self._parameters, self._name, self._value(inputs), self._part.timeout)
 
     def _value(self, inputs: Sequence[object]) -> Any:
         part = self._part.values[0]
@@ -297,11 +405,8 @@ class _SetParameter(_ParameterOperation):
             return known[value]
         if (line := part.conversion.line) is not None:
             if isinstance(value, bool) or not isinstance(value, int | float):
-                self._host.fail(
-                    f"parameter `{self._name}`: expected a number, found {value!r}",
-                    "parameter_refused",
-                    Atom(self._name),
-                )
+                text = f"parameter `{self._name}`: expected a number, found {value!r}"
+                self._host.fail(text, "parameter_refused", Atom(self._name))
             return line.back(value)
         return str(value) if isinstance(value, Atom) else value
 
@@ -311,7 +416,7 @@ class _GetParameter(_ParameterOperation):
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Give the parameter."""
-        field: FieldPart = self._part.outputs[0]
+        field = self._part.outputs[0]
         try:
             value = await self._host.step(self._parameters.get(self._name, self._part.timeout))
         except (RosError, NameInvalid) as error:
@@ -340,207 +445,8 @@ class _RequestOperation:
                     out.set(value)
 
 
-# Operations that publish, once or repeatedly. A robot that was sent a velocity is always sent zero at the end.
-
-
-class Publishing:
-    """One operation with ``publish``.
-
-    Args:
-        host: the artifact.
-        part: its declaration.
-    """
-
-    def __init__(self, host: Host, part: OperationPart) -> None:
-        self._host, self._part = host, part
-        self._publisher: Publisher | None = None
-        self._matching: Matching | None = None
-        self._fill: Fill | None = None
-        self._fill_end: Fill | None = None
-        self._motions = Motions()
-        self._drives = self._moves = self._moved = False
-        self._arguments: Sequence[object] = ()
-        if part.type_name is not None:
-            self._open(part.type_name.text)
-
-    def _open(self, type_name: str) -> None:
-        host, part = self._host, self._part
-        problems: list[Problem] = []
-        values = fitting(part, type_name, host.ros)
-        self._fill = builder(values, type_name, host.ros, problems, host.adapted)
-        if (end := self._end_values(type_name, values)) is not None:
-            self._fill_end = builder(end, type_name, host.ros, problems, host.adapted)
-        if problems:
-            host.report(problems)
-            host.fail(f"`{part.name}` does not match the type {type_name}", "wrong_mapping", part.name)
-        self._publisher = host.publisher(part.target.text, type_name, part.qos or DEFAULT_QOS)
-        self._matching = host.matching_of(
-            self._publisher, part.match_timeout, part.unmatched, self._warn_unmatched
-        )
-        self._drives = type_name in VELOCITIES
-        if self._drives:
-            self._motions = motions_of(host.ros, host.robot_prefix)
-            host.at_dispose(host.ros.add_exit_hook(self._stand))
-            host.at_dispose(guarded_by(host.ros).on_standstill(self._stand))
-            host.at_dispose(self._halt)
-
-    def _end_values(self, type_name: str, values: tuple[ValuePart, ...]) -> tuple[ValuePart, ...] | None:
-        """Return the values of the last message: velocities end with zero unless the mapping declares it."""
-        if self._part.at_end is not None:
-            return self._part.at_end
-        if type_name not in VELOCITIES:
-            return None
-        return tuple(each for each in values if ".header" in each.target.steps)
-
-    async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Publish, once or repeatedly."""
-        await self.ready()
-        if self._part.rate is not None:
-            await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
-            return
-        stops = self._motions.stops
-        for pause in self._pauses(inputs):
-            await self._host.sleep(pause)
-            await self._host.pause_point()
-            if self._motions.stops != stops:
-                self._host.fail(f"`{self._part.name}` was aborted", "aborted", 0.0)
-        self._send_once(inputs)
-
-    def _pauses(self, inputs: Sequence[object]) -> Iterator[float]:
-        """Yield pauses until messages arrive; a message that stops a robot does not wait."""
-        assert self._matching is not None
-        if self._matching.exists() or (self._drives and not self._filled(inputs)[1]):
-            return iter(())
-        return self._matching.pauses(always=self._drives)
-
-    async def ready(self) -> None:
-        """Look up the type."""
-        if self._publisher is None:
-            self._open(await ask_type(self._host, "topic", self._part.target))
-
-    async def switch(self) -> None:
-        """Publish once."""
-        self._send_once(())
-
-    def _send_once(self, inputs: Sequence[object]) -> None:
-        self._send(inputs)
-        if self._part.at_end is not None:
-            self._end(inputs)
-
-    def _seconds(self, inputs: Sequence[object]) -> float:
-        duration = self._part.duration
-        assert duration is not None
-        value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
-            self._host.fail(
-                f"expected a number of seconds as duration, found {value!r}", "wrong_value", "duration"
-            )
-        return float(value)
-
-    async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:
-        """Publish until the time is over. Pauses do not count, and the motions of one robot take turns."""
-        host, left = self._host, seconds
-        pauses = self._pauses(inputs) if seconds > 0.0 else iter(())
-        driving = Driving(host, self._motions, self._use(host.current), lambda: self._end(inputs))
-        try:
-            with driving:
-                await driving.ready()
-                for pause in pauses:
-                    await driving.wait(pause)
-                    await driving.ready()
-                while left > 1e-9:
-                    await driving.ready()
-                    began, driving.claim.gap = host.clock.elapsed, None
-                    self._send(inputs)
-                    await driving.wait(min(period, left))
-                    left -= host.clock.elapsed - began
-                    self._heed_gap(driving.claim.gap, seconds - left)
-        except Aborted:
-            host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
-
-    def _heed_gap(self, gap: Structure | Atom | None, covered: float) -> None:
-        """Fail if the robot was not watched for a while."""
-        if gap is not None and self._drives:
-            text = f"the open-loop motion `{self._part.name}` was interrupted ({gap})"
-            self._host.fail(text, "interrupted", round(covered, 3))
-
-    def _use(self, execution: OperationExecution) -> str:
-        """Return the wheels, or a resource that makes two calls of the same operation exclude each other."""
-        if self._drives:
-            return WHEELS
-        return f"{execution.request.artifact.path}.{self._part.name}"
-
-    def _warn_unmatched(self, message: str, help: str) -> None:
-        """Log once that a topic has no subscribers: its name or type may be wrong."""
-        assert self._publisher is not None
-        self._host.report_once((self._publisher.topic, "unmatched"), self._part.target.place, message, help)
-
-    def _filled(self, inputs: Sequence[object]) -> tuple[Any, bool]:
-        """Return the fields of the message, and whether it moves the robot."""
-        assert self._fill is not None
-        try:
-            fields = self._fill(inputs, self._host.clock.now())
-            missing = missing_number(fields)
-            if missing is not None:
-                raise WrongValue(f"field `{missing}` is not a number; nothing was sent", missing)
-            moves = self._fill_end is not None and _is_motion(fields)
-            if moves and not _is_finite(fields):
-                raise WrongValue("the velocity is infinite; nothing was sent", "velocity")
-        except WrongValue as error:
-            self._host.fail(str(error), "wrong_value", error.field)
-        return fields, moves
-
-    def _send(self, inputs: Sequence[object]) -> None:
-        assert self._publisher is not None
-        self._arguments = inputs
-        fields, moves = self._filled(inputs)
-        try:
-            message = self._publisher.message(**fields)
-            self._moved = self._moved or moves
-            self._publisher.publish(message)
-        except MessageMismatch as error:
-            self._host.fail(str(error), "wrong_value", error.field)
-        self._moves = moves
-        if self._drives and not moves:
-            self._motions.stops += 1
-
-    def _end(self, inputs: Sequence[object]) -> None:
-        """Publish the last message, if any."""
-        if self._fill_end is None or self._publisher is None:
-            return
-        self._moves = False
-        self._publisher.publish(self._publisher.message(**self._fill_end(inputs, self._host.clock.now())))
-
-    def _halt(self) -> None:
-        """Stop the robot when the artifact ends."""
-        if self._moves:
-            self._end(self._arguments)
-
-    def _stand(self) -> None:
-        """Stop a robot that was ever sent a velocity when the process ends. This may run in a thread, so it only
-        publishes."""
-        if self._moved:
-            self._end(self._arguments)
-
-
-def _numbers(fields: Any) -> list[float]:
-    if isinstance(fields, dict):
-        return [number for name, each in fields.items() if name != "header" for number in _numbers(each)]
-    if isinstance(fields, list | tuple):
-        return [number for each in fields for number in _numbers(each)]
-    return [float(fields)] if isinstance(fields, int | float) else []
-
-
-def _is_motion(fields: Any) -> bool:
-    return any(number != 0.0 for number in _numbers(fields))
-
-
-def _is_finite(fields: Any) -> bool:
-    return all(map(math.isfinite, _numbers(fields)))
-
-
 _RUNNERS: dict[OperationKind, Any] = {
-    OperationKind.PUBLISH: Publishing,
+    OperationKind.PUBLISH: _PublishOperation,
     OperationKind.SERVICE: _ServiceOperation,
     OperationKind.ACTION: _ActionOperation,
     OperationKind.SET: _SetParameter,

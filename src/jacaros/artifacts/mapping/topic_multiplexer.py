@@ -251,11 +251,6 @@ def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
         view.stand(float(x), float(y))
 
 
-def feedback_updater(host: Host, part: TopicPart) -> Updater:
-    """Make a property from the feedback of an action; it exists while there is a goal."""
-    return Updater(host, dataclasses.replace(part, initial=None))
-
-
 class Elements:
     """The elements of the newest message, by their keys.
 

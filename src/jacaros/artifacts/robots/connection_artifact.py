@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Awaitable
-from typing import ClassVar, NoReturn, TypeVar
+from typing import ClassVar, TypeVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.options import positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.kit.services import failure_reason
+from jacaros.artifacts.kit.services import failure_reason, set_parameter
 from jacaros.ros.errors import (
     ParameterRefused,
     ParameterUnknown,
@@ -16,7 +16,8 @@ from jacaros.ros.errors import (
     ServiceError,
     TransformUnavailable,
 )
-from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.parameter import Parameters, ParameterValue
 from jacaros.ros.ros_clock import RosClock
 
 T = TypeVar("T")
@@ -89,9 +90,7 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)`` if the node has no such parameter.
         """
-        found = await self._asked(
-            self.ros.parameters(self.robot_topic(node)).get(name, self._patience), node, name
-        )
+        found = await self._asked(self._parameters(node).get(name, self._patience), node, name)
         value.set(list(found) if isinstance(found, bytes) else found)
 
     @operation
@@ -100,48 +99,47 @@ class ArtRos(RosArtifact):
 
         Fails with ``parameter_unknown(Name)``, or with ``parameter_refused(Name)`` if the node refuses the value.
         """
-        parameters = self.ros.parameters(self.robot_topic(node))
         wanted = _parameter_value(value)
         if wanted is None:
-            self.fail(
-                f"expected a number, text, truth value or list of them, found {value!r}",
-                "parameter_refused",
-                name,
-            )
-        if isinstance(wanted, int) and not isinstance(wanted, bool):
-            wanted = await self._asked(_as_before(parameters.get(name, self._patience), wanted), node, name)
-        await self._asked(parameters.set(name, wanted, self._patience), node, name)
+            text = f"expected a number, text, truth value or list of them, found {value!r}"
+            self.fail(text, "parameter_refused", name)
+        await self._asked(set_parameter(self._parameters(node), name, wanted, self._patience), node, name)
 
     @operation
     async def list_parameters(self, node: str, names: Out) -> None:
         """Give the names of a node's parameters, as a list of texts."""
-        names.set(await self._asked(self.ros.parameters(self.robot_topic(node)).names(self._patience), node))
+        names.set(await self._asked(self._parameters(node).names(self._patience), node))
+
+    def _parameters(self, node: str) -> Parameters:
+        return self.ros.parameters(self.robot_topic(node))
 
     # ---- the graph
 
     @operation
     async def list_topics(self, topics: Out) -> None:
         """Give all topics, as a list of ``topic(Name, Type)``."""
-        contents = await self._asked(self.ros.contents(self._patience), "graph")
-        listed = sorted(contents.topics.items())
+        listed = sorted((await self._contents()).topics.items())
         topics.set([Structure("topic", (name, info.types[0] if info.types else "")) for name, info in listed])
 
     @operation
     async def list_services(self, services: Out) -> None:
         """Give all services, as a list of ``service(Name, Type)``; Type is "" if it is unknown."""
-        contents = await self._asked(self.ros.contents(self._patience), "graph")
-        services.set([Structure("service", each) for each in sorted(contents.services.items())])
+        services.set(
+            [Structure("service", each) for each in sorted((await self._contents()).services.items())]
+        )
 
     @operation
     async def list_actions(self, actions: Out) -> None:
         """Give all actions, as a list of ``action(Name, Type)``."""
-        contents = await self._asked(self.ros.contents(self._patience), "graph")
-        actions.set([Structure("action", each) for each in sorted(contents.actions.items())])
+        actions.set([Structure("action", each) for each in sorted((await self._contents()).actions.items())])
 
     @operation
     async def list_nodes(self, nodes: Out) -> None:
         """Give the names of all nodes, as a list of texts."""
-        nodes.set(list((await self._asked(self.ros.contents(self._patience), "graph")).nodes))
+        nodes.set(list((await self._contents()).nodes))
+
+    async def _contents(self) -> GraphContents:
+        return await self._asked(self.ros.contents(self._patience), "graph")
 
     @operation
     def rosout(self, level: str, text: str) -> None:
@@ -178,25 +176,10 @@ class ArtRos(RosArtifact):
         """Wait for an answer; a step boundary."""
         try:
             return await self.step(question)
+        except (ServiceError, ParameterUnknown, ParameterRefused, TransformUnavailable) as error:
+            self.fail(str(error), *failure_reason(error, str(whom), self._patience, what or str(whom)))
         except RosError as error:
-            self._failed(error, str(whom), what)
-
-    def _failed(self, error: RosError, whom: str, what: str) -> NoReturn:
-        match error:
-            case ParameterUnknown():
-                self.fail(str(error), "parameter_unknown", what or whom)
-            case ParameterRefused():
-                self.fail(str(error), "parameter_refused", what or whom)
-            case TransformUnavailable():
-                self.fail(str(error), "transform_unavailable", Atom(error.reason))
-            case ServiceError():
-                self.fail(str(error), *failure_reason(error, whom, self._patience))
-        self.fail(str(error), "ros_error", type(error).__name__)
-
-
-async def _as_before(present: Awaitable[ParameterValue], wanted: int) -> int | float:
-    """Convert an integer to the parameter's present type: agents do not distinguish 1 from 1.0."""
-    return float(wanted) if isinstance(await present, float) else wanted
+            self.fail(str(error), "ros_error", type(error).__name__)
 
 
 def _parameter_value(value: object) -> ParameterValue | None:
