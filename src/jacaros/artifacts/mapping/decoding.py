@@ -73,57 +73,24 @@ def reader(field: FieldPart, message: FieldType, element: FieldType | None, inte
     """
     from_message = element is None or field.path.of_message
     root = message if element is None or field.path.of_message else element
-    leaf = follow(field.path, root, interfaces.fields)
-    check_unit(field.conversion, field.path, root, interfaces)
-    get = getter(field.path)
-    values = _values(field, leaf, root, message, interfaces)
-    path = field.path.text
-    is_number = leaf.base in FLOATS and not leaf.array and not field.path.lists
-    has_spare = is_number and field.otherwise is not None
+    decoder = _Decoder(field, root, message, interfaces)
+    get, values, path = getter(field.path), decoder.values(), field.path.text
+    is_number = decoder.leaf.base in FLOATS and not decoder.levels
 
     def take(whole: Any, part: Any, place: int) -> tuple[object, ...]:
         try:
             raw = get(whole if from_message else part, place)
         except IndexError:
-            if has_spare:
+            if is_number and field.otherwise is not None:
                 return values(math.nan, whole)
             help = "read the list, or an element that always exists"
             if is_number:
                 help = f'write a replacement: {{path: "{path}", otherwise: 0}}'
-            raise Unshowable(
-                path, f"`{path}` does not exist: the list is shorter", help, "no_element"
-            ) from None
+            text = f"`{path}` does not exist: the list is shorter"
+            raise Unshowable(path, text, help, "no_element") from None
         return values(raw, whole)
 
     return take
-
-
-def _values(
-    field: FieldPart, leaf: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
-) -> Callable[[Any, Any], tuple[object, ...]]:
-    """Return the conversion of the value at the path; it takes the whole message, too, for ``otherwise``."""
-    kind = field.conversion.kind
-    if kind == "object":
-        return lambda raw, _: (MessageHandle(raw, str(leaf)),)
-    single = FieldType(leaf.base)
-    levels = field.path.lists + leaf.array
-    if field.shares is not None or kind in LISTS:
-        if levels != 1:
-            what = "sample" if field.shares is not None else f"as: {kind}"
-            raise WrongPath(
-                f"`{what}` is for lists, but `{field.path.text}` is {leaf}", "name a field that is a list"
-            )
-        return _of_list(field, single, root, message, interfaces)
-    base = _element(field, single, root, message, interfaces)
-    if levels == 0:
-        return lambda raw, whole: (base(raw, whole),)
-
-    def lists(raw: Any, whole: Any, deep: int) -> object:
-        if deep == 1:
-            return [base(each, whole) for each in _items(raw)]
-        return [lists(each, whole, deep - 1) for each in raw]
-
-    return lambda raw, whole: (lists(raw, whole, levels),)
 
 
 _REDUCE: dict[str, Callable[[list[float]], float]] = {
@@ -132,40 +99,196 @@ _REDUCE: dict[str, Callable[[list[float]], float]] = {
     "mean": lambda numbers: sum(numbers) / len(numbers),
 }
 
+ANGLE: dict[str, tuple[Callable[[float, float, float, float], float], str]] = {
+    "roll": (roll_of, "x"),
+    "pitch": (pitch_of, "y"),
+    "yaw": (yaw_of, "z"),
+}
+"""For each angle the function of a quaternion that gives it, and the axis that it turns about."""
 
-def _of_list(
-    field: FieldPart, single: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
-) -> Callable[[Any, Any], tuple[object, ...]]:
-    kind, shares = field.conversion.kind, field.shares
-    if kind == "count":
-        _check_conversion(field, FieldType("int32"))
-        convert = converted(field.conversion)
-        return lambda raw, _: (convert(len(raw)),)
-    element = _element(field, single, root, message, interfaces)
-    if shares is not None:
+Values = Callable[[Any, Any], tuple[object, ...]]
+"""Converts the value at a path; takes the whole message, too, for ``otherwise``."""
+
+Element = Callable[[Any, Any], object]
+"""Converts one value; takes the whole message, too."""
+
+
+class _Decoder:
+    """The conversion of the values of one field.
+
+    Args:
+        field: the field.
+        root: type at which its path begins.
+        message: type of the messages.
+        interfaces: knows the types.
+
+    Attributes:
+        leaf: the type at the path.
+        levels: nesting depth of the lists there.
+    """
+
+    def __init__(self, field: FieldPart, root: FieldType, message: FieldType, interfaces: Interfaces) -> None:
+        self._field, self._conversion, self._path = field, field.conversion, field.path.text
+        self._root, self._message, self._interfaces = root, message, interfaces
+        self.leaf = follow(field.path, root, interfaces.fields)
+        self.levels = field.path.lists + self.leaf.array
+        check_unit(field.conversion, field.path, root, interfaces)
+
+    def values(self) -> Values:
+        """Return the conversion of the value at the path."""
+        kind, shares = self._conversion.kind, self._field.shares
+        if kind == "object":
+            type_name = str(self.leaf)
+            return lambda raw, _: (MessageHandle(raw, type_name),)
+        single = FieldType(self.leaf.base)
+        if shares is not None or kind in LISTS:
+            if self.levels != 1:
+                what = "sample" if shares is not None else f"as: {kind}"
+                text = f"`{what}` is for lists, but `{self._path}` is {self.leaf}"
+                raise WrongPath(text, "name a field that is a list")
+            return self._sample(single, shares) if shares is not None else self._reduced(single, kind)
+        base = self._element(single)
+        if self.levels == 0:
+            return lambda raw, whole: (base(raw, whole),)
+
+        def lists(raw: Any, whole: Any, deep: int) -> object:
+            if deep == 1:
+                return [base(each, whole) for each in _items(raw)]
+            return [lists(each, whole, deep - 1) for each in raw]
+
+        return lambda raw, whole: (lists(raw, whole, self.levels),)
+
+    def _sample(self, single: FieldType, shares: tuple[float, ...]) -> Values:
+        element, path = self._element(single), self._path
 
         def sample(raw: Any, whole: Any) -> tuple[object, ...]:
             if not len(raw):
-                raise Unshowable(
-                    field.path.text,
-                    f"`{field.path.text}` is empty",
-                    "a sample needs a list with elements",
-                    "no_element",
-                )
+                help = "a sample needs a list with elements"
+                raise Unshowable(path, f"`{path}` is empty", help, "no_element")
             return tuple([element(raw[place], whole) for place in _places(len(raw), shares)])
 
         return sample
-    if single.base not in FLOATS and single.base not in INTEGER_RANGES:
-        raise WrongPath(f"`as: {kind}` is for lists of numbers, but `{field.path.text}` is of {single}")
-    reduce = _REDUCE[kind]
 
-    def reduced(raw: Any, whole: Any) -> tuple[object, ...]:
-        finite = [value for value in _items(raw) if math.isfinite(value)]
-        return (element(reduce(finite) if finite else math.nan, whole),)
+    def _reduced(self, single: FieldType, kind: str) -> Values:
+        if kind == "count":
+            self._check(FieldType("int32"))
+            convert = converted(self._conversion)
+            return lambda raw, _: (convert(len(raw)),)
+        if single.base not in FLOATS and single.base not in INTEGER_RANGES:
+            raise WrongPath(f"`as: {kind}` is for lists of numbers, but `{self._path}` is of {single}")
+        element = self._element(FieldType("float64") if single.base in INTEGER_RANGES else single)
+        reduce = _REDUCE[kind]
 
-    if single.base in INTEGER_RANGES:
-        element = _element(field, FieldType("float64"), root, message, interfaces)
-    return reduced
+        def reduced(raw: Any, whole: Any) -> tuple[object, ...]:
+            finite = [value for value in _items(raw) if math.isfinite(value)]
+            return (element(reduce(finite) if finite else math.nan, whole),)
+
+        return reduced
+
+    def _element(self, single: FieldType) -> Element:
+        """Return the conversion of one value of the type *single*."""
+        kind = self._conversion.kind
+        self._check(single)
+        after, fallback = converted(self._conversion), self._otherwise()
+        if kind in ANGLE:
+            angle = ANGLE[kind][0]
+
+            def heading(raw: Any, whole: Any) -> object:
+                value = angle(raw.x, raw.y, raw.z, raw.w)
+                return after(value) if math.isfinite(value) else fallback(value, whole)
+
+            return heading
+        if kind == "name":
+            named = self._named()
+            return lambda raw, _: after(named(raw))
+        if kind == "atom":
+            return lambda raw, _: after(Atom(raw))
+        if single.base in FLOATS:
+
+            def number(raw: Any, whole: Any) -> object:
+                value = float(raw)
+                return after(value) if math.isfinite(value) else fallback(value, whole)
+
+            return number
+        base = _plain(self._path, single, self._interfaces)
+        return lambda raw, _: after(base(raw))
+
+    def _check(self, single: FieldType) -> None:
+        """Reject a conversion that does not match the type."""
+        kind, path = self._conversion.kind, self._path
+        if kind not in LISTS:
+            check_conversion(
+                self._conversion, path, single, "is for quaternions", "name a field that is a number"
+            )
+        if kind == "atom" and single.base != "string":
+            raise WrongPath(f"`as: atom` is for strings, but `{path}` is {single}", "leave `as` out")
+        if self._field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
+            raise WrongPath(
+                f"`otherwise` is for floating-point numbers, but `{path}` is {single}", "leave it out"
+            )
+
+    def _otherwise(self) -> Callable[[float, Any], object]:
+        """Return the replacement for a number that is not finite."""
+        otherwise, path = self._field.otherwise, self._path
+        if otherwise is None:
+
+            def refuse(value: float, _: Any) -> object:
+                help = f"write a replacement: {{path: {path}, otherwise: 0}}"
+                raise Unshowable(path, f"`{path}` is {value:g}", help)
+
+            return refuse
+        if not isinstance(otherwise, Path):
+            whole = float(otherwise).is_integer() and self._conversion.digits == 0
+            figure = int(otherwise) if whole else otherwise
+            return lambda value, _: figure
+        leaf = follow(otherwise, self._message, self._interfaces.fields)
+        if leaf.array or not (leaf.base in FLOATS or leaf.base in INTEGER_RANGES):
+            raise WrongPath(f"`otherwise` must be a number, but `{otherwise.text}` is {leaf}")
+        get, nearest = getter(otherwise), getter(self._nearest(otherwise))
+        after = converted(dataclasses.replace(self._conversion, names=()))
+
+        def from_message(value: float, whole: Any) -> object:
+            instead = float((nearest if value == -math.inf else get)(whole, 0))
+            if not math.isfinite(instead):
+                text = f"`{path}` is {value:g}, and so is `{otherwise.text}`"
+                raise Unshowable(path, text, "write a number for `otherwise`")
+            return after(instead)
+
+        return from_message
+
+    def _nearest(self, otherwise: Path) -> Path:
+        """Return the replacement for minus infinity: an echo too close to measure (REP 117) is not one beyond
+        ``range_max``."""
+        if not otherwise.text.endswith("range_max"):
+            return otherwise
+        nearest = read_path(otherwise.text.removesuffix("range_max") + "range_min")
+        try:
+            follow(nearest, self._message, self._interfaces.fields)
+        except WrongPath:
+            return otherwise
+        return nearest
+
+    def _named(self) -> Convert:
+        """Return the conversion of values to names of constants."""
+        owner, last = owner_of(self._field.path, self._root, self._interfaces)
+        known, prefix = constants(self._interfaces, owner), self._conversion.prefix
+        meant = chosen(known, last, prefix)
+        if not meant:
+            begin = f" with the prefix `{prefix}`" if prefix else ""
+            listed = ", ".join(known) or "none"
+            raise WrongPath(
+                f"{owner} has no constant{begin}", f"its constants: {listed}; or write names: {{0: ...}}"
+            )
+        names: dict[object, Atom] = {}
+        for name, value in meant.items():
+            plain = octet(value)
+            if plain in names:
+                raise WrongPath(
+                    f"{owner}: the constants `{names[plain]}` and `{name}` have the same value {plain}",
+                    f"write prefix: ... with the common prefix of the constants of `{last}`, or names: {{{plain}: {name}}}",
+                )
+            names[plain] = Atom(name)
+        return lambda raw: names.get(value := octet(raw), value)
 
 
 @lru_cache(64)
@@ -179,63 +302,35 @@ def _items(raw: Any) -> Any:
     return raw.tolist() if hasattr(raw, "tolist") else raw
 
 
-Element = Callable[[Any, Any], object]
-"""Converts one value; takes the whole message, too."""
+def is_number(kind: FieldType) -> bool:
+    """Return whether a type is a number or a time."""
+    return kind.base in FLOATS or kind.base in INTEGER_RANGES or kind.base in TIMES
 
 
-def _element(
-    field: FieldPart, single: FieldType, root: FieldType, message: FieldType, interfaces: Interfaces
-) -> Element:
-    conversion = field.conversion
-    _check_conversion(field, single)
-    after = converted(conversion)
-    fallback = _otherwise(field, message, interfaces)
+def check_conversion(conversion: Conversion, path: str, kind: FieldType, angles: str, help: str) -> None:
+    """Reject an angle of what is not a quaternion, impossible names, and units and rounding of what is not a number.
+
+    Args:
+        conversion: of a value, in either direction.
+        path: of the value.
+        kind: its type.
+        angles: what the message says about angles.
+        help: what to write in place of units and rounding.
+
+    Raises:
+        WrongPath: the conversion does not match the type.
+    """
     if conversion.kind in ANGLES:
-        angle = {"roll": roll_of, "pitch": pitch_of, "yaw": yaw_of}[conversion.kind]
-
-        def heading(raw: Any, whole: Any) -> object:
-            value = angle(raw.x, raw.y, raw.z, raw.w)
-            return after(value) if math.isfinite(value) else fallback(value, whole)
-
-        return heading
-    if conversion.kind == "name":
-        named = _named(field, root, interfaces)
-        return lambda raw, _: after(named(raw))
-    if conversion.kind == "atom":
-        return lambda raw, _: after(Atom(raw))
-    base = _plain(field.path.text, single, interfaces)
-    if single.base in FLOATS:
-
-        def number(raw: Any, whole: Any) -> object:
-            value = float(raw)
-            return after(value) if math.isfinite(value) else fallback(value, whole)
-
-        return number
-    return lambda raw, _: after(base(raw))
-
-
-def _check_conversion(field: FieldPart, single: FieldType) -> None:
-    """Reject a conversion that does not match the type."""
-    conversion, path = field.conversion, field.path.text
-    if field.conversion.kind not in (*ANGLES, *LISTS):
-        check_names(conversion, path, single.base)
-    kind = conversion.kind
-    number = single.base in FLOATS or single.base in INTEGER_RANGES or single.base in TIMES
-    if kind in ANGLES and single.base != QUATERNION:
-        help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"`as: {kind}` is for quaternions, but `{path}` is {single}", help)
-    if kind == "atom" and single.base != "string":
-        raise WrongPath(f"`as: atom` is for strings, but `{path}` is {single}", "leave `as` out")
-    if kind not in (*ANGLES, "count") and not number:
-        for key, given in (("unit, scale or offset", conversion.line), ("round", conversion.digits)):
-            if given is not None:
-                raise WrongPath(
-                    f"{key} needs a number, but `{path}` is {single}", "name a field that is a number"
-                )
-    if field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
-        raise WrongPath(
-            f"`otherwise` is for floating-point numbers, but `{path}` is {single}", "leave it out"
-        )
+        if kind.base != QUATERNION or kind.array:
+            raise WrongPath(
+                f"`as: {conversion.kind}` {angles}, but `{path}` is {kind}",
+                "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation",
+            )
+        return
+    check_names(conversion, path, kind.base)
+    for key, given in (("unit, scale or offset", conversion.line), ("round", conversion.digits)):
+        if given is not None and not is_number(kind):
+            raise WrongPath(f"{key} needs a number, but `{path}` is {kind}", help)
 
 
 def check_names(conversion: Conversion, path: str, base: str) -> None:
@@ -306,78 +401,6 @@ def _in_turn(steps: list[Convert]) -> Convert:
         return steps[0] if steps else lambda value: value
     first, second = steps
     return lambda value: second(first(value))
-
-
-def _otherwise(
-    field: FieldPart, message: FieldType, interfaces: Interfaces
-) -> Callable[[float, Any], object]:
-    """Return the replacement for a number that is not finite."""
-    otherwise, path = field.otherwise, field.path.text
-    if otherwise is None:
-
-        def refuse(value: float, _: Any) -> object:
-            help = f"write a replacement: {{path: {path}, otherwise: 0}}"
-            raise Unshowable(path, f"`{path}` is {value:g}", help)
-
-        return refuse
-    if isinstance(otherwise, Path):
-        leaf = follow(otherwise, message, interfaces.fields)
-        if leaf.array or not (leaf.base in FLOATS or leaf.base in INTEGER_RANGES):
-            raise WrongPath(f"`otherwise` must be a number, but `{otherwise.text}` is {leaf}")
-        get = getter(otherwise)
-        nearest = getter(_nearest(otherwise, message, interfaces))
-        after = converted(dataclasses.replace(field.conversion, names=()))
-
-        def from_message(value: float, whole: Any) -> object:
-            instead = float((nearest if value == -math.inf else get)(whole, 0))
-            if not math.isfinite(instead):
-                raise Unshowable(
-                    path,
-                    f"`{path}` is {value:g}, and so is `{otherwise.text}`",
-                    "write a number for `otherwise`",
-                )
-            return after(instead)
-
-        return from_message
-    figure = int(otherwise) if float(otherwise).is_integer() and field.conversion.digits == 0 else otherwise
-    return lambda value, whole: figure
-
-
-def _nearest(otherwise: Path, message: FieldType, interfaces: Interfaces) -> Path:
-    """Return the replacement for minus infinity: an echo too close to measure (REP 117) is not one beyond
-    ``range_max``."""
-    if not otherwise.text.endswith("range_max"):
-        return otherwise
-    nearest = read_path(otherwise.text.removesuffix("range_max") + "range_min")
-    try:
-        follow(nearest, message, interfaces.fields)
-    except WrongPath:
-        return otherwise
-    return nearest
-
-
-def _named(field: FieldPart, root: FieldType, interfaces: Interfaces) -> Convert:
-    """Return the conversion of values to names of constants."""
-    owner, last = owner_of(field.path, root, interfaces)
-    known = constants(interfaces, owner)
-    meant = chosen(known, last, field.conversion.prefix)
-    if not meant:
-        listed = ", ".join(known) or "none"
-        begin = f"with the prefix `{field.conversion.prefix}`" if field.conversion.prefix else ""
-        raise WrongPath(
-            f"{owner} has no constant {begin}".rstrip(),
-            f"its constants: {listed}; or write names: {{0: ...}}",
-        )
-    names: dict[object, Atom] = {}
-    for name, value in meant.items():
-        plain = value[0] if isinstance(value, bytes) and len(value) == 1 else value
-        if plain in names:
-            raise WrongPath(
-                f"{owner}: the constants `{names[plain]}` and `{name}` have the same value {plain}",
-                f"write prefix: ... with the common prefix of the constants of `{last}`, or names: {{{plain}: {name}}}",
-            )
-        names[plain] = Atom(name)
-    return lambda raw: names.get(value := octet(raw), value)
 
 
 def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:

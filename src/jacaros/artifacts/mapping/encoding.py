@@ -5,13 +5,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure, text
-from jacaros.artifacts.mapping.decoding import QUATERNION, MessageHandle, check_names, owner_of
+from jacaros.artifacts.mapping.decoding import ANGLE, MessageHandle, check_conversion, owner_of
 from jacaros.artifacts.mapping.fields import ANGLES, Conversion, WrongPath
 from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow, tried
 from jacaros.artifacts.mapping.operations import ALL_OF_IT, OperationPart, Source, ValuePart
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import MessageMismatch
-from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, FieldType
+from jacaros.ros.fields import DURATION, INTEGER_RANGES, FieldType
 from jacaros.ros.message import TIMES
 from jacaros.ros.values import single_value
 
@@ -144,7 +144,7 @@ def _give(
     owner, last = owner_of(part.target, root, interfaces)
     if part.source is Source.ELEMENTS:
         return _each(part, leaf, interfaces, problems, adapt)
-    _check(part, leaf)
+    check_conversion(part.conversion, part.target.text, leaf, "makes a quaternion", "leave it out")
     check_unit(part.conversion, part.target, root, interfaces)
     convert = _converter(part.conversion, leaf, owner, last, interfaces)
     path = part.target.text
@@ -220,18 +220,6 @@ def _constant(
     return converted
 
 
-def _check(part: ValuePart, leaf: FieldType) -> None:
-    kind, path = part.conversion.kind, part.target.text
-    if kind not in ANGLES:
-        check_names(part.conversion, path, leaf.base)
-    if kind in ANGLES and (leaf.base != QUATERNION or leaf.array):
-        help = "name the field that is a geometry_msgs/msg/Quaternion, such as pose.pose.orientation"
-        raise WrongPath(f"`as: {kind}` makes a quaternion, but `{path}` is {leaf}", help)
-    number = leaf.base in FLOATS or leaf.base in INTEGER_RANGES or leaf.base in TIMES
-    if part.conversion.line is not None and not number and kind not in ANGLES:
-        raise WrongPath(f"unit, scale or offset needs a number, but `{path}` is {leaf}", "leave it out")
-
-
 def _converter(
     conversion: Conversion, leaf: FieldType, owner: str, last: str, interfaces: Interfaces
 ) -> Callable[[Any], Any]:
@@ -244,7 +232,7 @@ def _converter(
             )
         )
     if conversion.kind in ANGLES:
-        axis = {"roll": "x", "pitch": "y", "yaw": "z"}[conversion.kind]
+        axis = ANGLE[conversion.kind][1]
         steps.append(lambda value: {axis: math.sin(_number(value) / 2), "w": math.cos(_number(value) / 2)})
     if conversion.kind == "name":
         meant = chosen(constants(interfaces, owner), last, conversion.prefix)
