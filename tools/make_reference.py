@@ -20,7 +20,7 @@ from jacaros.agents.terms.functions import ARITIES
 from jacaros.artifacts import Artifact, describe
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.registry import BUILT_IN
-from jacaros.artifacts.robots.velocity import WheeledArtifact
+from jacaros.artifacts.robots.motion import WheeledArtifact
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.files.entries import declared_entries
 from jacaros.sim import description

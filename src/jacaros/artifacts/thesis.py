@@ -88,8 +88,7 @@ class ArtCleaning(RosArtifact):
 
     def open(self) -> None:
         """Define the properties; the robot begins in the hallway."""
-        more = self.options.get("more_rooms", ())
-        assert isinstance(more, tuple)
+        more: tuple[tuple[str, tuple[Task, ...]], ...] = self.option("more_rooms", ())
         self._rooms = (*ROOMS, *(name for name, _ in more))
         self._tasks_of = (*TASKS, *(tasks for _, tasks in more))
         self.define_property("atRoom", 0)
@@ -183,13 +182,12 @@ class ArtPerception(RosArtifact):
     def open(self) -> None:
         """Subscribe; there are no percepts before the first message."""
         self._texts: list[str] = []
-        self.subscription(
-            str(self.options.get("topic", "jason/perception")), "perception_msgs/msg/perception", self._take
-        )
+        topic = self.option("topic", "jason/perception")
+        self.subscription(topic, "perception_msgs/msg/perception", self._take)
 
     def _take(self, sample: Sample) -> None:
         self._texts = [str(each) for each in sample.message.perception]
-        split = self.options.get("split", False)
+        split = self.option("split", False)
         elements = [tuple(map(_value, each.split(","))) if split else (each,) for each in self._texts]
         self.start(self.show_elements, "perception", elements, cause=sample.cause)
 
@@ -243,7 +241,7 @@ class ArtTutorial(RosArtifact):
         self.define_property(self.robot_property("twoIntsSum"), 0)
         self._chatter = self.reading(name, ReadingPolicy.from_options(self.options, latest_only=False), "")
         self.subscription("chatter", "std_msgs/msg/String", self._hear)
-        service = str(self.options.get("service", "/add_two_ints"))
+        service = self.option("service", "/add_two_ints")
         self._adder = self.client(service, "example_interfaces/srv/AddTwoInts")
 
     def _hear(self, sample: Sample) -> None:
@@ -271,7 +269,5 @@ class ArtTutorial(RosArtifact):
         result.set(total)
 
     async def _added(self, a: int, b: int) -> int:
-        timeout = self.options.get("timeout", 10.0)
-        assert isinstance(timeout, float)
-        response: Any = await self.call(self._adder, timeout, a=a, b=b)
+        response: Any = await self.call(self._adder, self.option("timeout", 10.0), a=a, b=b)
         return int(response.sum)

@@ -117,18 +117,18 @@ def test_waiting_for_the_first_message_ends_with_it_or_with_the_time() -> None:
 
 
 def test_arguments_are_a_robot_name_and_options_in_any_order() -> None:
-    read = read_arguments(
+    robot, options = read_arguments(
         ["robot_0", Structure("rate", (5,)), {"mode": "on_demand", "dead_band": [0.1, 0]}],
         READING_OPTIONS,
         "Art",
     )
-    assert read.robot == "robot_0"
-    assert read.options == {"rate": 5.0, "mode": "on_demand", "dead_band": (0.1, 0.0)}
-    assert read_arguments([Structure("rate", (5,)), Atom("r")], READING_OPTIONS, "Art").robot == "r"
+    assert robot == "robot_0"
+    assert options == {"rate": 5.0, "mode": "on_demand", "dead_band": (0.1, 0.0)}
+    assert read_arguments([Structure("rate", (5,)), Atom("r")], READING_OPTIONS, "Art")[0] == "r"
     nested = [Structure("rate", (5,)), {"mode": "verbose"}]
-    assert read_arguments(["r", nested], READING_OPTIONS, "Art").options == {"rate": 5.0, "mode": "verbose"}
-    assert read_arguments([None], READING_OPTIONS, "Art").robot == ""
-    policy = ReadingPolicy.from_options(read.options)
+    assert read_arguments(["r", nested], READING_OPTIONS, "Art")[1] == {"rate": 5.0, "mode": "verbose"}
+    assert read_arguments([None], READING_OPTIONS, "Art")[0] == ""
+    policy = ReadingPolicy.from_options(options)
     assert policy == ReadingPolicy(on_demand=True, rate=5.0, dead_band=(0.1, 0.0), latest_only=True)
     assert ReadingPolicy.from_options({"latest_only": False, "expire": 2.0}) == ReadingPolicy(expire=2.0)
 

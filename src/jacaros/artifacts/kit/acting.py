@@ -21,7 +21,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
-from jacaros.artifacts.env.execution import OperationExecution
+from jacaros.artifacts.env.artifact import Artifact
 from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
 from jacaros.ros.action_calling import ENDING
 from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
@@ -47,18 +47,6 @@ CODES = ("error_code", "error_code.val")
 
 TEXTS = ("error_msg", "error_string", "message")
 """Result fields that hold an error text."""
-
-
-class GoalFailed(Exception):
-    """Raised when a goal does not succeed.
-
-    Attributes:
-        functor, arguments: the failure reason, such as ``aborted(203,"no path")``.
-    """
-
-    def __init__(self, message: str, functor: str, *arguments: object) -> None:
-        super().__init__(message)
-        self.functor, self.arguments = functor, arguments
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +80,7 @@ class GoalRunner:
         client: client of the action.
         goal: fields of the goal.
         options: how the goal runs.
-        clock: measures the time-outs.
-        execution: the operation, which reports pauses.
-        log: called with a line about a problem that does not end the goal.
+        artifact: the artifact of the operation, which reports pauses.
     """
 
     def __init__(
@@ -102,12 +88,11 @@ class GoalRunner:
         client: ActionClient,
         goal: Mapping[str, Any],
         options: GoalOptions,
-        clock: Clock,
-        execution: OperationExecution,
-        log: Callable[[str], None],
+        artifact: Artifact,
     ) -> None:
         self._client, self._goal, self._options = client, goal, options
-        self._clock, self._execution, self._log = clock, execution, log
+        self._clock, self._execution = artifact.clock, artifact.current
+        self._log, self._fail = artifact.log, artifact.fail
         self._used = self._limit = 0.0
         self._heeded = self._held = False
         self._wake: asyncio.Future[None] | None = None
@@ -118,7 +103,7 @@ class GoalRunner:
         Cancelling this coroutine cancels the goal without waiting for the server.
 
         Raises:
-            GoalFailed: with one of the reasons listed at the top of this file.
+            OperationFailed: with one of the reasons listed at the top of this file.
         """
         forget = None if self._options.suspend == "go_on" else self._execution.on_pause(self._on_pause)
         try:
@@ -130,13 +115,13 @@ class GoalRunner:
                 if outcome is not None:
                     return self._result(outcome)
         except GoalRejected as error:
-            raise GoalFailed(str(error), "rejected") from None
+            self._fail(str(error), "rejected")
         except CallTimedOut as error:
-            raise GoalFailed(str(error), "timeout", _figure(self._limit)) from None
+            self._fail(str(error), "timeout", _figure(self._limit))
         except ServerUnavailable as error:
-            raise GoalFailed(str(error), "server_unavailable") from None
+            self._fail(str(error), "server_unavailable")
         except ServiceError as error:
-            raise GoalFailed(str(error), "server_lost") from None
+            self._fail(str(error), "server_lost")
         finally:
             if forget is not None:
                 forget()
@@ -220,14 +205,14 @@ class GoalRunner:
             self._used += self._clock.elapsed - began
             if timeout is not None and self._used >= timeout - 1e-6 and not ending.done():
                 text = f"action {self._client.name} did not end within {timeout:g} s"
-                raise GoalFailed(text, "timeout", _figure(timeout))
+                self._fail(text, "timeout", _figure(timeout))
         return ending.result()
 
     async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
         """Wait for the end of the pause or of the goal."""
         await self._resumed_or(ending, None)
         if not ending.done() and not await self._release():
-            raise GoalFailed(f"cannot resume the goal of action {self._client.name}", "canceled")
+            self._fail(f"cannot resume the goal of action {self._client.name}", "canceled")
 
     async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
         """Cancel the goal of a suspended intention. Return False if it succeeds meanwhile or continues.
@@ -301,19 +286,16 @@ class GoalRunner:
         self._wake = None
 
     def _result(self, outcome: Outcome) -> Any:
-        if outcome.status is GoalStatus.SUCCEEDED:
-            return outcome.result
+        name = self._client.name
         if outcome.status is GoalStatus.CANCELED:
-            text = outcome.text or f"another client cancelled the goal of action {self._client.name}"
-            raise GoalFailed(text, "canceled")
-        explain = self._options.aborted
-        code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
-        text = outcome.text or error_text(outcome.result)
-        told = f": {text}" if text else ""
-        number = f" with code {code}" if code else ""
-        raise GoalFailed(
-            f"action {self._client.name} was aborted{number}{told}", "aborted", code, text, *more
-        )
+            self._fail(outcome.text or f"another client cancelled the goal of action {name}", "canceled")
+        if outcome.status is not GoalStatus.SUCCEEDED:
+            explain = self._options.aborted
+            code, *more = (error_code(outcome.result),) if explain is None else explain(outcome.result)
+            text = outcome.text or error_text(outcome.result)
+            number, told = f" with code {code}" if code else "", f": {text}" if text else ""
+            self._fail(f"action {name} was aborted{number}{told}", "aborted", code, text, *more)
+        return outcome.result
 
 
 def error_code(result: Any) -> int:

@@ -5,7 +5,6 @@ as a list or a map. The only plain text or atom among the arguments is the robot
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 
 from jacaros.artifacts.env.values import Atom, Structure
 
@@ -18,16 +17,10 @@ Reader = Callable[[object], object]
 """Convert the value of an option. Raises `ValueError` with what was expected."""
 
 
-@dataclass(frozen=True, slots=True)
-class Arguments:
-    """The arguments of an artifact: the robot's name (empty if there is only one robot) and the options."""
-
-    robot: str
-    options: Mapping[str, object]
-
-
-def read_arguments(arguments: Iterable[object], known: Mapping[str, Reader], artifact: str) -> Arguments:
-    """Split the arguments of ``makeArtifact`` into the robot's name and options.
+def read_arguments(
+    arguments: Iterable[object], known: Mapping[str, Reader], artifact: str
+) -> tuple[str, dict[str, object]]:
+    """Split the arguments of ``makeArtifact`` into the robot's name (empty if there is none) and options.
 
     Args:
         arguments: as given by the agent or the Python program.
@@ -47,7 +40,7 @@ def read_arguments(arguments: Iterable[object], known: Mapping[str, Reader], art
             options[name] = _read(name, value, known, artifact)
     if len(names) > 1:
         raise WrongOption(f"{artifact} expects one robot name, found {', '.join(map(repr, names))}")
-    return Arguments(names[0] if names else "", options)
+    return names[0] if names else "", options
 
 
 def _pairs(argument: object, artifact: str) -> Iterable[tuple[str, object]]:

@@ -9,9 +9,8 @@ from typing import Any, ClassVar, TypeVar
 from jacaros.artifacts.env.artifact import Artifact, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import marks_of
-from jacaros.artifacts.env.values import Structure
+from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.acting import (
-    GoalFailed,
     GoalOptions,
     GoalRunner,
     Suspending,
@@ -30,7 +29,7 @@ from jacaros.artifacts.kit.connection import (
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
 from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy, Values
-from jacaros.artifacts.kit.services import CallFailure, ServedOperation, call
+from jacaros.artifacts.kit.services import ServedOperation, failure_reason, refusal, succeeded
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
 from jacaros.ros.backend import (
     DEFAULT_POLICY,
@@ -44,7 +43,7 @@ from jacaros.ros.backend import (
     Subscription,
     TopicEvent,
 )
-from jacaros.ros.errors import MessageMismatch, RosError
+from jacaros.ros.errors import MessageMismatch, RosError, ServiceError
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.names import message_type
 from jacaros.ros.parameter import Declaration, ParameterValue
@@ -52,6 +51,7 @@ from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.runtime.trace import Cause
 
 C = TypeVar("C", bound=Closable)
+T = TypeVar("T")
 
 FIRST_MESSAGE = 5.0
 """Seconds that an operation waits for the first message of a sensor."""
@@ -104,15 +104,14 @@ class RosArtifact(Artifact):
             OperationFailed: an option is unknown (the message lists the known ones) or invalid, or ROS does not allow
                 the name.
         """
+        kind = type(self).__name__
         try:
-            read = read_arguments(arguments, self.all_options(), type(self).__name__)
-        except WrongOption as wrong:
-            self.fail(str(wrong), "wrong_option", type(self).__name__)
-        self.robot, self.options = read.robot, read.options
-        try:
+            self.robot, self.options = read_arguments(arguments, self.all_options(), kind)
             self.open()
+        except WrongOption as wrong:
+            self.fail(str(wrong), "wrong_option", kind)
         except RosError as error:
-            self.fail(str(error), "ros_error", type(self).__name__)
+            self.fail(str(error), "ros_error", kind)
 
     def open(self) -> None:
         """Define the properties and open the topics. Subclasses override it."""
@@ -131,6 +130,10 @@ class RosArtifact(Artifact):
             found.update(vars(each).get("known_options", {}))
         return found
 
+    def option(self, name: str, usual: T) -> T:
+        """Return an option that the artifact was made with, as its reader returned it; *usual* without it."""
+        return self.options.get(name, usual)  # type: ignore[return-value]  # readers return what is declared
+
     @property
     def ros(self) -> Backend:
         """The middleware, which the environment provides as the resource ``ros``."""
@@ -142,7 +145,7 @@ class RosArtifact(Artifact):
     @property
     def robot_prefix(self) -> str:
         """Prefix of the robot's topics, such as ``/robot_0``; empty if there is only one robot."""
-        parts = (str(self.options.get("namespace", "")).strip("/"), self.robot.strip("/"))
+        parts = (self.option("namespace", "").strip("/"), self.robot.strip("/"))
         return "".join(f"/{part}" for part in parts if part)
 
     def robot_topic(self, name: str) -> str:
@@ -203,10 +206,8 @@ class RosArtifact(Artifact):
             warn: called with the warning and the help; None: they are logged, once each time the topic loses its last
                 subscriber.
         """
-        found = (
-            timeout if timeout is not None else float(str(self.options.get("match_timeout", MATCH_TIMEOUT)))
-        )
-        fails = (unmatched or self.options.get("unmatched")) == "fail"
+        found = timeout if timeout is not None else self.option("match_timeout", MATCH_TIMEOUT)
+        fails = (unmatched or self.option("unmatched", "")) == "fail"
         guarded = guarded_by(self.ros)
 
         def missed(topic: str, seconds: float, again: bool) -> None:
@@ -274,11 +275,11 @@ class RosArtifact(Artifact):
         listener = Listener(
             self.ros.resolve(name), callback, partial(self._steps.setting.log_error, self.name)
         )
-        watch = self.options.get("watch_connection", False)
+        watch: bool | float = self.option("watch_connection", False)
         if watch is False:
             made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))
         else:
-            expire = None if watch is True else float(str(watch))
+            expire = None if watch is True else watch
             made = self._watched(name, type_name, listener, qos, on_event, expire)
         self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log, lambda: listener.heard))
         return made
@@ -545,11 +546,15 @@ class RosArtifact(Artifact):
                 ``service_failed(Name)``, ``refused(Text)``, or ``wrong_value(Field)`` if the fields do not match the type.
         """
         try:
-            return await self.step(call(client, timeout, fields, must_succeed))
-        except CallFailure as failure:
-            self.fail(str(failure), failure.functor, *failure.arguments)
+            response = await self.step(client.call(fields, timeout))
+        except ServiceError as error:
+            self.fail(str(error), *failure_reason(error, Atom(client.name.lstrip("/")), timeout))
         except MessageMismatch as error:
             self.fail(str(error), "wrong_value", error.field)
+        if must_succeed and not succeeded(client, response):
+            message, text = refusal(client.name, response)
+            self.fail(message, "refused", text)
+        return response
 
     async def act(
         self,
@@ -606,12 +611,10 @@ class RosArtifact(Artifact):
             timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
         )
         await self.guarded(client)
-        runner = GoalRunner(client, goal, options, self.clock, self.current, self.log)
+        runner = GoalRunner(client, goal, options, self)
         try:
             with guarded_by(self.ros).goal():
                 return await self.step(runner.run())
-        except GoalFailed as failed:
-            self.fail(str(failed), failed.functor, *failed.arguments)
         except MessageMismatch as error:
             self.fail(str(error), "wrong_value", error.field)
 

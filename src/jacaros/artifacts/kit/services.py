@@ -29,7 +29,7 @@ artifact disposed      a failed call                               aborted
 """
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
@@ -46,7 +46,6 @@ from jacaros.ros.errors import (
     ParameterUnknown,
     RosError,
     ServerGone,
-    ServiceError,
     ServiceUnavailable,
     TransformUnavailable,
 )
@@ -163,18 +162,6 @@ MESSAGES = ("message", "status_message", "error_msg", "error_message")
 """Response fields that hold the text of a refusal."""
 
 
-class CallFailure(Exception):
-    """Raised when a call has no usable response.
-
-    Attributes:
-        functor, arguments: the failure reason, such as ``service_timeout(2)``.
-    """
-
-    def __init__(self, message: str, functor: str, *arguments: object) -> None:
-        super().__init__(message)
-        self.functor, self.arguments = functor, arguments
-
-
 def failure_reason(
     error: RosError, name: object, timeout: object, parameter: object = ""
 ) -> tuple[str, *tuple[object, ...]]:
@@ -221,30 +208,6 @@ def refusal(name: str, response: Any) -> tuple[str, str]:
     """Return the message about a service that refused, and the text of its response."""
     text = next((str(getattr(response, each)) for each in MESSAGES if getattr(response, each, "")), "")
     return f"service {name} refused{f': {text}' if text else ''}", text
-
-
-async def call(client: Client, timeout: float, fields: Mapping[str, Any], must_succeed: bool) -> Any:
-    """Call a service and return its response.
-
-    Args:
-        client: client of the service.
-        timeout: seconds to wait for the server and for the response, in total.
-        fields: fields of the request.
-        must_succeed: treat ``success: false`` in the response as a failure.
-
-    Raises:
-        CallFailure: with one of the reasons listed at the top of this file.
-        RosError: the request does not match the service type, or its response has no field ``success``.
-    """
-    name = Atom(client.name.lstrip("/"))
-    try:
-        response = await client.call(fields, timeout)
-    except ServiceError as error:
-        raise CallFailure(str(error), *failure_reason(error, name, timeout)) from None
-    if must_succeed and not succeeded(client, response):
-        message, text = refusal(client.name, response)
-        raise CallFailure(message, "refused", text)
-    return response
 
 
 def succeeded(client: Client, response: Any) -> bool:

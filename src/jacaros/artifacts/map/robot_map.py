@@ -90,11 +90,9 @@ class ArtMap(ArtSlamData):
         self._done: set[Cell] = set()
         self._showing = False
         self._first = Reading(ReadingPolicy(on_demand=True), self.clock)
-        source = self._text("source", "scan")
-        pose_from = self._text("pose_from", "amcl" if source == "map" else "scans")
-        laser = self.options.get("laser", ORIGIN)
-        assert isinstance(laser, Pose)
-        options = ScanOptions(self._metres("max_range", 4.0), laser, self.size)
+        source = self.option("source", "scan")
+        pose_from = self.option("pose_from", "amcl" if source == "map" else "scans")
+        options = ScanOptions(self.option("max_range", 4.0), self.option("laser", ORIGIN), self.size)
         self._mapper = Mapper(self._seen, options, pose_from == "scans")
         self._listen_for_cells(source)
         self._listen_for_poses(pose_from)
@@ -104,31 +102,24 @@ class ArtMap(ArtSlamData):
         self._seen = OccupancyCells(obstacle, self.size)
         return self._seen
 
-    def _text(self, option: str, usual: str) -> str:
-        return str(self.options.get(option, usual))
-
-    def _metres(self, option: str, usual: float) -> float:
-        return float(str(self.options.get(option, usual)))
-
     def _listen_for_cells(self, source: str) -> None:
         if source == "map":
-            topic = self._text("map_topic", "map")
+            topic = self.option("map_topic", "map")
             self.subscription(topic, "nav_msgs/msg/OccupancyGrid", self._take_map, LATCHED)
             return
-        topic = self._text("scan_topic", "scan")
+        topic = self.option("scan_topic", "scan")
         self._header = Header(self.faults_of(topic), self.clock)
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take_scan, SENSOR_DATA)
 
     def _listen_for_poses(self, pose_from: str) -> None:
-        topic = self._text("odometry_topic", "odom")
+        topic = self.option("odometry_topic", "odom")
         odometer = Odometer(self.faults_of(topic), self.clock, self._take_odometry)
         self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
         if pose_from == "amcl":
-            self.subscription(self._text("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
-        if self.options.get("things", False):
+            self.subscription(self.option("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
+        if self.option("things", False):
             self.subscription("jason/perception", "perception_msgs/msg/perception", self._take_things)
-        others = self.options.get("robots", ())
-        assert isinstance(others, tuple)
+        others: tuple[str, ...] = self.option("robots", ())
         for name in others:
             take = partial(self._take_other, name)
             self.kept(self.ros.subscription(f"/{name}/amcl_pose", AMCL_POSE, take, LATCHED))
@@ -195,7 +186,7 @@ class ArtMap(ArtSlamData):
         pose = self._mapper.localisation.pose
         if pose is not None:
             self.stand(self._seen.cell_at(pose.x, pose.y), math.degrees(pose.yaw), 0.0)
-        view = math.floor(self._metres("view", 0.0) / self.size)
+        view = math.floor(self.option("view", 0.0) / self.size)
         if view:
             self.show_obstacles(self._seen.near(self.here, view))
 
@@ -219,7 +210,7 @@ class ArtMap(ArtSlamData):
             self.fail("no odometry has arrived", "no_odometry")
         if not self.way:
             self.fail("no route: call getRoute first", "no_route")
-        longest = self._metres("leg", 1.0)
+        longest = self.option("leg", 1.0)
         found = next_leg(self.way, self.enterable(), pose, Leg(self.size, longest))
         degrees.set(math.degrees(found[0]))
         metres.set(found[1])
@@ -232,7 +223,7 @@ class ArtMap(ArtSlamData):
         left out from then on. Fails with ``explored`` if no frontier is left, and with ``no_scan(5)`` (``no_map(5)``
         with ``source(map)``) if nothing is known after 5 s.
         """
-        await self.newest(self._first, "no_map" if self._text("source", "scan") == "map" else "no_scan")
+        await self.newest(self._first, "no_map" if self.option("source", "scan") == "map" else "no_scan")
         free, known = self.cells.passable(), self.cells.known()
         enterable = self.enterable()
         reach = math.ceil(self.radius / self.size) + 1

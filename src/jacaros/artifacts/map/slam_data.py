@@ -52,9 +52,9 @@ class ArtSlamData(RosArtifact):
 
     def open(self) -> None:
         """Begin with an empty map."""
-        self.size = float(str(self.options.get("cell_size", self.usual_size)))
-        self.radius = float(str(self.options.get("radius", self.usual_radius)))
-        self.cells = self.new_cells(str(self.options.get("obstacle", OBSTACLE)))
+        self.size = self.option("cell_size", self.usual_size)
+        self.radius = self.option("radius", self.usual_radius)
+        self.cells = self.new_cells(self.option("obstacle", OBSTACLE))
         self.here: Cell = (0, 0)
         self.heading = DEGREES.get(self.robot, 0.0)
         self.way: list[Cell] = []

@@ -51,10 +51,8 @@ class Host(RosArtifact):
     @property
     def tf_prefix(self) -> str:
         """Prefix of frame names."""
-        given = self.options.get("tf_prefix", self.part.tf_prefix)
-        if given is not None:
-            return str(given).strip("/")
-        return self.frame_prefix
+        given = self.option("tf_prefix", self.part.tf_prefix)
+        return self.frame_prefix if given is None else given.strip("/")
 
     def frame(self, name: str) -> str:
         """Return the name of a frame in the graph."""

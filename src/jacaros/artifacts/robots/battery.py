@@ -72,7 +72,7 @@ class ArtSimBattery(RosArtifact):
     def open(self) -> None:
         """Start the timer, or subscribe to the robot's battery."""
         self._level: int = UNKNOWN
-        self._levels = self._option("medium", MEDIUM), self._option("low", LOW)
+        self._levels = self.option("medium", MEDIUM), self.option("low", LOW)
         if self._levels[1] > self._levels[0]:
             self.fail("low({1:g}) is above medium({0:g})".format(*self._levels), "wrong_option", "low")
         self._charging = False
@@ -81,31 +81,20 @@ class ArtSimBattery(RosArtifact):
         self._charge = Charge()
         self._fed_at = -math.inf
         self._full_since = math.inf
-        expire = self.options.get("expire")
-        assert expire is None or isinstance(expire, float)
+        expire: float | None = self.option("expire", None)
         policy = ReadingPolicy(on_demand=True, expire=expire)
         self._reported = self.kept(
             Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
         )
-        self.follows_robot = self._follows_robot()
+        is_robots = bool(self.robot) or "topic" in self.options or "namespace" in self.options
+        self.follows_robot = self.option("source", "robot" if is_robots else "timer") == "robot"
         if self.follows_robot:
-            topic = str(self.options.get("topic", "battery_state"))
+            topic = self.option("topic", "battery_state")
             self._faulty = self.faults_of(topic)
             self.subscription(topic, "sensor_msgs/msg/BatteryState", self._take, SENSOR_DATA)
         else:
-            self._show(max(0, min(FULL, round(self._option("level", FULL)))))
+            self._show(max(0, min(FULL, round(self.option("level", FULL)))))
             self._drain_on()
-
-    def _follows_robot(self) -> bool:
-        source = self.options.get("source")
-        if source is not None:
-            return source == "robot"
-        return bool(self.robot) or "topic" in self.options or "namespace" in self.options
-
-    def _option(self, name: str, default: float) -> float:
-        value = self.options.get(name, default)
-        assert isinstance(value, int | float)
-        return value
 
     def _show(self, level: int) -> None:
         """Show a charge; update the diagnosis only if it changes."""
@@ -124,7 +113,7 @@ class ArtSimBattery(RosArtifact):
     # The timer.
 
     def _drain_on(self) -> None:
-        if not self._draining and self._level > 0 and self._option("drain", 1.0) > 0:
+        if not self._draining and self._level > 0 and self.option("drain", 1.0) > 0:
             self._draining = True
             self.start(self.drain)
 
@@ -133,7 +122,7 @@ class ArtSimBattery(RosArtifact):
         """Drain one percent at a time until the battery is empty; pause while it is charged."""
         try:
             while self._level > 0:
-                await self.sleep(1.0 / self._option("drain", 1.0))
+                await self.sleep(1.0 / self.option("drain", 1.0))
                 if not self._charging:
                     self._show(self._level - 1)
         finally:
@@ -200,7 +189,7 @@ class ArtSimBattery(RosArtifact):
             self.remove_property("diagnostics")
 
     async def _charge_in_dock(self) -> None:
-        patience = self._option("dock_timeout", 5.0)
+        patience = self.option("dock_timeout", 5.0)
         begin = self.clock.elapsed
         while not self._is_full(patience):
             if self._level < FULL and self.clock.elapsed - max(begin, self._fed_at) > patience:

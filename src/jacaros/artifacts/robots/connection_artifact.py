@@ -168,9 +168,7 @@ class ArtRos(RosArtifact):
 
     @property
     def _patience(self) -> float:
-        patience = self.options.get("timeout", PATIENCE)
-        assert isinstance(patience, float)
-        return patience
+        return self.option("timeout", PATIENCE)
 
     async def _asked(self, question: Awaitable[T], whom: str, what: str = "") -> T:
         """Wait for an answer; a step boundary."""

@@ -4,18 +4,53 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, NoReturn
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.kit.connection import Matching
+from jacaros.artifacts.kit.connection import MATCH_OPTIONS
+from jacaros.artifacts.kit.options import positive, text
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
-from jacaros.artifacts.robots.drive_model import STANDSTILL, DriveModel, Limits, Velocity
-from jacaros.artifacts.robots.maneuver import Maneuver, distance
-from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions
-from jacaros.artifacts.robots.odometry import NO_TRANSFORM, Odometer
+from jacaros.artifacts.robots.drive_model import (
+    STANDSTILL,
+    DriveModel,
+    Limits,
+    Velocity,
+    read_quality,
+    write_quality,
+)
+from jacaros.artifacts.robots.maneuver import (
+    Maneuver,
+    distance,
+)
+from jacaros.artifacts.robots.motion_claim import Aborted, Driving, motions_of
+from jacaros.artifacts.robots.odometry import (
+    LOCALISED,
+    NO_TRANSFORM,
+    ODOMETRY,
+    Drift,
+    DrivingFrame,
+    Odometer,
+    Odometry,
+    pose_values,
+)
 from jacaros.plane.pose import Pose
+from jacaros.ros.errors import CapabilityMissing
+from jacaros.ros.guarded import guarded_by
+from jacaros.ros.names import frame_name
+from jacaros.ros.qos import SENSOR_DATA
+
+TWIST = "geometry_msgs/msg/Twist"
+
+TURTLEBOT = Limits()
+
+STATES = ("driving", "turning", "waiting", "paused")
+"""States of a motion, by precedence: the property ``moving`` shows one of them."""
 
 STALE = 0.5
 """Seconds after which the newest odometry is too old to drive by; the robot stops until more arrives."""
@@ -37,18 +72,6 @@ LONGEST_BRAKING = 3.0
 """Seconds after which a braking robot counts as standing: its twist may only be noise."""
 
 
-class MotionFailed(Exception):
-    """Raised when a motion ends early.
-
-    Attributes:
-        functor, argument: the failure reason, such as ``aborted(0.42)``.
-    """
-
-    def __init__(self, message: str, functor: str, argument: float | Atom | Structure) -> None:
-        super().__init__(message)
-        self.functor, self.argument = functor, argument
-
-
 @dataclass(frozen=True, slots=True)
 class MotionSettings:
     """How a robot is driven.
@@ -64,28 +87,6 @@ class MotionSettings:
     timeout: float | None
 
 
-class Wheels(RosArtifact):
-    """The artifact that drives, as used by a motion."""
-
-    motions: Motions
-    matching: Matching
-    odometer: Odometer
-    model: DriveModel
-    settings: MotionSettings
-
-    def command(self, velocity: Velocity) -> None:
-        """Publish a velocity command."""
-        raise NotImplementedError
-
-    def interrupted(self, why: Structure | Atom) -> None:
-        """Signal that the robot was not watched for a while."""
-        raise NotImplementedError
-
-    def show(self, motion: "Motion", state: str | None) -> None:
-        """Show the state of the motion to observers; None: it has ended."""
-        raise NotImplementedError
-
-
 class Motion:
     """Run one motion operation.
 
@@ -94,8 +95,8 @@ class Motion:
         maneuver: the task.
     """
 
-    def __init__(self, wheels: Wheels, maneuver: Maneuver) -> None:
-        self._wheels = wheels
+    def __init__(self, wheels: "WheeledArtifact", maneuver: Maneuver) -> None:
+        self._wheels, self._fail = wheels, wheels.fail
         self._maneuver = maneuver
         self._driving = Driving(
             wheels,
@@ -123,7 +124,7 @@ class Motion:
         """Drive the maneuver to its end.
 
         Raises:
-            MotionFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``does_not_move``, ``late``,
+            OperationFailed: ``aborted``, ``no_odometry``, ``no_transform``, ``blocked``, ``does_not_move``, ``late``,
                 ``interrupted`` or ``timeout``.
         """
         try:
@@ -132,11 +133,11 @@ class Motion:
         except Aborted:
             if self._begun:
                 self._maneuver.rest(self._pose())
-            raise MotionFailed("the motion was aborted", "aborted", self._maneuver.covered) from None
+            self._fail("the motion was aborted", "aborted", self._maneuver.covered)
         except Unsettled:
-            raise self._unsettled() from None
+            self._unsettled()
         except NotMoving:
-            raise self._stuck() from None
+            self._stuck()
         finally:
             self._wheels.show(self, None)
 
@@ -250,7 +251,7 @@ class Motion:
         """After a gap, signal it, and continue only with new odometry; an open-loop motion fails.
 
         Raises:
-            MotionFailed: ``interrupted``.
+            OperationFailed: ``interrupted``.
         """
         if self._sees():
             self._watched = True
@@ -260,11 +261,11 @@ class Motion:
         if why is None:
             return
         self._progress.reset()
-        self._wheels.interrupted(why)
+        self._wheels.signal("motion_interrupted", why)
         self._left_at = self._pose() if self._begun else None
         self._fresh = self._wheels.odometer.count + FRESH
         if self._begun and not self._maneuver.needs_odometry:
-            raise MotionFailed(
+            self._fail(
                 f"the open-loop motion was interrupted ({why})",
                 "interrupted",
                 self._maneuver.covered,
@@ -294,14 +295,14 @@ class Motion:
                 self._driving.claim.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
-            raise MotionFailed(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
+            self._fail(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
         return False
 
     def _check_leap(self) -> None:
         """Fail if odometry was reset during a gap: the robot was restarted, so the goal's position is unknown."""
         left_at, self._left_at = self._left_at, None
         if left_at is not None and distance(left_at, self._pose()) > LEAP:
-            raise MotionFailed("odometry was reset", "interrupted", self._maneuver.covered)
+            self._fail("odometry was reset", "interrupted", self._maneuver.covered)
 
     def _stay_in(self, frame: str) -> None:
         """Fail if poses arrive in another frame than at the beginning: the goal is a point in the first one."""
@@ -309,20 +310,20 @@ class Motion:
         if frame != self._frame:
             since = self._active if self._blind_since is None else self._blind_since
             text = f"odometry changed its frame from {self._frame} to {frame}"
-            raise MotionFailed(text, "no_odometry", round(self._active - since, 1))
+            self._fail(text, "no_odometry", round(self._active - since, 1))
 
     def _check(self, step: Step | None) -> None:
         """Fail if the motion takes too long or makes no progress."""
         settings, maneuver = self._wheels.settings, self._maneuver
         allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
         if self._active >= allowed:
-            raise MotionFailed(f"the motion took longer than {allowed:g} s", "timeout", allowed)
+            self._fail(f"the motion took longer than {allowed:g} s", "timeout", allowed)
         model = self._wheels.model
         sought, self._sought = self._sought, (model.linear.lower, model.angular.lower)
         if step is None or step.velocity == STANDSTILL or self._sought != sought:
             self._progress.reset()
         elif self._progress.is_stuck(maneuver.progress(self._pose()), self._active, self._patience()):
-            raise self._stuck()
+            self._stuck()
 
     def _patience(self) -> float:
         """Return the seconds without progress that are too long; slow cruising and late robots need more."""
@@ -331,24 +332,22 @@ class Motion:
             max(STUCK, 4.0 * LEAST_PROGRESS / min(limits.speed, limits.turn_speed)) + self._wheels.model.delay
         )
 
-    def _stuck(self) -> MotionFailed:
-        """Return the failure of a robot that does not follow commands: it is blocked if it has followed them before."""
+    def _stuck(self) -> NoReturn:
+        """Fail: the robot does not follow commands. It is blocked if it has followed them before."""
         model, driving = self._wheels.model, self._maneuver.activity == "driving"
         if model.has_rolled(driving):
-            return MotionFailed(f"the robot is stuck ({model})", "blocked", self._maneuver.covered)
+            self._fail(f"the robot is stuck ({model})", "blocked", self._maneuver.covered)
         if not self._wheels.matching.exists():
-            return MotionFailed("no base receives the commands", "does_not_move", Atom("unmatched"))
-        return MotionFailed(
-            f"odometry shows no reaction to commands ({model})", "does_not_move", Atom("no_reaction")
-        )
+            self._fail("no base receives the commands", "does_not_move", Atom("unmatched"))
+        self._fail(f"odometry shows no reaction to commands ({model})", "does_not_move", Atom("no_reaction"))
 
-    def _unsettled(self) -> MotionFailed:
-        """Return the failure of a robot that cannot be placed within the tolerance."""
+    def _unsettled(self) -> NoReturn:
+        """Fail: the robot cannot be placed within the tolerance."""
         model = self._wheels.model
         text = f"the robot cannot be placed exactly enough ({model})"
         if model.is_late:
-            return MotionFailed(text, "late", round(model.delay, 3))
-        return MotionFailed(text, "does_not_move", Atom("dead_band"))
+            self._fail(text, "late", round(model.delay, 3))
+        self._fail(text, "does_not_move", Atom("dead_band"))
 
 
 def _lack(odometer: Odometer) -> str:
@@ -375,3 +374,222 @@ class Progress:
         if remaining < self._least - LEAST_PROGRESS:
             self._least, self._since = remaining, now
         return now - self._since >= patience
+
+
+class WheeledArtifact(RosArtifact):
+    """An artifact whose operations drive a robot with `perform`.
+
+    Options:
+        speed(V), turn_speed(D): cruise speeds, metres and degrees per second (1 m/s and 57 degrees/s as in the
+            thesis, limited to what the robot can do). A number among the arguments is the speed too, as in
+            ``makeArtifact("wheels", "ArtVelocity", [0.4], Id)``.
+        max_speed(V), max_turn_speed(D), acceleration(A), turn_acceleration(D): limits of the robot; default: a
+            TurtleBot.
+        timeout(S): maximum driving time of a motion; default: four times the time needed plus 30 s.
+        odometry_timeout(S): how long a motion stands and waits for odometry before it fails (5 s).
+        command_topic(T), odometry_topic(T): other topics.
+        match_timeout(S): how long a motion stands and waits until the robot's base subscribes to the command topic (3
+            s); otherwise its first commands would be lost.
+        unmatched(W): effect of a base that has not subscribed by then: ``warn`` (default; the motion begins) or
+            ``fail``, with ``unmatched(Topic)``.
+        odometry_frame(F): the only frame in which odometry is accepted; default: that of the first message.
+        quality_file(F): keep what is measured of the robot in this file, for the next run.
+        frame(F): the frame of all poses, such as ``map``: motions use odometry corrected by localisation on tf, so
+            that errors of slipping wheels do not add up; default: odometry's own frame.
+
+    Properties:
+        moving(State): ``stopped``, ``driving``, ``turning``, ``waiting`` or ``paused``.
+        drive_quality(Delay, Acceleration, DeadBand): what was measured of the robot, after the first motion: seconds from
+            a command until odometry shows its effect, m/s2 (at most the declared one), and the least speed that
+            rolls, in m/s (0 while none was found).
+
+    Signals:
+        motion_interrupted(Why): the robot was not watched for a while and has been stopped. Why is
+            ``delayed(Seconds)`` (the process was frozen or stuck), ``no_odometry(Seconds)``,
+            ``clock_jumped(Seconds)`` or ``guard_tripped``.
+
+    Attributes:
+        further_uses: resources that the motions use.
+        motions: motions that drive the robot or wait for it; shared with all artifacts of the same robot.
+        matching: lets motions wait until the robot's base receives commands.
+        odometer: the newest odometry.
+        settings: speeds and time-outs.
+        newest_pose: x, y and heading in degrees, for operations that return them.
+    """
+
+    known_options: ClassVar = {
+        "speed": positive,
+        "turn_speed": positive,
+        "max_speed": positive,
+        "max_turn_speed": positive,
+        "acceleration": positive,
+        "turn_acceleration": positive,
+        "timeout": positive,
+        "odometry_timeout": positive,
+        "command_topic": text,
+        "odometry_topic": text,
+        "odometry_frame": text,
+        "frame": text,
+        "quality_file": text,
+        **MATCH_OPTIONS,
+    }
+    robot_in_properties = True
+    command_topic: ClassVar[str] = "cmd_vel"
+    further_uses: ClassVar[tuple[str, ...]] = (WHEELS,)
+
+    newest_pose: Reading
+
+    def init(self, *arguments: object) -> None:
+        """Read the robot's name, a speed in m/s, and options; all are optional."""
+        super().init(*(_speed(argument) for argument in arguments))
+
+    def open(self) -> None:
+        """Open the command topic and odometry; nothing is published before the first motion."""
+        self.settings = self._settings()
+        self._motions: dict[Motion, str] = {}
+        self._shown: tuple[float, float, float] | None = None
+        self.define_property(self.robot_property("moving"), Atom("stopped"))
+        self.motions = motions_of(self.ros, self.robot_prefix)
+        self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
+        self._commands = self.publisher(self.option("command_topic", self.command_topic), TWIST)
+        self.matching = self.matching_of(self._commands)
+        topic = self.option("odometry_topic", "odom")
+        self.model = DriveModel(self.settings.limits)
+        self._read_quality()
+        self.motions.models.append(self.model)
+        self.at_dispose(lambda: self.motions.models.remove(self.model))
+        self.odometer = Odometer(
+            self.faults_of(topic),
+            self.clock,
+            self.on_odometry,
+            self.option("odometry_frame", ""),
+            self._placed(),
+        )
+        self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
+        if "frame" not in self.options:
+            drift = Drift(self.ros, self.odometer, lambda: bool(self._motions), self.log)
+            localised = self.robot_topic("amcl_pose")
+            self.kept(self.ros.subscription(localised, LOCALISED, drift.take, SENSOR_DATA))
+        self._drove = False
+        self.at_dispose(self.ros.add_exit_hook(self._stand))
+        self.at_dispose(guarded_by(self.ros).on_standstill(self._stand))
+        self.at_dispose(self._halt)
+
+    def _placed(self) -> Callable[[Odometry], Odometry | None] | None:
+        """Return the conversion of odometry to the frame of the option; None without it."""
+        if "frame" not in self.options:
+            return None
+        name = frame_name(str(self.options["frame"]), self.frame_prefix)
+        try:
+            return DrivingFrame(self.ros, name).placed
+        except CapabilityMissing as error:
+            self.fail(f"frame({name}): {error}", "ros_error", name)
+
+    def on_odometry(self, odometry: Odometry) -> None:
+        """Handle every odometry message."""
+        late = self.odometer.late
+        self.model.observed(odometry.pose, odometry.velocity, self.clock.elapsed, late)
+        self.newest_pose.take(pose_values(odometry))
+
+    def _settings(self) -> MotionSettings:
+        """Read speeds, which options give in degrees where they turn, and time-outs."""
+        option, degrees = self.option, math.degrees
+        can = Limits(
+            option("max_speed", TURTLEBOT.speed),
+            math.radians(option("max_turn_speed", degrees(TURTLEBOT.turn_speed))),
+            option("acceleration", TURTLEBOT.acceleration),
+            math.radians(option("turn_acceleration", degrees(TURTLEBOT.turn_acceleration))),
+        )
+        cruise = can.clip(Velocity(option("speed", 1.0), math.radians(option("turn_speed", degrees(1.0)))))
+        return MotionSettings(
+            Limits(cruise.linear, cruise.angular, can.acceleration, can.turn_acceleration),
+            option("odometry_timeout", 5.0),
+            option("timeout", None),
+        )
+
+    def command(self, velocity: Velocity) -> None:
+        """Publish one velocity command."""
+        self.motions.commanded(velocity, self.clock.elapsed)
+        if velocity != STANDSTILL:
+            self._drove = True
+        twist = self._commands.message()
+        twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
+        self._commands.publish(twist)
+
+    def show(self, motion: Motion, state: str | None) -> None:
+        """Show in ``moving`` the state of *motion*; None: it has ended."""
+        if state is None:
+            self._motions.pop(motion, None)
+            self._show_quality()
+        else:
+            self._motions[motion] = state
+        states = self._motions.values()
+        shown = next((each for each in STATES if each in states), "stopped")
+        name = self.robot_property("moving")
+        if shown != self.value(name):
+            self.update_property(name, Atom(shown))
+
+    def _show_quality(self) -> None:
+        """Show what was measured, and keep it."""
+        quality = self.model.quality
+        if quality is None:
+            return
+        name = self.robot_property("drive_quality")
+        values = (round(quality.delay, 2), round(quality.acceleration, 2), round(quality.least, 3))
+        if values == self._shown:
+            return
+        if self._shown is None:
+            self.define_property(name, *values)
+        else:
+            self.update_property(name, *values)
+        self._shown = values
+        if "quality_file" in self.options:
+            try:
+                write_quality(Path(str(self.options["quality_file"])), quality)
+            except OSError as error:
+                self.log(f"warning: what was measured of the robot cannot be kept: {error}")
+
+    def _read_quality(self) -> None:
+        """Begin with what an earlier run has measured."""
+        if "quality_file" not in self.options:
+            return
+        try:
+            quality = read_quality(Path(str(self.options["quality_file"])))
+        except (OSError, ValueError) as error:
+            self.log(f"warning: {self.options['quality_file']}: {error}; the robot is measured anew")
+            return
+        if quality is not None:
+            self.model.expect(quality)
+
+    def _halt(self) -> None:
+        for motion in list(self._motions):
+            motion.halt()
+
+    def _stand(self) -> None:
+        """Stop when the process ends. This may run in a thread, so it only publishes.
+
+        A robot that was ever driven is sent zero velocity even if its last motion has ended: whether that motion's
+        own zero was still sent is unknown here.
+        """
+        if self._drove:
+            self.command(STANDSTILL)
+
+    async def perform(self, maneuver: Maneuver) -> None:
+        """Drive *maneuver* to its end; for operations marked as pausable.
+
+        Raises:
+            OperationFailed: ``aborted(Covered)``, ``blocked(Covered)``, ``does_not_move(Cause)``, ``late(Delay)``,
+                ``interrupted(Covered)``, ``no_odometry(Seconds)``, ``no_transform(Seconds)`` or ``timeout(Seconds)``.
+        """
+        try:
+            await Motion(self, maneuver).run()
+        except Exception:
+            self.commit()  # the robot has stopped, even though the operation failed
+            raise
+
+
+def _speed(argument: object) -> object:
+    """Convert a plain number to the option that it stands for."""
+    if isinstance(argument, int | float) and not isinstance(argument, bool):
+        return Structure("speed", (argument,))
+    return argument

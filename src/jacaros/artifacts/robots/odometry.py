@@ -187,8 +187,8 @@ class ArtOdometry(RosArtifact):
         policy = ReadingPolicy.from_options(self.options, self.on_demand)
         self._position = self.reading("odom", policy, 0, 0, 0)
         self._pose = self.reading("pose", policy, 0, 0, 0)
-        topic = str(self.options.get("topic", "odom"))
-        odometer = Odometer(self.faults_of(topic), self.clock, self._take, str(self.options.get("frame", "")))
+        topic = self.option("topic", "odom")
+        odometer = Odometer(self.faults_of(topic), self.clock, self._take, self.option("frame", ""))
         self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
 
     def _take(self, odometry: Odometry) -> None:

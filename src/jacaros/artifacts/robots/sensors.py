@@ -44,18 +44,17 @@ class ArtBaseScan(RosArtifact):
 
     def open(self) -> None:
         """Define the properties and subscribe."""
-        topic = str(self.options.get("topic", "scan"))
+        topic = self.option("topic", "scan")
         policy = ReadingPolicy.from_options(self.options)
         self._ranges = tuple(
             self.reading(name, policy, *[0] * len(SHARES), topic=topic) for name in self.names
         )
-        self._header = Header(self.faults_of(topic), self.clock, str(self.options.get("frame", "")))
+        self._header = Header(self.faults_of(topic), self.clock, self.option("frame", ""))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 
     def _take(self, sample: Sample) -> None:
         scan = sample.message
-        longest = self.options.get("max", float(scan.range_max))
-        assert isinstance(longest, float)
+        longest = self.option("max", float(scan.range_max))
         if len(scan.ranges) and self._header.accepts(sample):
             values = sampled(scan.ranges, longest, scan.range_min)
             if not_finite(values) is None:
@@ -122,7 +121,7 @@ class KobukiEvents(RosArtifact):
         self._shown = dict.fromkeys(SIDES, self.states[0])
         for side in SIDES:
             self.define_property(self.property_name, Atom(side), Atom(self.states[0]))
-        topic = str(self.options.get("topic", self.event_topic))
+        topic = self.option("topic", self.event_topic)
         self._faults = self.faults_of(topic)
         self.subscription(topic, self.event_type, self._take)
 
