@@ -84,57 +84,6 @@ class Faults:
         )
 
 
-class Header:
-    """Check the headers (``std_msgs/msg/Header``) of the messages of a topic.
-
-    A zero stamp and an empty frame carry no information and are accepted.
-
-    Args:
-        faults: counts bad messages.
-        clock: measures how late messages are.
-        frame: the only accepted frame; empty: that of the first message.
-    """
-
-    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
-        self._faults = faults
-        self._wanted = frame.strip("/")
-        self._frame = self._wanted
-        self._good_at = -math.inf
-        self._stamps = Stamps(faults, clock)
-
-    @property
-    def frame(self) -> str:
-        """The frame that is accepted now; empty while it is unknown."""
-        return self._frame
-
-    @property
-    def late(self) -> float:
-        """How many seconds later than earlier messages the newest one arrived; 0 if it was in time."""
-        return self._stamps.late
-
-    def accepts(self, sample: Sample) -> bool:
-        """Return whether a message may be used; count it if not."""
-        header: Any = sample.message.header
-        frame = header.frame_id
-        good = (not frame or frame == self._frame or self._is_in_frame(frame, sample.stamp)) and (
-            self._stamps.accept(to_seconds(header.stamp), sample.stamp)
-        )
-        if good:
-            self._good_at = sample.stamp
-        return good
-
-    def _is_in_frame(self, given: str, now: float) -> bool:
-        frame = given.strip("/")
-        if not frame or frame == self._frame:
-            return True
-        if not self._wanted and (not self._frame or not 0.0 <= now - self._good_at < SILENCE):
-            self._frame = frame
-            return True
-        text = f"expected frame {self._frame}, found {frame}; message dropped"
-        self._faults.add(Structure("wrong_frame", (frame,)), text)
-        return False
-
-
 Complain = Callable[[str, BaseException], None]
 """Log an exception, with its place in the code."""
 
@@ -275,3 +224,45 @@ class Stamps:
             late = round(self.late, 3)
             text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
             self._faults.add(Structure("late", (late,)), text)
+
+
+class Header(Stamps):
+    """Check the headers (``std_msgs/msg/Header``) of the messages of a topic.
+
+    A zero stamp and an empty frame carry no information and are accepted.
+
+    Args:
+        faults: counts bad messages.
+        clock: measures how late messages are.
+        frame: the only accepted frame; empty: that of the first message.
+
+    Attributes:
+        frame: the frame that is accepted now; empty while it is unknown.
+    """
+
+    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
+        super().__init__(faults, clock)
+        self._wanted = self.frame = frame.strip("/")
+        self._good_at = -math.inf
+
+    def accepts(self, sample: Sample) -> bool:
+        """Return whether a message may be used; count it if not."""
+        header: Any = sample.message.header
+        frame = header.frame_id
+        good = (not frame or frame == self.frame or self._is_in_frame(frame, sample.stamp)) and (
+            self.accept(to_seconds(header.stamp), sample.stamp)
+        )
+        if good:
+            self._good_at = sample.stamp
+        return good
+
+    def _is_in_frame(self, given: str, now: float) -> bool:
+        frame = given.strip("/")
+        if not frame or frame == self.frame:
+            return True
+        if not self._wanted and (not self.frame or not 0.0 <= now - self._good_at < SILENCE):
+            self.frame = frame
+            return True
+        text = f"expected frame {self.frame}, found {frame}; message dropped"
+        self._faults.add(Structure("wrong_frame", (frame,)), text)
+        return False

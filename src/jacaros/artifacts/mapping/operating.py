@@ -26,7 +26,7 @@ from jacaros.files.yaml import Problem
 from jacaros.ros.action import ActionClient
 from jacaros.ros.backend import Client, Publisher
 from jacaros.ros.errors import CapabilityMissing, MessageMismatch, NameInvalid, RosError
-from jacaros.ros.guarded import VELOCITIES, guarded_by
+from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.qos import DEFAULT_QOS
 
 
@@ -235,9 +235,7 @@ class _PublishOperation(_Operation):
         self._drives = type_name in VELOCITIES
         if self._drives:
             self._motions = motions_of(host.ros, host.robot_prefix)
-            host.at_dispose(host.ros.add_exit_hook(self._stand))
-            host.at_dispose(guarded_by(host.ros).on_standstill(self._stand))
-            host.at_dispose(self._halt)
+            self._motions.watch(host, self._stand, self._halt)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Publish, once or repeatedly."""
@@ -289,15 +287,15 @@ class _PublishOperation(_Operation):
             with driving:
                 await driving.ready()
                 for pause in pauses:
-                    await driving.wait(pause)
+                    await driving.pass_time(pause)
                     await driving.ready()
                 while left > 1e-9:
                     await driving.ready()
-                    began, driving.claim.gap = host.clock.elapsed, None
+                    began, driving.gap = host.clock.elapsed, None
                     self._send(inputs)
-                    await driving.wait(min(period, left))
+                    await driving.pass_time(min(period, left))
                     left -= host.clock.elapsed - began
-                    self._heed_gap(driving.claim.gap, seconds - left)
+                    self._heed_gap(driving.gap, seconds - left)
         except Aborted:
             host.fail(f"`{self._part.name}` was aborted", "aborted", round(seconds - left, 3))
 

@@ -41,7 +41,6 @@ from jacaros.artifacts.robots.odometry import (
 )
 from jacaros.plane.pose import Pose
 from jacaros.ros.errors import CapabilityMissing
-from jacaros.ros.guarded import guarded_by
 from jacaros.ros.names import frame_name
 from jacaros.ros.qos import SENSOR_DATA
 
@@ -215,7 +214,7 @@ class Motion:
         """Send one command and wait until the next is due."""
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(step.velocity)
-        await self._driving.wait(self._until_due(step.seconds) if periodic else step.seconds)
+        await self._driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
         self._active += step.seconds
 
     def _until_due(self, period: float) -> float:
@@ -240,7 +239,7 @@ class Motion:
             if self._rests(braking):
                 return True
             self._wheels.command(STANDSTILL)
-            await self._driving.wait(PERIOD)
+            await self._driving.pass_time(PERIOD)
             braking += PERIOD
         return False
 
@@ -256,8 +255,8 @@ class Motion:
         if self._sees():
             self._watched = True
         elif self._watched and not self._maneuver.needs_odometry:
-            self._driving.claim.interrupt(self._silence())
-        why, self._driving.claim.gap = self._driving.claim.gap, None
+            self._driving.interrupt(self._silence())
+        why, self._driving.gap = self._driving.gap, None
         if why is None:
             return
         self._progress.reset()
@@ -265,11 +264,8 @@ class Motion:
         self._left_at = self._pose() if self._begun else None
         self._fresh = self._wheels.odometer.count + FRESH
         if self._begun and not self._maneuver.needs_odometry:
-            self._fail(
-                f"the open-loop motion was interrupted ({why})",
-                "interrupted",
-                self._maneuver.covered,
-            )
+            text = f"the open-loop motion was interrupted ({why})"
+            self._fail(text, "interrupted", self._maneuver.covered)
 
     def _silence(self) -> Structure:
         age = self._wheels.odometer.age(self._wheels.clock.now())
@@ -285,14 +281,14 @@ class Motion:
         """Return whether there is odometry to drive by. Fail if it was missing for too long."""
         odometer = self._wheels.odometer
         if odometer.trusted and odometer.count >= self._fresh and self._sees():
-            self._stay_in(odometer.frame)
+            self._stay_in(odometer.header.frame)
             self._check_leap()
             self._blind_since = None
             return True
         if self._blind_since is None:
             self._blind_since = self._active
             if self._begun and odometer.trusted and odometer.count >= self._fresh:
-                self._driving.claim.gap = self._silence()
+                self._driving.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
             self._fail(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
@@ -471,9 +467,7 @@ class WheeledArtifact(RosArtifact):
             localised = self.robot_topic("amcl_pose")
             self.kept(self.ros.subscription(localised, LOCALISED, drift.take, SENSOR_DATA))
         self._drove = False
-        self.at_dispose(self.ros.add_exit_hook(self._stand))
-        self.at_dispose(guarded_by(self.ros).on_standstill(self._stand))
-        self.at_dispose(self._halt)
+        self.motions.watch(self, self._stand, self._halt)
 
     def _placed(self) -> Callable[[Odometry], Odometry | None] | None:
         """Return the conversion of odometry to the frame of the option; None without it."""
@@ -487,7 +481,7 @@ class WheeledArtifact(RosArtifact):
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Handle every odometry message."""
-        late = self.odometer.late
+        late = self.odometer.header.late
         self.model.observed(odometry.pose, odometry.velocity, self.clock.elapsed, late)
         self.newest_pose.take(pose_values(odometry))
 

@@ -104,6 +104,15 @@ class Motions:
         self.claims: dict[Claim, None] = {}
         self.models: list[DriveModel] = []
 
+    def watch(self, mover: RosArtifact, stand: Callable[[], None], halt: Callable[[], None]) -> None:
+        """Stop the robot when the process ends or a guard trips, by *stand*, and when *mover* ends, by *halt*.
+
+        *stand* may be called in a thread, so it only publishes.
+        """
+        mover.at_dispose(mover.ros.add_exit_hook(stand))
+        mover.at_dispose(guarded_by(mover.ros).on_standstill(stand))
+        mover.at_dispose(halt)
+
     def commanded(self, velocity: Velocity, now: float) -> None:
         """Note a command: all artifacts that drive the robot see its effect in odometry."""
         for model in self.models:
@@ -120,7 +129,7 @@ class Aborted(Exception):
     """Raised in a motion that was aborted."""
 
 
-class Driving:
+class Driving(Claim):
     """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
 
     A context manager: the motion begins when it is entered, and stops when it is left.
@@ -141,18 +150,17 @@ class Driving:
         stop: Callable[[], None],
         show: Callable[[str], None] = lambda state: None,
     ) -> None:
+        super().__init__(self.halt)
         self._mover, self._motions, self._stop, self._show = mover, motions, stop, show
         self._execution = mover.current
         self._holding = self._execution.hold((use,))
         self._claims_itself = not self._holding.entered
         self._hooks: list[Callable[[], None]] = []
-        self.claim = Claim(self.halt)
 
     @property
     def paused(self) -> bool:
         """Whether the agent has suspended the motion, or another one drives."""
-        paused: bool = self._execution.paused
-        return paused
+        return self._execution.paused
 
     def halt(self) -> None:
         """Stop the robot immediately if this motion drives; otherwise another one may be driving it."""
@@ -160,23 +168,22 @@ class Driving:
             self._stop()
 
     def __enter__(self) -> Self:
-        claim, guarded = self.claim, guarded_by(self._mover.ros)
         self._hooks = [
             self._execution.on_pause(self._on_pause),
-            self._holding.watch(claim.wake),
-            guarded.on_interruption(lambda: claim.interrupt(GUARD_TRIPPED)),
+            self._holding.watch(self.wake),
+            guarded_by(self._mover.ros).on_interruption(lambda: self.interrupt(GUARD_TRIPPED)),
         ]
         return self
 
     def _on_pause(self) -> None:
         self.halt()
-        self.claim.wake()
+        self.wake()
 
     def __exit__(self, *_: object) -> None:
         for forget in self._hooks:
             forget()
         self.halt()
-        self._motions.claims.pop(self.claim, None)
+        self._motions.claims.pop(self, None)
         if self._claims_itself:
             self._holding.leave()
 
@@ -184,27 +191,27 @@ class Driving:
         """Wait until this motion may drive. While it is suspended, `Motions.abort` does not end it."""
         execution, claims = self._execution, self._motions.claims
         self._holding.enter()
-        claims[self.claim] = None
+        claims[self] = None
         while execution.paused:
             suspended = execution.suspended
             if suspended:
-                claims.pop(self.claim, None)
+                claims.pop(self, None)
             else:
-                claims[self.claim] = None
+                claims[self] = None
             self._show("paused" if suspended else "waiting")
             self._holding.rest()
             if execution.paused:
-                await self.wait(None)
-        claims[self.claim] = None
+                await self.pass_time(None)
+        claims[self] = None
 
-    async def wait(self, seconds: float | None) -> None:
+    async def pass_time(self, seconds: float | None) -> None:
         """Wait until this motion is woken or the time is over.
 
         Raises:
             Aborted: the motion was aborted.
         """
-        await self._mover.step(self.claim.wait(self._mover.clock, seconds))
-        if self.claim.aborted:
+        await self._mover.step(self.wait(self._mover.clock, seconds))
+        if self.aborted:
             raise Aborted
 
 

@@ -91,6 +91,7 @@ class Odometer:
             `jacaros.artifacts.robots.odometry`.
 
     Attributes:
+        header: checks frames and stamps.
         newest: None until the first message.
         count: number of good messages.
         trusted: False if the newest message was unusable or its frame has no transform: the robot's present pose is
@@ -113,23 +114,13 @@ class Odometer:
         self.lacking = NO_ODOMETRY
         self._placed = placed
         self._faults = faults
-        self._header = Header(faults, clock, frame)
+        self.header = Header(faults, clock, frame)
         self._on_reading = on_reading
 
     @property
     def faults(self) -> int:
         """Number of bad messages."""
         return self._faults.total
-
-    @property
-    def frame(self) -> str:
-        """The frame of the newest poses; empty while it is unknown."""
-        return self._header.frame
-
-    @property
-    def late(self) -> float:
-        """Seconds by which the newest message arrived later than earlier ones."""
-        return self._header.late
 
     def take(self, sample: Sample) -> None:
         """Handle a message; the callback of the subscription."""
@@ -138,11 +129,10 @@ class Odometer:
             self.trusted, self.lacking = False, NO_ODOMETRY
             self._faults.not_finite(*wrong)
             return
-        if not self._header.accepts(sample):
+        if not self.header.accepts(sample):
             return
-        odometry: Odometry | None = read_odometry(sample)
-        if self._placed is not None and odometry is not None:
-            odometry = self._placed(odometry)
+        read = read_odometry(sample)
+        odometry = read if self._placed is None else self._placed(read)
         if odometry is None:
             self.trusted, self.lacking = False, NO_TRANSFORM
             return
@@ -150,11 +140,11 @@ class Odometer:
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
         if self._on_reading is not None:
-            self._on_reading(self.newest)
+            self._on_reading(odometry)
 
     def age(self, now: float) -> float | None:
         """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
-        return None if self.newest is None else now - self.newest.sample.stamp + self._header.late
+        return None if self.newest is None else now - self.newest.sample.stamp + self.header.late
 
 
 class ArtOdometry(RosArtifact):
