@@ -491,14 +491,20 @@ class RosArtifact(Artifact):
         self._steps.publication.properties.put(name, values)
 
     @internal_operation
-    def show_elements(self, name: str, elements: object) -> None:
+    def show_elements(self, name: str, elements: object, arity: int | None = None) -> None:
         """Show one property *name* for each tuple of values, and remove the others; see `RangeOfView`.
 
         An element that was already shown causes no event.
+
+        Args:
+            name: name of the properties.
+            elements: their values, as a list of tuples.
+            arity: number of values of the properties that are replaced; None: any.
         """
         assert isinstance(elements, list)
         wanted = dict.fromkeys(elements)
-        shown = [each.values for each in self.find_properties(name)]
+        found = [each.values for each in self.find_properties(name)]
+        shown = dict.fromkeys(each for each in found if arity in (None, len(each)))
         for old in shown:
             if old not in wanted:
                 self.remove_property(name, *old)

@@ -202,7 +202,7 @@ class ArtSlamData(RosArtifact):
     def _show_range(self, cells: Sequence[Cell]) -> None:
         """Replace the cells shown; an unchanged cell causes no event."""
         shown = [(*cell, self.cells.label(cell)) for cell in cells]
-        self._show("cell", 3, shown)
+        self.show_elements("cell", shown)
         self.update_property("currentRange", [Structure("cell", each) for each in shown])
         self.show_obstacles(cells)
 
@@ -217,18 +217,7 @@ class ArtSlamData(RosArtifact):
         objects += [(Atom(label), *cell) for cell, label in self.cells.places().items()]
         objects += [(Atom(name), *cell) for name, cell in self._things.items()]
         objects += [(Atom(OBSTACLE), *cell) for cell in self._obstacles]
-        self._show("pos2d", 3, objects)
-
-    def _show(self, name: str, arity: int, wanted: Sequence[tuple[object, ...]]) -> None:
-        """Have one property *name* for each tuple, and no others with *arity* values."""
-        shown = [each.values for each in self.find_properties(name) if len(each.values) == arity]
-        kept, keep = set(shown), set(wanted)
-        for old in shown:
-            if old not in keep:
-                self.remove_property(name, *old)
-        for new in dict.fromkeys(wanted):
-            if new not in kept:
-                self.define_property(name, *new)
+        self.show_elements("pos2d", objects, 3)
 
     # ---- routes
 

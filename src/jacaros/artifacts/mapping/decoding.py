@@ -29,7 +29,7 @@ from jacaros.artifacts.mapping.interfaces import (
     getter,
     tried,
 )
-from jacaros.artifacts.mapping.properties import RangeOfView, TopicPart
+from jacaros.artifacts.mapping.properties import TopicPart, ViewPart
 from jacaros.files.yaml import Problem
 from jacaros.plane.pose import pitch_of, roll_of, yaw_of
 from jacaros.ros.errors import UnknownInterface
@@ -586,7 +586,7 @@ class _Maker:
     def _reader(self, field: FieldPart) -> Read | None:
         return tried(field.place, self.problems, reader, field, self.message, self.element, self.interfaces)
 
-    def _view(self, view: RangeOfView) -> View:
+    def _view(self, view: ViewPart) -> View:
         """Return a function that gives the position of an element; None if it is certainly out of view."""
         if view.distance is not None:
             far = self._number(view.distance, view)
@@ -596,7 +596,7 @@ class _Maker:
         across, along = (self._number(path, view) for path in view.at)
         return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
 
-    def _number(self, path: Path, view: RangeOfView) -> Callable[[Any, Any, int], float]:
+    def _number(self, path: Path, view: ViewPart) -> Callable[[Any, Any, int], float]:
         from_message = self.element is None or path.of_message
         root = self.message if self.element is None or path.of_message else self.element
 

@@ -46,7 +46,36 @@ def kept_by_master(ros: Backend) -> bool:
     return DECLARED_PARAMETERS not in ros.capabilities and REGISTRATION in ros.capabilities
 
 
-class OwnParameter:
+class _Parameter:
+    """What properties from parameters share.
+
+    Args:
+        host: the artifact.
+        part: its declaration.
+        name: name of the parameter in the graph.
+    """
+
+    def __init__(self, host: Host, part: ParameterPart, name: str) -> None:
+        self._host, self._part, self._name = host, part, name
+        conversion = part.field.conversion if part.field is not None else AS_IT_IS
+        self._convert = parameter_converter(conversion, name)
+        self._reading = host.reading_of(part.name, part.policy)
+        self._closed = False
+
+    def _changed(self, values: Mapping[str, ParameterValue]) -> None:
+        if self._name in values:
+            self._take(values[self._name])
+
+    def _take(self, value: ParameterValue) -> None:
+        if not self._closed:
+            self._reading.take((self._convert(value),))
+
+    def close(self) -> None:
+        """Stop updating."""
+        self._closed = True
+
+
+class OwnParameter(_Parameter):
     """A property from a parameter of our own node; it exists from the start.
 
     Where parameters are declared, other nodes can only set values that match the declaration. On ROS 1 the master
@@ -59,12 +88,8 @@ class OwnParameter:
 
     def __init__(self, host: Host, part: ParameterPart) -> None:
         assert part.declaration is not None
-        self._host, self._part, self._declaration = host, part, part.declaration
-        self._name = own_name(host, part.parameter)
-        conversion = part.field.conversion if part.field is not None else AS_IT_IS
-        self._convert = parameter_converter(conversion, self._name)
-        self._reading = host.reading_of(part.name, part.policy)
-        self._closed = False
+        self._declaration = part.declaration
+        super().__init__(host, part, own_name(host, part.parameter))
 
     def declare(self) -> Problem | None:
         """Declare it and show its value. Return a problem, if any.
@@ -112,13 +137,11 @@ class OwnParameter:
             self._take(self._declaration.default)
 
     def _changed(self, values: Mapping[str, ParameterValue]) -> None:
-        if self._name not in values:
-            return
         if not kept_by_master(self._host.ros):
-            self._take(values[self._name])
-        elif self._declaration.read_only:
+            super()._changed(values)
+        elif self._name in values and self._declaration.read_only:
             self._ignore(values[self._name], "it is read-only")
-        else:
+        elif self._name in values:
             self._judge(values[self._name])
 
     def _judge(self, value: ParameterValue) -> None:
@@ -134,14 +157,6 @@ class OwnParameter:
         place, node = self._part.place, self._host.ros.node_name
         told = f"parameter `{node}/{self._name}` was set to {value!r}; value ignored: {why}"
         self._host.report([place.problem(told, "set another value")])
-
-    def _take(self, value: ParameterValue) -> None:
-        if not self._closed:
-            self._reading.take((self._convert(value),))
-
-    def close(self) -> None:
-        """Stop updating."""
-        self._closed = True
 
 
 def _alike(value: ParameterValue, declaration: Declaration) -> ParameterValue:
@@ -171,11 +186,8 @@ def parameter_converter(conversion: Conversion, name: str) -> Convert:
 
     def element(value: ParameterValue) -> object:
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if (
-            conversion.needs_number
-            and not is_number
-            and not (isinstance(value, str | bool) and value in named)
-        ):
+        is_named = isinstance(value, str | bool) and value in named
+        if conversion.needs_number and not is_number and not is_named:
             told = f"parameter `{name}`: expected a number, found {text(value, quoted=True)}"
             raise Unshowable(name, told, "leave out its unit, scale, offset and round", "wrong_value")
         # Infinity has no integer; the receiver of the value refuses it.
@@ -197,7 +209,7 @@ PATIENT = 2
 """Number of attempts at a missing node that are not logged: it may be starting."""
 
 
-class NodeParameter:
+class NodeParameter(_Parameter):
     """A property from a parameter; it exists while the node reports it.
 
     Args:
@@ -206,12 +218,8 @@ class NodeParameter:
     """
 
     def __init__(self, host: Host, part: ParameterPart) -> None:
-        self._host, self._part = host, part
-        conversion = part.field.conversion if part.field is not None else AS_IT_IS
-        self._convert = parameter_converter(conversion, part.parameter)
-        self._reading = host.reading_of(part.name, part.policy)
+        super().__init__(host, part, part.parameter)
         self._node = host.ros.resolve(host.robot_topic(part.node))
-        self._closed = False
         self._vain = 0
         try:
             self._parameters = host.ros.parameters(self._node)
@@ -238,15 +246,9 @@ class NodeParameter:
                 return
             await host.sleep(1.0 / part.rate)
 
-    def _changed(self, values: Mapping[str, ParameterValue]) -> None:
-        if self._part.parameter in values:
-            self._take(values[self._part.parameter])
-
     def _take(self, value: ParameterValue) -> None:
-        if self._closed:
-            return
         try:
-            self._reading.take((self._convert(value),))
+            super()._take(value)
         except Unshowable as error:
             self._withdraw()
             part = self._part
@@ -261,9 +263,8 @@ class NodeParameter:
         self._withdraw()
         part = self._part
         if isinstance(error, ParameterUnknown):
-            self._host.report_once(
-                part.name, part.place, f"`{part.name}` is unknown: {error}", "write another name"
-            )
+            told = f"`{part.name}` is unknown: {error}"
+            self._host.report_once(part.name, part.place, told, "write another name")
         if isinstance(error, ServiceUnavailable):
             self._vain += 1
         if self._vain == PATIENT:
@@ -273,7 +274,3 @@ class NodeParameter:
                 f"`{part.name}` is not known yet: node {self._node} does not answer; still trying",
                 "is the node running, and is this its name?",
             )
-
-    def close(self) -> None:
-        """Stop the requests."""
-        self._closed = True

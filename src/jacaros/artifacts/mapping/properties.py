@@ -99,7 +99,7 @@ def _coordinates(node: Node) -> tuple[Path, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class RangeOfView:
+class ViewPart:
     """The range within which elements are shown.
 
     Attributes:
@@ -116,7 +116,7 @@ class RangeOfView:
     origin: Annotated[Written | None, entry(written, "from")] = None
 
 
-def _view(node: Node) -> RangeOfView:
+def _view(node: Node) -> ViewPart:
     entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
     if isinstance(node.value, dict):
         if "distance" in entries and ("at" in entries or "from" in entries):
@@ -125,7 +125,7 @@ def _view(node: Node) -> RangeOfView:
             node.wrong(
                 "`range_of_view` needs a position", "add `at: [position.x, position.y]`, or `distance: range`"
             )
-    return with_entries(RangeOfView(place_of(node)), entries)
+    return with_entries(ViewPart(place_of(node)), entries)
 
 
 ALWAYS = ReadingPolicy()
@@ -161,7 +161,7 @@ class TopicPart:
     description: Annotated[str, entry(Node.text)] = ""
     policy: ReadingPolicy = ALWAYS
     initial: tuple[object, ...] | None = None
-    view: Annotated[RangeOfView | None, entry(_view, "range_of_view")] = None
+    view: Annotated[ViewPart | None, entry(_view, "range_of_view")] = None
     when_changed: Annotated[bool, entry(Node.truth)] = False
     signal: bool = False
 
