@@ -610,9 +610,8 @@ class RosArtifact(Artifact):
         self._check_suspending(suspend, pause, resume)
         missing = missing_number(goal)
         if missing is not None:
-            self.fail(
-                f"field `{missing}` of the goal is not a number; nothing was sent", "wrong_value", missing
-            )
+            told = f"field `{missing}` of the goal is not a number; nothing was sent"
+            self.fail(told, "wrong_value", missing)
         options = GoalOptions(
             timeout, self._feedback(on_feedback), under_way, suspend, pause, resume, aborted
         )

@@ -133,9 +133,8 @@ class ArtSlamData(RosArtifact):
         degrees = DEGREES.get(str(direction))
         if degrees is None:
             known = ", ".join(DEGREES)
-            self.fail(
-                f"unknown direction `{direction}`: expected one of {known}", "unknown_direction", direction
-            )
+            told = f"unknown direction `{direction}`: expected one of {known}"
+            self.fail(told, "unknown_direction", direction)
         self.stand((x, y), degrees)
 
     @operation(name="moveUp")

@@ -223,9 +223,8 @@ class _Decoder:
         if kind == "atom" and single.base != "string":
             raise WrongPath(f"`as: atom` is for strings, but `{path}` is {single}", "leave `as` out")
         if self._field.otherwise is not None and single.base not in FLOATS and kind not in ANGLES:
-            raise WrongPath(
-                f"`otherwise` is for floating-point numbers, but `{path}` is {single}", "leave it out"
-            )
+            text = f"`otherwise` is for floating-point numbers, but `{path}` is {single}"
+            raise WrongPath(text, "leave it out")
 
     def _otherwise(self) -> Callable[[float, Any], object]:
         """Return the replacement for a number that is not finite."""
@@ -276,9 +275,8 @@ class _Decoder:
         if not meant:
             begin = f" with the prefix `{prefix}`" if prefix else ""
             listed = ", ".join(known) or "none"
-            raise WrongPath(
-                f"{owner} has no constant{begin}", f"its constants: {listed}; or write names: {{0: ...}}"
-            )
+            text = f"{owner} has no constant{begin}"
+            raise WrongPath(text, f"its constants: {listed}; or write names: {{0: ...}}")
         names: dict[object, Atom] = {}
         for name, value in meant.items():
             plain = octet(value)
@@ -348,9 +346,8 @@ def check_names(conversion: Conversion, path: str, base: str) -> None:
             raise WrongPath(f"`names` has {value!r}, but `{path}` is {base}", help)
         low, high = INTEGER_RANGES.get(base, (-math.inf, math.inf))
         if isinstance(value, int) and not low <= value <= high:
-            raise WrongPath(
-                f"`names` has {value}, but `{path}` is {base}", f"write values from {low} to {high}"
-            )
+            text = f"`names` has {value}, but `{path}` is {base}"
+            raise WrongPath(text, f"write values from {low} to {high}")
 
 
 _NAMED: dict[str, tuple[type, ...]] = {

@@ -163,15 +163,13 @@ def _give(
         elif number < len(arguments):
             given = arguments[number]
         else:
-            raise WrongValue(
-                f"`{path}` is part {number + 1} of an element, but the element has {len(arguments)}", path
-            )
+            told = f"`{path}` is part {number + 1} of an element, but the element has {len(arguments)}"
+            raise WrongValue(told, path)
         try:
             return convert(given)
         except (TypeError, ValueError) as error:
-            raise WrongValue(
-                f"`{path}` ({leaf}) cannot be {text(given, quoted=True)}: {error}", path
-            ) from None
+            told = f"`{path}` ({leaf}) cannot be {text(given, quoted=True)}: {error}"
+            raise WrongValue(told, path) from None
 
     return of_parameter
 
@@ -195,10 +193,8 @@ def _constant(
         if value not in known:
             plain = "write true or false" if leaf.base == "bool" else "write a number"
             listed = ", ".join(known)
-            raise WrongPath(
-                f"`{path}` is {leaf}, but {value!r} is not a constant of {owner}",
-                f"its constants: {listed}" if listed else f"{plain}, or a parameter: $name",
-            )
+            told = f"`{path}` is {leaf}, but {value!r} is not a constant of {owner}"
+            raise WrongPath(told, f"its constants: {listed}" if listed else f"{plain}, or a parameter: $name")
         value = known[value]
         return value[0] if isinstance(value, bytes) else value
     try:
@@ -214,9 +210,8 @@ def _constant(
     except MessageMismatch as error:
         raise WrongPath(str(error), "write another value, or a parameter: $name") from None
     except (TypeError, ValueError) as error:
-        raise WrongPath(
-            f"`{path}` is {leaf}, but {error}", "write another value, or a parameter: $name"
-        ) from None
+        told = f"`{path}` is {leaf}, but {error}"
+        raise WrongPath(told, "write another value, or a parameter: $name") from None
     return converted
 
 

@@ -123,10 +123,8 @@ def read_path(text: str) -> Path:
     for part in rest.split("."):
         found = _PART.fullmatch(part)
         if found is None:
-            raise WrongPath(
-                f"`{text}` is not a path: `{part}` is not a field",
-                "write it like pose.position.x or ranges[0]",
-            )
+            told = f"`{text}` is not a path: `{part}` is not a field"
+            raise WrongPath(told, "write it like pose.position.x or ranges[0]")
         steps.append(f".{found['name']}")
         for index in _INDEX.findall(found["indices"]):
             steps.append(index if index in (ALL, HERE) else int(index))
@@ -136,10 +134,8 @@ def read_path(text: str) -> Path:
 def path_of(node: Node, help: str = "") -> Path:
     """Read a path; the whole message after a mistake."""
     if not isinstance(node.value, str):
-        node.wrong(
-            f"{node.what} must be a path, found {shown(node.value)}",
-            help or "write the path of a field, as in pose.x",
-        )
+        text = f"{node.what} must be a path, found {shown(node.value)}"
+        node.wrong(text, help or "write the path of a field, as in pose.x")
         return WHOLE
     try:
         return read_path(node.value)
@@ -370,10 +366,8 @@ def read_field(node: Node) -> FieldPart:
         path = path_of(node, "write a path, or a mapping such as {path: pose.orientation, as: yaw}")
         return FieldPart(path, place, name=_name(path))
     if node.value and not any(key in FIELD for key in node.value):
-        node.wrong(
-            f"{node.what} has no `path`, and `{next(iter(node.value))}` is not a key",
-            "write a list of paths, or of mappings such as {path: pose.position.x, name: x}",
-        )
+        text = f"{node.what} has no `path`, and `{next(iter(node.value))}` is not a key"
+        node.wrong(text, "write a list of paths, or of mappings such as {path: pose.position.x, name: x}")
         return FieldPart(WHOLE, place)
     entries = node.mapping(*FIELD, required=("path",))
     path = path_of(entries["path"]) if "path" in entries else WHOLE
@@ -416,9 +410,8 @@ def _names(node: Node) -> tuple[tuple[object, str], ...]:
     found = []
     for key, value in node.entries():
         if not isinstance(value.value, str):
-            value.wrong(
-                f"the name of {key.value!r} must be a word, found {shown(value.value)}", "write a word"
-            )
+            text = f"the name of {key.value!r} must be a word, found {shown(value.value)}"
+            value.wrong(text, "write a word")
             continue
         found.append((key.value, str(value.value)))
     return tuple(found)
@@ -516,19 +509,16 @@ def belief_name(node: Node) -> str:
     """Read the name of a property, signal or operation."""
     if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
         if isinstance(node.value, bool):
-            node.wrong(
-                f"{str(node.value).lower()} is not a valid name in agent programs", "write another name"
-            )
+            text = f"{str(node.value).lower()} is not a valid name in agent programs"
+            node.wrong(text, "write another name")
             return UNNAMED
         near = re.sub(r"\W", "_", str(node.value)).lstrip("_0123456789")
         help = f"write {near[0].lower()}{near[1:]}" if near else "begin with a lower-case letter"
         node.wrong(f"{shown(node.value)} is not a valid name in agent programs", help)
         return UNNAMED
     if node.value in RESERVED:
-        node.wrong(
-            f"`{node.value}` is a reserved word in agent programs",
-            f"write {node.value}_value or another name",
-        )
+        text = f"`{node.value}` is a reserved word in agent programs"
+        node.wrong(text, f"write {node.value}_value or another name")
         return UNNAMED
     return str(node.value)
 

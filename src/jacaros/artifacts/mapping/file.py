@@ -230,10 +230,8 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
     entries = document.mapping("artifacts", *_KEYS, anchors=True)
     for name, _ in document.entries():
         if name.value in _KEYS and name.value != "interfaces":
-            name.wrong(
-                f"`{name.value}` is on the same level as `artifacts`",
-                "indent it, below the name of an artifact",
-            )
+            text = f"`{name.value}` is on the same level as `artifacts`"
+            name.wrong(text, "indent it, below the name of an artifact")
     shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
     found = {}
     for name, node in entries["artifacts"].entries():
@@ -254,10 +252,8 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
         if path.is_dir():
             found.append(path)
         elif isinstance(item.value, str):
-            item.wrong(
-                f"folder not found: `{item.value}`",
-                "name a folder, relative to this file, that contains PACKAGE/msg/NAME.msg",
-            )
+            text = f"folder not found: `{item.value}`"
+            item.wrong(text, "name a folder, relative to this file, that contains PACKAGE/msg/NAME.msg")
     return tuple(found)
 
 
@@ -304,10 +300,8 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
             continue  # already reported
         if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
             first, before = seen[name]
-            yield place.problem(
-                f"the {kind} `{name}` has the same name as the {first} on line {before.line}",
-                "give it another name",
-            )
+            text = f"the {kind} `{name}` has the same name as the {first} on line {before.line}"
+            yield place.problem(text, "give it another name")
         seen.setdefault(name, (kind, place))
 
 
@@ -368,29 +362,23 @@ def _references(part: ArtifactPart) -> Iterator[Problem]:
         for wanted in operation.properties:
             asked[wanted.text] += 1
             if wanted.text not in own:
-                yield wanted.place.problem(
-                    f"unknown property `{wanted.text}`", f"properties from topics and frames: {told}"
-                )
+                text = f"unknown property `{wanted.text}`"
+                yield wanted.place.problem(text, f"properties from topics and frames: {told}")
                 continue
             topic = own[wanted.text]
             if topic is not None and topic.each is not None:
-                yield wanted.place.problem(
-                    f"`{wanted.text}` is one property for each element, and always up to date", "leave it out"
-                )
+                text = f"`{wanted.text}` is one property for each element, and always up to date"
+                yield wanted.place.problem(text, "leave it out")
             elif operation.kind is OperationKind.READ and topic is not None and topic.fields is None:
-                yield wanted.place.problem(
-                    f"the number of values of `{wanted.text}` is not known", f"give `{wanted.text}` fields"
-                )
+                text = f"the number of values of `{wanted.text}` is not known"
+                yield wanted.place.problem(text, f"give `{wanted.text}` fields")
     for topic in part.topics:
         if topic.view is not None and (origin := topic.view.origin) is not None and origin.text not in own:
-            yield origin.place.problem(
-                f"unknown property `{origin.text}`", f"properties from topics and frames: {told}"
-            )
+            text = f"unknown property `{origin.text}`"
+            yield origin.place.problem(text, f"properties from topics and frames: {told}")
         if topic.policy.on_demand and topic.name not in asked:
-            yield topic.place.problem(
-                f"no operation requests `{topic.name}`, which is updated on demand",
-                f"add an operation: look: {{refresh: {topic.name}}}",
-            )
+            text = f"no operation requests `{topic.name}`, which is updated on demand"
+            yield topic.place.problem(text, f"add an operation: look: {{refresh: {topic.name}}}")
 
 
 _EVENTS = frozenset({"count", "absent"})
@@ -417,10 +405,8 @@ def _unknown_stream(source: Written, known: list[str]) -> Problem:
 
 def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
     if topic.each is not None and spec.operator not in _EVENTS:
-        yield place.problem(
-            f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one",
-            f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`",
-        )
+        text = f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one"
+        yield place.problem(text, f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`")
     needed = spec.place + 1
     if OPERATORS[spec.operator].valued and topic.fields is not None:
         count = sum(field.count for field in topic.fields)

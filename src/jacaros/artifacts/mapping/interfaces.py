@@ -166,15 +166,12 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
             shown = f"{shown}.{step[1:]}".lstrip(".")
             continue
         if not here.array:
-            raise WrongPath(
-                f"`{path.text}`: {shown or 'the message'} is {here}, not an array", f"write {shown}"
-            )
+            text = f"`{path.text}`: {shown or 'the message'} is {here}, not an array"
+            raise WrongPath(text, f"write {shown}")
         if isinstance(step, int) and here.length and not -here.length <= step < here.length:
             at_most = "" if here.fixed else "at most "
-            raise WrongPath(
-                f"`{path.text}`: {shown} has {at_most}{here.length} elements",
-                f"elements are {shown}[0] to {shown}[{here.length - 1}]",
-            )
+            text = f"`{path.text}`: {shown} has {at_most}{here.length} elements"
+            raise WrongPath(text, f"elements are {shown}[0] to {shown}[{here.length - 1}]")
         here = here.element
         shown = f"{shown}[{step}]"
     return here
@@ -183,10 +180,8 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
 def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -> FieldType:
     where = shown or "the message"
     if here.array:
-        raise WrongPath(
-            f"`{path.text}`: {where} is an array, {here}",
-            f"write {shown}[0].{name}, or {shown}[*].{name} for all",
-        )
+        text = f"`{path.text}`: {where} is an array, {here}"
+        raise WrongPath(text, f"write {shown}[0].{name}, or {shown}[*].{name} for all")
     if not here.is_message:
         raise WrongPath(f"`{path.text}`: {where} is {here} and has no fields", f"write {shown}")
     known = fields(here.base)
@@ -311,7 +306,5 @@ def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: 
         return
     listed = ", ".join(units_of(*kinds))
     units = f"units of {' and '.join(sorted(kinds))} are {listed}; or" if kinds else "leave `unit` out, or"
-    raise WrongPath(
-        f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}",
-        f"{units} write the unit of the message: message_unit: ...",
-    )
+    text = f"messages have `{path.text}` in {there}, but {conversion.unit} is a unit of {wanted}"
+    raise WrongPath(text, f"{units} write the unit of the message: message_unit: ...")

@@ -271,9 +271,8 @@ class _PublishOperation(_Operation):
         assert duration is not None
         value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
-            self._host.fail(
-                f"expected a number of seconds as duration, found {value!r}", "wrong_value", "duration"
-            )
+            text = f"expected a number of seconds as duration, found {value!r}"
+            self._host.fail(text, "wrong_value", "duration")
         return float(value)
 
     async def _repeat(self, inputs: Sequence[object], seconds: float, period: float) -> None:

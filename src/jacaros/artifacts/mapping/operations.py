@@ -179,9 +179,8 @@ def read_values(node: Node, parameters: tuple[str, ...], within_list: bool = Fal
     for key, value in node.entries():
         target = path_of(key)
         if target.of_message or ALL in target.steps or HERE in target.steps or not target.steps:
-            key.wrong(
-                f"`{target.text}` is not a single field", "write a path like pose.position.x or poses[0]"
-            )
+            text = f"`{target.text}` is not a single field"
+            key.wrong(text, "write a path like pose.position.x or poses[0]")
         found.append(read_value(value, target, parameters, within_list))
     return tuple(found)
 
@@ -196,16 +195,14 @@ def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_lis
         return _list(node, target, parameters)
     if node.value and not set(node.value) & {*_VALUE, *_LIST}:
         inner = next(iter(node.value))
-        node.wrong(
-            f"`{target.text}` has no fields of its own here", f"write their paths: {target.text}.{inner}: ..."
-        )
+        text = f"`{target.text}` has no fields of its own here"
+        node.wrong(text, f"write their paths: {target.text}.{inner}: ...")
         return ValuePart(target, place)
     entries = node.mapping(*_VALUE, required=("value",))
     conversion = read_conversion(entries)
     if conversion.kind not in _WRITTEN:
-        entries["as"].wrong(
-            f"`as: {conversion.kind}` is for fields that an agent reads", f"here: {', '.join(_WRITTEN[1:])}"
-        )
+        text = f"`as: {conversion.kind}` is for fields that an agent reads"
+        entries["as"].wrong(text, f"here: {', '.join(_WRITTEN[1:])}")
         conversion = Conversion()
     if "value" not in entries:
         return ValuePart(target, place, conversion=conversion)
@@ -240,10 +237,8 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
     if within_list:
         if name.isdecimal():
             return int(name) - 1
-        node.wrong(
-            f"an element has no part ${name}",
-            "write $1, $2 and so on for its parts, $0 for the whole element",
-        )
+        text = f"an element has no part ${name}"
+        node.wrong(text, "write $1, $2 and so on for its parts, $0 for the whole element")
         return ALL_OF_IT
     if name in parameters:
         return parameters.index(name)
@@ -344,9 +339,8 @@ def _success(node: Node) -> Success:
 
 def _code(node: Node) -> FieldPart:
     if isinstance(node.value, list):
-        node.wrong(
-            "`code` must be one field", "write code: error_code, or code: {path: error_code, as: name}"
-        )
+        text = "`code` must be one field"
+        node.wrong(text, "write code: error_code, or code: {path: error_code, as: name}")
         return FieldPart(WHOLE, place_of(node))
     return _outputs(node)[0]
 
@@ -511,6 +505,5 @@ def _forgotten(part: OperationPart) -> Iterator[Problem]:
     }
     for each in values:
         if each.source is Source.CONSTANT and each.value in part.parameters and each.value not in used:
-            yield each.place.problem(
-                f"`{each.value}` is a text here, not the parameter", f"write ${each.value}"
-            )
+            text = f"`{each.value}` is a text here, not the parameter"
+            yield each.place.problem(text, f"write ${each.value}")

@@ -52,9 +52,8 @@ def positive(node: Node) -> float:
     """Read a number above zero."""
     value = node.number(default=1.0)
     if value <= 0.0:
-        node.wrong(
-            f"{node.what} is {value:g}, but must be above zero", f"leave {node.what} out, or write a number"
-        )
+        text = f"{node.what} is {value:g}, but must be above zero"
+        node.wrong(text, f"leave {node.what} out, or write a number")
         return 1.0
     return value
 
@@ -122,9 +121,8 @@ def _view(node: Node) -> ViewPart:
         if "distance" in entries and ("at" in entries or "from" in entries):
             node.wrong("`distance` and `at` are alternatives", "remove one of them")
         if "distance" not in entries and "at" not in entries:
-            node.wrong(
-                "`range_of_view` needs a position", "add `at: [position.x, position.y]`, or `distance: range`"
-            )
+            text = "`range_of_view` needs a position"
+            node.wrong(text, "add `at: [position.x, position.y]`, or `distance: range`")
     return with_entries(ViewPart(place_of(node)), entries)
 
 
@@ -240,9 +238,8 @@ def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bo
         return False
     if isinstance(node.value, str) and not is_type(node.value):
         return False  # a property may have this name, and this be its topic
-    name.wrong(
-        f"`{name.value}` is used like the name of {what}", "indent it, below the name that it belongs to"
-    )
+    text = f"`{name.value}` is used like the name of {what}"
+    name.wrong(text, "indent it, below the name that it belongs to")
     return True
 
 
@@ -251,9 +248,8 @@ def _initial(node: Node, part: TopicPart) -> tuple[object, ...]:
         node.wrong("a property for each element has no initial values", "leave `initial` out")
     values = tuple(map(constant, each_of(node)))
     if part.fields is not None and len(values) != (count := sum(field.count for field in part.fields)):
-        node.wrong(
-            f"`initial` has {len(values)} values, but the property has {count}", "write one for each value"
-        )
+        text = f"`initial` has {len(values)} values, but the property has {count}"
+        node.wrong(text, "write one for each value")
     return values
 
 
@@ -284,10 +280,8 @@ def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | t
         return _each_band(fields or (), band) if own else band
     given = tuple(item.number(0.0) for item in node.sequence())
     if fields is not None and len(given) != (count := sum(field.count for field in fields)):
-        node.wrong(
-            f"`dead_band` has {len(given)} numbers, but the property has {count} values",
-            "write one number for all, or one for each value",
-        )
+        text = f"`dead_band` has {len(given)} numbers, but the property has {count} values"
+        node.wrong(text, "write one number for all, or one for each value")
     return given
 
 
@@ -355,9 +349,8 @@ def _of_transform(field: FieldPart) -> Iterator[Problem]:
     if place not in PLACES:
         yield field.place.problem(f"a transform has no `{place}`", f"it has {', '.join(PLACES)}")
     elif conversion.kind or conversion.names or field.shares is not None:
-        yield field.place.problem(
-            f"{place} of a transform is a number", "it can only have a unit, scale, offset and round"
-        )
+        text = f"{place} of a transform is a number"
+        yield field.place.problem(text, "it can only have a unit, scale, offset and round")
     elif conversion.unit and UNITS[conversion.unit].kind != (wanted := TRANSFORM[place]):
         kind, unit = UNITS[conversion.unit].kind, conversion.unit
         told = f"{place} of a transform is a {wanted}, but {unit} is a unit of {kind}"
@@ -376,9 +369,8 @@ def _field(node: Node) -> FieldPart | None:
     kind = fields[0].conversion.kind
     if kind not in ("", "atom") or fields[0].shares is not None or fields[0].otherwise is not None:
         told = "`otherwise`" if fields[0].otherwise is not None else f"`as: {kind}`" if kind else "`sample`"
-        node.wrong(
-            f"{told} is for messages", "a parameter can have: as: atom, names, unit, scale, offset, round"
-        )
+        text = f"{told} is for messages"
+        node.wrong(text, "a parameter can have: as: atom, names, unit, scale, offset, round")
     return replace(fields[0], path=WHOLE)
 
 
@@ -446,9 +438,8 @@ def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
     default = _value(node)
     limits = {key: entries[key].number() for key in ("minimum", "maximum") if key in entries}
     if limits and (isinstance(default, bool) or not isinstance(default, int | float)):
-        entries[next(iter(limits))].wrong(
-            f"only numbers have a range, but the default is {default!r}", "leave minimum and maximum out"
-        )
+        text = f"only numbers have a range, but the default is {default!r}"
+        entries[next(iter(limits))].wrong(text, "leave minimum and maximum out")
         limits = {}
     declaration = Declaration(
         default,
@@ -458,9 +449,8 @@ def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
         limits.get("maximum"),
     )
     if (fault := fault_of(default, declaration)) is not None:
-        node.wrong(
-            f"the default is outside its range: it is {fault}", "write another default, or another range"
-        )
+        text = f"the default is outside its range: it is {fault}"
+        node.wrong(text, "write another default, or another range")
     return declaration
 
 
@@ -540,9 +530,8 @@ def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
     if len(named) == 1:
         return named[0]
     if len(named) > 1:
-        entries[named[1]].wrong(
-            f"`{named[0]}` and `{named[1]}` are alternatives", "derive one name for each operator"
-        )
+        text = f"`{named[0]}` and `{named[1]}` are alternatives"
+        entries[named[1]].wrong(text, "derive one name for each operator")
     elif entries:
         first = next(iter(entries))
         fault = unknown(first)

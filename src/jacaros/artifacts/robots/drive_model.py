@@ -580,9 +580,8 @@ def read_quality(path: Path) -> DriveQuality | None:
             **{name: float(value) for name, value in json.loads(path.read_text("utf-8")).items()}
         )
     except (ValueError, TypeError, AttributeError) as error:
-        raise ValueError(
-            f"expected what an earlier run has measured, found something else: {error}"
-        ) from None
+        text = f"expected what an earlier run has measured, found something else: {error}"
+        raise ValueError(text) from None
     if not all(math.isfinite(value) and value >= 0.0 for value in asdict(quality).values()):
         raise ValueError("expected finite numbers from 0 on")
     return quality
