@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.files.texts import did_you_mean
-from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.backend import Backend, Publisher, Subscription
 from jacaros.ros.errors import RosError, ServiceUnavailable
 from jacaros.ros.graph import GraphContents, TopicInfo, latching
 from jacaros.ros.guarded import guarded_by, guards_of
@@ -51,7 +51,7 @@ class Connection:
         _watch(backend, self)
         self._look_again()
 
-    def hear(self, sample: Sample) -> None:
+    def hear(self) -> None:
         """Note that a message arrived."""
         self._heard = self._clock.elapsed
         if not self.connected:

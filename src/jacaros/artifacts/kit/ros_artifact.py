@@ -271,37 +271,20 @@ class RosArtifact(Artifact):
             qos: requested quality of service.
             on_event: called with problems of the topic; without it they are logged.
         """
-        name = self.robot_topic(topic)
-        listener = Listener(
-            self.ros.resolve(name), callback, partial(self._steps.setting.log_error, self.name)
-        )
+
+        def watched(sample: Sample) -> None:
+            connection.hear()
+            callback(sample)
+
         watch: bool | float = self.option("watch_connection", False)
-        if watch is False:
-            made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))
-        else:
+        name, complain = self.robot_topic(topic), partial(self._steps.setting.log_error, self.name)
+        listener = Listener(self.ros.resolve(name), callback if watch is False else watched, complain)
+        made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))
+        if watch is not False:
+            changed = partial(self.start, self.show_connection, made.topic)
             expire = None if watch is True else watch
-            made = self._watched(name, type_name, listener, qos, on_event, expire)
+            connection = self.kept(Connection(self.ros, self.clock, made, changed, expire))
         self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log, lambda: listener.heard))
-        return made
-
-    def _watched(
-        self,
-        name: str,
-        type_name: str,
-        listener: Listener,
-        qos: QoS,
-        on_event: Callable[[TopicEvent], None] | None,
-        expire: float | None,
-    ) -> Subscription:
-        """Subscribe, and show whether the topic is connected."""
-
-        def take(sample: Sample) -> None:
-            connection.hear(sample)
-            listener(sample)
-
-        made = self.kept(self.ros.subscription(name, type_name, take, qos, on_event))
-        changed = partial(self.start, self.show_connection, made.topic)
-        connection = self.kept(Connection(self.ros, self.clock, made, changed, expire))
         return made
 
     @internal_operation

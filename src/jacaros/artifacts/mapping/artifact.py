@@ -3,6 +3,7 @@ files: ``turtlebot.yaml``, ``fleet.yaml#arm``."""
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -22,12 +23,12 @@ from jacaros.artifacts.mapping.file import (
     shipped_mappings,
 )
 from jacaros.artifacts.mapping.frames import FrameUpdater
-from jacaros.artifacts.mapping.host import Host, TypeSearch
+from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.manual import Documentation, parameter_words
-from jacaros.artifacts.mapping.operating import Operations
+from jacaros.artifacts.mapping.operating import runners_of
 from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
-from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater
+from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater, find_types
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.ros.guarded import VELOCITIES
 
@@ -58,25 +59,26 @@ class MappedArtifact(Host):
         for each in self.part.derived:
             if each.spec is not None:
                 Derivation(self, each, each.spec)
-        search = TypeSearch(self)
-        self.operating = Operations(self)
-        topics: dict[object, TopicMultiplexer] = {}
+        self.operating = runners_of(self)
+        groups: dict[object, list[Updater]] = {}
         for part in self.part.topics:
-            updater = Updater(self, part)
             assert part.topic is not None
             key = (part.topic.text, part.type_name and part.type_name.text, part.qos)
-            if key in topics:
-                topics[key].updaters.append(updater)
+            groups.setdefault(key, []).append(Updater(self, part))
+        untyped = []
+        for updaters in groups.values():
+            topic, typed = TopicMultiplexer(self, updaters), updaters[0].part.type_name
+            if typed is not None:
+                topic.listen(typed.text)
             else:
-                topics[key] = TopicMultiplexer(self, part.topic, part.type_name, part.qos, [updater])
-        for topic in topics.values():
-            topic.begin(search)
+                untyped.append(topic)
         for frame in self.part.frames:
             self.kept(FrameUpdater(self, frame))
         for parameter in self.part.parameters:
             if parameter.declaration is None:
                 self.kept(NodeParameter(self, parameter))
-        search.begin()
+        if untyped:
+            self.start(self.run_process, partial(find_types, self, untyped))
 
     def _declare_parameters(self) -> list[OwnParameter]:
         """Declare the parameters of our own node."""
@@ -176,7 +178,7 @@ def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
 
     async def run(self: Any, *arguments: object) -> None:
         outs = [out for out in arguments[inputs:] if isinstance(out, Out)]
-        await self.operating.run(number, arguments[:inputs], outs)
+        await self.operating[number].run(arguments[:inputs], outs)
 
     names = [*part.parameters, *unlike(part.parameters, artifact.output_names(part))]
     kind = inspect.Parameter.POSITIONAL_OR_KEYWORD

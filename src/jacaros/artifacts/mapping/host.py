@@ -1,7 +1,6 @@
 """The mapped artifact, as its parts use it; and the types that a mapping omits."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import internal_operation
@@ -11,7 +10,7 @@ from jacaros.artifacts.mapping.fields import Place, Written
 from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
 from jacaros.files.yaml import Problem, shown
 from jacaros.ros.backend import TopicEvent, TopicTrouble
-from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import frame_name
 from jacaros.ros.waiting import MISSING_AFTER
@@ -135,7 +134,7 @@ class Host(RosArtifact):
         return report
 
 
-# Look up the types that a mapping omits, as soon as another node uses the topic.
+# Types that a mapping omits are looked up in the graph.
 
 LOOK = 0.5
 """Seconds between two queries of the graph."""
@@ -143,91 +142,12 @@ LOOK = 0.5
 _EXAMPLES = {"topic": "msg/Type", "service": "srv/Type", "action": "action/Type"}
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """A topic whose type is needed; *found* receives it."""
-
-    written: Written
-    name: str
-    found: Callable[[str], None]
-
-
 def type_in(contents: GraphContents, kind: str, name: str) -> str:
     """Return the type of a topic, service or action by its absolute name; empty if it does not exist."""
-    if kind == "service":
-        return contents.services.get(name, "")
-    if kind == "action":
-        return contents.actions.get(name, "")
-    topic = contents.topics.get(name)
-    return topic.types[0] if topic is not None and topic.types else ""
-
-
-class TypeSearch:
-    """Query the graph until all types are known.
-
-    Args:
-        host: the artifact.
-    """
-
-    def __init__(self, host: Host) -> None:
-        self._host = host
-        self._wanted: list[Wanted] = []
-
-    def want(self, written: Written, found: Callable[[str], None]) -> None:
-        """Call *found* with the type of a topic when it is known."""
-        name = self._host.ros.resolve(self._host.robot_topic(written.text))
-        self._wanted.append(Wanted(written, name, found))
-
-    def begin(self) -> None:
-        """Query until everything is known; a process of the artifact."""
-        if self._wanted:
-            self._host.start(self._host.run_process, self._search)
-
-    async def _search(self) -> None:
-        host, began = self._host, self._host.clock.elapsed
-        told, missed = False, False
-        while self._wanted:
-            contents = await self._contents()
-            if contents is None:
-                return
-            self._take(contents)
-            if self._wanted and not told:
-                told = True
-                for each in self._wanted:
-                    host.log(f"waiting for topic {each.name}, to find its type")
-            if self._wanted and not missed and host.clock.elapsed - began >= MISSING_AFTER:
-                missed = True
-                for each in self._wanted:
-                    self._miss(each)
-            if self._wanted:
-                await host.sleep(LOOK)
-
-    async def _contents(self) -> GraphContents | None:
-        """Return the contents of the graph; empty while it cannot be queried, None if it never can."""
-        try:
-            return await self._host.step(self._host.ros.contents())
-        except CapabilityMissing as error:
-            for each in self._wanted:
-                self._host.report_once(
-                    each, each.written.place, str(error), "write the type: type: package/msg/Type"
-                )
-            return None
-        except RosError:
-            return GraphContents()
-
-    def _take(self, contents: GraphContents) -> None:
-        for each in list(self._wanted):
-            if found := type_in(contents, "topic", each.name):
-                self._wanted.remove(each)
-                each.found(found)
-
-    def _miss(self, wanted: Wanted) -> None:
-        self._host.report_once(
-            wanted,
-            wanted.written.place,
-            f"no node uses topic {wanted.name}, so its type is unknown; still waiting",
-            "start the node that publishes it, or write its type: type: package/msg/Type",
-        )
+    if kind == "topic":
+        topic = contents.topics.get(name)
+        return topic.types[0] if topic is not None and topic.types else ""
+    return (contents.services if kind == "service" else contents.actions).get(name, "")
 
 
 async def ask_type(host: Host, kind: str, written: Written) -> str:

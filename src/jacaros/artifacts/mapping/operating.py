@@ -30,31 +30,6 @@ from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.qos import DEFAULT_QOS
 
 
-class Operations:
-    """The operations of one artifact.
-
-    Args:
-        host: the artifact.
-    """
-
-    def __init__(self, host: Host) -> None:
-        parts = host.part.operations
-        self._runners = [_RUNNERS[part.kind](host, part) for part in parts]
-        plain = {
-            part.name: runner
-            for part, runner in zip(parts, self._runners, strict=True)
-            if host.part.arity(part) == 0
-        }
-        for part, runner in zip(parts, self._runners, strict=True):
-            if isinstance(runner, _ActionOperation) and part.suspend == "pause":
-                # The reader has checked that these operations are of the right kind.
-                runner.switches = (plain[part.pause.text], plain[part.resume.text])
-
-    async def run(self, number: int, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Run the operation with this index in the file."""
-        await self._runners[number].run(inputs, outs)
-
-
 class _Operation:
     """An operation with a message, whose type may have to be looked up in the graph."""
 
@@ -451,3 +426,16 @@ _RUNNERS: dict[OperationKind, Any] = {
     OperationKind.REFRESH: _RequestOperation,
     OperationKind.READ: _RequestOperation,
 }
+
+
+def runners_of(host: Host) -> list[Any]:
+    """Return what runs the operations of an artifact, in the order of the file."""
+    parts = host.part.operations
+    runners = [_RUNNERS[part.kind](host, part) for part in parts]
+    pairs = list(zip(parts, runners, strict=True))
+    plain = {part.name: runner for part, runner in pairs if host.part.arity(part) == 0}
+    for part, runner in pairs:
+        if part.kind is OperationKind.ACTION and part.suspend == "pause":
+            # The reader has checked that these operations are of the right kind.
+            runner.switches = (plain[part.pause.text], plain[part.resume.text])
+    return runners

@@ -12,14 +12,15 @@ from jacaros.artifacts.kit.faults import Faults, Stamps
 from jacaros.artifacts.kit.reading import Outlet, RangeOfView, Reading
 from jacaros.artifacts.mapping.decoding import Extract, Row, Unshowable, extractor, perceived
 from jacaros.artifacts.mapping.deriving import stamp_of
-from jacaros.artifacts.mapping.fields import Written
-from jacaros.artifacts.mapping.host import Host, TypeSearch
+from jacaros.artifacts.mapping.host import LOOK, Host, type_in
 from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Sample, Subscription
-from jacaros.ros.errors import CapabilityMissing
+from jacaros.ros.errors import CapabilityMissing, RosError
+from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import to_seconds
-from jacaros.ros.qos import SENSOR_DATA, STATE, QoS
+from jacaros.ros.qos import SENSOR_DATA, STATE
+from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Timer
 from jacaros.runtime.trace import Cause
 
@@ -29,51 +30,39 @@ class TopicMultiplexer:
 
     Args:
         host: the artifact.
+        updaters: receive the messages; they have the same topic, type and quality of service.
+
+    Attributes:
         written: the topic.
-        type_name: message type; None: found at run time.
-        qos: the quality of service in the mapping; None: that of a sensor, and a property also receives stored
-            messages.
-        updaters: receive the messages.
+        name: its absolute name.
     """
 
-    def __init__(
-        self,
-        host: Host,
-        written: Written,
-        type_name: Written | None,
-        qos: QoS | None,
-        updaters: "list[Updater]",
-    ) -> None:
-        self.updaters = updaters
-        self._host, self._written, self._type_name = host, written, type_name
-        self._qos = qos
+    def __init__(self, host: Host, updaters: "list[Updater]") -> None:
+        topic = updaters[0].part.topic
+        assert topic is not None
+        self.written, self.name = topic, host.ros.resolve(host.robot_topic(topic.text))
+        self._host, self._updaters = host, updaters
         self._stamps: Stamps | None = None
         self._subscription: Subscription | None = None
 
-    def begin(self, search: TypeSearch) -> None:
-        """Subscribe as soon as the type is known."""
-        if self._type_name is not None:
-            self._listen(self._type_name.text)
-        else:
-            search.want(self._written, self._listen)
-
-    def _listen(self, type_name: str) -> None:
-        host, written = self._host, self._written
+    def listen(self, type_name: str) -> None:
+        """Subscribe. Without a quality of service in the mapping it is that of a sensor; a property also receives
+        stored messages."""
+        host, written = self._host, self.written
         problems: list[Problem] = []
-        for updater in self.updaters:
+        for updater in self._updaters:
             updater.prepare(type_name, problems)
         if problems:
             host.report(problems)
-        self.updaters = [updater for updater in self.updaters if updater.ready]
-        if not self.updaters:
+        self._updaters = [updater for updater in self._updaters if updater.ready]
+        if not self._updaters:
             return
-        if "header" in host.ros.fields(type_name) and any(updater.is_state for updater in self.updaters):
-            topic = host.ros.resolve(host.robot_topic(written.text))
-            self._stamps = Stamps(host.faults_at(topic), host.clock)
+        if "header" in host.ros.fields(type_name) and any(updater.is_state for updater in self._updaters):
+            self._stamps = Stamps(host.faults_at(self.name), host.clock)
         report = host.on_topic_event(written.text, written.place)
         try:
-            states = any(not updater.part.signal for updater in self.updaters)
-            qos = self._qos or (STATE if states else SENSOR_DATA)
+            states = any(not updater.part.signal for updater in self._updaters)
+            qos = self._updaters[0].part.qos or (STATE if states else SENSOR_DATA)
             self._subscription = host.subscription(written.text, type_name, self._take, qos, report)
         except CapabilityMissing as error:
             host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
@@ -85,9 +74,41 @@ class TopicMultiplexer:
         old = (
             not latched and stamps is not None and not stamps.accept(_stamp_of(sample.message), sample.stamp)
         )
-        for updater in self.updaters:
+        for updater in self._updaters:
             if not (old and updater.is_state):
                 updater.take(sample, latched)
+
+
+async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
+    """Query the graph until the types of *topics* are known, and subscribe to them; a process of the artifact."""
+    began, told, missed = host.clock.elapsed, False, False
+    while topics:
+        try:
+            contents = await host.step(host.ros.contents())
+        except CapabilityMissing as error:
+            for each in topics:
+                help = "write the type: type: package/msg/Type"
+                host.report_once(each, each.written.place, str(error), help)
+            return
+        except RosError:
+            contents = GraphContents()
+        for each in list(topics):
+            if found := type_in(contents, "topic", each.name):
+                topics.remove(each)
+                each.listen(found)
+        if not topics:
+            return
+        if not told:
+            for each in topics:
+                host.log(f"waiting for topic {each.name}, to find its type")
+        late = host.clock.elapsed - began >= MISSING_AFTER
+        if late and not missed:
+            for each in topics:
+                text = f"no node uses topic {each.name}, so its type is unknown; still waiting"
+                help = "start the node that publishes it, or write its type: type: package/msg/Type"
+                host.report_once(each, each.written.place, text, help)
+        told, missed = True, missed or late
+        await host.sleep(LOOK)
 
 
 def _stamp_of(message: Any) -> float:
