@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.robots.sensors import ArtBaseScan, ArtScan, sampled
@@ -32,62 +32,48 @@ def test_an_echo_too_near_to_be_measured_is_the_least_range() -> None:
         assert sampled(ranges, 8.0, unknown) == (0, 1, 8, 1, 0)
 
 
-def test_scans_of_any_size_are_shown() -> None:
+async def test_scans_of_any_size_are_shown(lab: Lab) -> None:
     """The original took 1081 beams for granted, and 50000 for no echo."""
-
-    async def body(lab: Lab) -> None:
-        watcher = lab.watch(await lab.make(ArtBaseScan))
-        assert watcher.holds("laserrange") == [(0, 0, 0, 0, 0)]
-        scan(lab, [1, 2, math.inf, 4, 5])
-        await lab.sleep(0.1)
-        assert watcher.holds("laserrange") == [(1, 2, 8, 4, 5)]
-        scan(lab, [])
-        scan(lab, [1, 2, math.inf, 4, 5])
-        await lab.sleep(0.1)
-        assert len(watcher.values("laserrange")) == 2
-
-    in_lab(body, None)
+    watcher = lab.watch(await lab.make(ArtBaseScan))
+    assert watcher.holds("laserrange") == [(0, 0, 0, 0, 0)]
+    scan(lab, [1, 2, math.inf, 4, 5])
+    await lab.sleep(0.1)
+    assert watcher.holds("laserrange") == [(1, 2, 8, 4, 5)]
+    scan(lab, [])
+    scan(lab, [1, 2, math.inf, 4, 5])
+    await lab.sleep(0.1)
+    assert len(watcher.values("laserrange")) == 2
 
 
-def test_the_range_of_no_echo_is_an_option() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtScan, Structure("max", (50000,)), {"topic": "base_scan"})
-        watcher = lab.watch(artifact)
-        scan(lab, [math.nan] * 5, "/base_scan")
-        await lab.sleep(0.1)
-        assert watcher.holds("laserrange") == [(50000,) * 5]
-
-    in_lab(body, None)
+async def test_the_range_of_no_echo_is_an_option(lab: Lab) -> None:
+    artifact = await lab.make(ArtScan, Structure("max", (50000,)), {"topic": "base_scan"})
+    watcher = lab.watch(artifact)
+    scan(lab, [math.nan] * 5, "/base_scan")
+    await lab.sleep(0.1)
+    assert watcher.holds("laserrange") == [(50000,) * 5]
 
 
-def test_the_scan_of_the_world_is_seen_and_given_on_request() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtBaseScan, Structure("mode", ("on_demand",)))
-        watcher = lab.watch(artifact)
-        outs = [Out() for _ in range(5)]
-        await lab.do(artifact, "getCurrentBaseScan", *outs)
-        assert all(0.1 < float(str(out.value)) <= 10 for out in outs)
-        assert len(watcher.changes) == 2, "the values before the first scan"
-        await lab.do(artifact, "getCurrentBaseScan")
-        assert watcher.holds("laserrange") == [pytest.approx(tuple(out.value for out in outs))]
-        assert watcher.holds("base_scan") == watcher.holds("laserrange"), "its name in the original system"
-
-    in_lab(body, "house")
+@pytest.mark.world("house")
+async def test_the_scan_of_the_world_is_seen_and_given_on_request(lab: Lab) -> None:
+    artifact = await lab.make(ArtBaseScan, Structure("mode", ("on_demand",)))
+    watcher = lab.watch(artifact)
+    outs = [Out() for _ in range(5)]
+    await lab.do(artifact, "getCurrentBaseScan", *outs)
+    assert all(0.1 < float(str(out.value)) <= 10 for out in outs)
+    assert len(watcher.changes) == 2, "the values before the first scan"
+    await lab.do(artifact, "getCurrentBaseScan")
+    assert watcher.holds("laserrange") == [pytest.approx(tuple(out.value for out in outs))]
+    assert watcher.holds("base_scan") == watcher.holds("laserrange"), "its name in the original system"
 
 
-def test_a_missing_scan_fails_as_no_scan() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtBaseScan)
-        assert (await lab.call(artifact, "getCurrentBaseScan")).reason == "no_scan(5)"
-
-    in_lab(body, None)
+async def test_a_missing_scan_fails_as_no_scan(lab: Lab) -> None:
+    artifact = await lab.make(ArtBaseScan)
+    assert (await lab.call(artifact, "getCurrentBaseScan")).reason == "no_scan(5)"
 
 
-def test_the_artifact_of_the_thesis_has_the_property_of_the_thesis_only() -> None:
-    async def body(lab: Lab) -> None:
-        watcher = lab.watch(await lab.make(ArtScan))
-        await lab.sleep(1.0)
-        assert watcher.holds("laserrange")
-        assert not watcher.holds("base_scan")
-
-    in_lab(body, "house")
+@pytest.mark.world("house")
+async def test_the_artifact_of_the_thesis_has_the_property_of_the_thesis_only(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtScan))
+    await lab.sleep(1.0)
+    assert watcher.holds("laserrange")
+    assert not watcher.holds("base_scan")

@@ -4,7 +4,8 @@ import asyncio
 import math
 from typing import Any
 
-from robot_lab import Lab, in_lab
+import pytest
+from robot_lab import Lab
 
 from jacaros.artifacts import Environment, Out, Structure
 from jacaros.artifacts.registry import find_type
@@ -26,129 +27,112 @@ def test_it_is_found_under_its_names() -> None:
     assert find_type("ArtRos") is find_type("jacaros.ArtRos") is ArtRos
 
 
-def test_it_shows_the_connection() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtRos)
-        watcher = lab.watch(artifact)
-        assert watcher.holds("middleware") == [("memory",)]
-        assert watcher.holds("node") == [("/lab",)]
-        assert watcher.holds("connected") == [()]
-        backend: Any = lab.backend
-        backend.set_connected(False)
-        await lab.sleep(0.1)
-        assert watcher.holds("connected") == []
-        backend.set_connected(True)
-        await lab.sleep(0.1)
-        assert watcher.holds("connected") == [()]
-
-    in_lab(body, None)
+async def test_it_shows_the_connection(lab: Lab) -> None:
+    artifact = await lab.make(ArtRos)
+    watcher = lab.watch(artifact)
+    assert watcher.holds("middleware") == [("memory",)]
+    assert watcher.holds("node") == [("/lab",)]
+    assert watcher.holds("connected") == [()]
+    backend: Any = lab.backend
+    backend.set_connected(False)
+    await lab.sleep(0.1)
+    assert watcher.holds("connected") == []
+    backend.set_connected(True)
+    await lab.sleep(0.1)
+    assert watcher.holds("connected") == [()]
 
 
-def test_parameters_of_nodes_are_read_and_written() -> None:
-    async def body(lab: Lab) -> None:
-        node = await other_node(lab, "controller")
-        own = node.parameters()
-        own.declare("speed", Declaration(0.5, maximum=1.0))
-        own.declare("name", Declaration("bob"))
-        own.declare("places", Declaration([1.0, 2.0]))
-        artifact = await lab.make(ArtRos)
-        speed, names, places = Out(), Out(), Out()
-        await lab.do(artifact, "get_parameter", "controller", "speed", speed)
-        await lab.do(artifact, "list_parameters", "/controller", names)
-        assert speed.value == 0.5
-        assert [each for each in names.value if each in ("name", "places", "speed")] == [
-            "name",
-            "places",
-            "speed",
-        ]
-        await lab.do(artifact, "set_parameter", "controller", "speed", 1)
-        assert await own.get("speed") == 1.0
-        assert isinstance(await own.get("speed"), float)
-        await lab.do(artifact, "set_parameter", "controller", "places", [3, 4.5])
-        await lab.do(artifact, "get_parameter", "controller", "places", places)
-        assert places.value == [3.0, 4.5]
-        refused = await lab.call(artifact, "set_parameter", "controller", "speed", 7.5)
-        assert refused.reason == 'parameter_refused("speed")'
-        strange = await lab.call(artifact, "set_parameter", "controller", "speed", [[1], "a"])
-        assert strange.reason == 'parameter_refused("speed")'
-        unknown = await lab.call(artifact, "get_parameter", "controller", "sped", Out())
-        assert unknown.reason == 'parameter_unknown("sped")'
-        await node.close()
-
-    in_lab(body, None)
+async def test_parameters_of_nodes_are_read_and_written(lab: Lab) -> None:
+    node = await other_node(lab, "controller")
+    own = node.parameters()
+    own.declare("speed", Declaration(0.5, maximum=1.0))
+    own.declare("name", Declaration("bob"))
+    own.declare("places", Declaration([1.0, 2.0]))
+    artifact = await lab.make(ArtRos)
+    speed, names, places = Out(), Out(), Out()
+    await lab.do(artifact, "get_parameter", "controller", "speed", speed)
+    await lab.do(artifact, "list_parameters", "/controller", names)
+    assert speed.value == 0.5
+    assert [each for each in names.value if each in ("name", "places", "speed")] == [
+        "name",
+        "places",
+        "speed",
+    ]
+    await lab.do(artifact, "set_parameter", "controller", "speed", 1)
+    assert await own.get("speed") == 1.0
+    assert isinstance(await own.get("speed"), float)
+    await lab.do(artifact, "set_parameter", "controller", "places", [3, 4.5])
+    await lab.do(artifact, "get_parameter", "controller", "places", places)
+    assert places.value == [3.0, 4.5]
+    refused = await lab.call(artifact, "set_parameter", "controller", "speed", 7.5)
+    assert refused.reason == 'parameter_refused("speed")'
+    strange = await lab.call(artifact, "set_parameter", "controller", "speed", [[1], "a"])
+    assert strange.reason == 'parameter_refused("speed")'
+    unknown = await lab.call(artifact, "get_parameter", "controller", "sped", Out())
+    assert unknown.reason == 'parameter_unknown("sped")'
+    await node.close()
 
 
-def test_a_node_that_is_not_there_fails_in_time() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtRos, Structure("timeout", (2,)))
-        before = lab.clock.elapsed
-        absent = await lab.call(artifact, "get_parameter", "nobody", "speed", Out())
-        assert absent.reason == 'service_unavailable("nobody")'
-        assert math.isclose(lab.clock.elapsed - before, 2.0, abs_tol=0.2)
-
-    in_lab(body, None)
+async def test_a_node_that_is_not_there_fails_in_time(lab: Lab) -> None:
+    artifact = await lab.make(ArtRos, Structure("timeout", (2,)))
+    before = lab.clock.elapsed
+    absent = await lab.call(artifact, "get_parameter", "nobody", "speed", Out())
+    assert absent.reason == 'service_unavailable("nobody")'
+    assert math.isclose(lab.clock.elapsed - before, 2.0, abs_tol=0.2)
 
 
-def test_the_graph_is_listed() -> None:
-    async def body(lab: Lab) -> None:
-        node = await other_node(lab, "helper")
-        node.service("/reset", "std_srvs/srv/Trigger", lambda request: {"success": True})
-        artifact = await lab.make(ArtRos)
-        topics, services, actions, nodes = Out(), Out(), Out(), Out()
-        await lab.do(artifact, "list_topics", topics)
-        await lab.do(artifact, "list_services", services)
-        await lab.do(artifact, "list_actions", actions)
-        await lab.do(artifact, "list_nodes", nodes)
-        assert Structure("topic", ("/odom", "nav_msgs/msg/Odometry")) in topics.value
-        assert Structure("service", ("/reset", "std_srvs/srv/Trigger")) in services.value
-        assert isinstance(actions.value, list)
-        assert "/helper" in nodes.value
-        await node.close()
-
-    in_lab(body)
+@pytest.mark.world("empty")
+async def test_the_graph_is_listed(lab: Lab) -> None:
+    node = await other_node(lab, "helper")
+    node.service("/reset", "std_srvs/srv/Trigger", lambda request: {"success": True})
+    artifact = await lab.make(ArtRos)
+    topics, services, actions, nodes = Out(), Out(), Out(), Out()
+    await lab.do(artifact, "list_topics", topics)
+    await lab.do(artifact, "list_services", services)
+    await lab.do(artifact, "list_actions", actions)
+    await lab.do(artifact, "list_nodes", nodes)
+    assert Structure("topic", ("/odom", "nav_msgs/msg/Odometry")) in topics.value
+    assert Structure("service", ("/reset", "std_srvs/srv/Trigger")) in services.value
+    assert isinstance(actions.value, list)
+    assert "/helper" in nodes.value
+    await node.close()
 
 
-def test_frames_are_looked_up_in_metres_and_degrees() -> None:
-    async def body(lab: Lab) -> None:
-        node = await other_node(lab, "frames")
-        half = math.sin(math.pi / 4)
-        node.tf_broadcast(
-            {
-                "header": {"frame_id": "map", "stamp": lab.clock.now()},
-                "child_frame_id": "shelf",
-                "transform": {
-                    "translation": {"x": 1.0, "y": -2.0, "z": 0.0},
-                    "rotation": {"z": half, "w": half},
-                },
+async def test_frames_are_looked_up_in_metres_and_degrees(lab: Lab) -> None:
+    node = await other_node(lab, "frames")
+    half = math.sin(math.pi / 4)
+    node.tf_broadcast(
+        {
+            "header": {"frame_id": "map", "stamp": lab.clock.now()},
+            "child_frame_id": "shelf",
+            "transform": {
+                "translation": {"x": 1.0, "y": -2.0, "z": 0.0},
+                "rotation": {"z": half, "w": half},
             },
-            static=True,
-        )
-        artifact = await lab.make(ArtRos, Structure("timeout", (1,)))
-        x, y, yaw = Out(), Out(), Out()
-        await lab.do(artifact, "lookup_transform", "map", "shelf", x, y, yaw)
-        assert (x.value, y.value) == (1.0, -2.0)
-        assert math.isclose(yaw.value, 90.0)
-        missing = await lab.call(artifact, "lookup_transform", "map", "shelv", Out(), Out(), Out())
-        assert missing.reason == "transform_unavailable(unknown_frame)"
-        await node.close()
+        },
+        static=True,
+    )
+    artifact = await lab.make(ArtRos, Structure("timeout", (1,)))
+    x, y, yaw = Out(), Out(), Out()
+    await lab.do(artifact, "lookup_transform", "map", "shelf", x, y, yaw)
+    assert (x.value, y.value) == (1.0, -2.0)
+    assert math.isclose(yaw.value, 90.0)
+    missing = await lab.call(artifact, "lookup_transform", "map", "shelv", Out(), Out(), Out())
+    assert missing.reason == "transform_unavailable(unknown_frame)"
+    await node.close()
 
-    in_lab(body, None)
 
-
-def test_lines_go_to_the_graphs_log() -> None:
-    async def body(lab: Lab) -> None:
-        heard: list[Any] = []
-        node = await other_node(lab, "monitor")
-        node.subscription("/rosout", "rcl_interfaces/msg/Log", lambda sample: heard.append(sample.message))
-        artifact = await lab.make(ArtRos)
-        await lab.do(artifact, "rosout", "warn", "the shelf is empty")
-        await lab.sleep(0.1)
-        assert [(each.name.strip("/"), each.msg) for each in heard] == [("lab", "the shelf is empty")]
-        wrong = await lab.call(artifact, "rosout", "loud", "hello")
-        assert wrong.reason == 'unknown_level("loud")'
-        await node.close()
-
-    in_lab(body, None)
+async def test_lines_go_to_the_graphs_log(lab: Lab) -> None:
+    heard: list[Any] = []
+    node = await other_node(lab, "monitor")
+    node.subscription("/rosout", "rcl_interfaces/msg/Log", lambda sample: heard.append(sample.message))
+    artifact = await lab.make(ArtRos)
+    await lab.do(artifact, "rosout", "warn", "the shelf is empty")
+    await lab.sleep(0.1)
+    assert [(each.name.strip("/"), each.msg) for each in heard] == [("lab", "the shelf is empty")]
+    wrong = await lab.call(artifact, "rosout", "loud", "hello")
+    assert wrong.reason == 'unknown_level("loud")'
+    await node.close()
 
 
 def test_a_jump_of_the_simulators_time_is_a_signal() -> None:

@@ -1,6 +1,6 @@
 """Parameters that an artifact declares: others set them, and they go with it."""
 
-from robot_lab import Lab, in_lab
+from robot_lab import Lab
 
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.ros.parameter import Declaration
@@ -13,13 +13,10 @@ class Speedy(RosArtifact):
         self.define_property("speed", self.declared_parameter("speed", Declaration(0.5, read_only=True)))
 
 
-def test_a_declared_parameter_goes_with_its_artifact() -> None:
-    async def body(lab: Lab) -> None:
-        before = await lab.backend.parameters().names()
-        for _ in range(2):
-            artifact = await lab.make(Speedy)
-            assert await lab.backend.parameters().get("speed") == 0.5
-            lab.workspace.dispose_artifact(artifact)
-            assert await lab.backend.parameters().names() == before
-
-    in_lab(body, None)
+async def test_a_declared_parameter_goes_with_its_artifact(lab: Lab) -> None:
+    before = await lab.backend.parameters().names()
+    for _ in range(2):
+        artifact = await lab.make(Speedy)
+        assert await lab.backend.parameters().get("speed") == 0.5
+        lab.workspace.dispose_artifact(artifact)
+        assert await lab.backend.parameters().names() == before

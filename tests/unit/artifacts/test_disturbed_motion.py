@@ -3,11 +3,13 @@
 from typing import Any
 
 import pytest
-from robot_lab import STANDSTILL, Lab, assert_at, in_lab
+from robot_lab import STANDSTILL, Lab, assert_at
 
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
+
+pytestmark = pytest.mark.world("empty")
 
 
 def disturb(lab: Lab, topic: str, disturbance: Disturbance) -> None:
@@ -26,42 +28,33 @@ def disturb(lab: Lab, topic: str, disturbance: Disturbance) -> None:
     ],
     ids=["delayed", "overtaking", "repeated", "lost", "all of it"],
 )
-def test_a_square_is_driven_with_bad_odometry(disturbance: Disturbance) -> None:
-    async def body(lab: Lab) -> None:
-        disturb(lab, "/odom", disturbance)
-        artifact = await lab.make(ArtCmdVel)
-        for _ in range(4):
-            await lab.do(artifact, "moveForward", 1)
-            await lab.do(artifact, "rotate", 90)
-        assert_at(lab, 0, 0, 0, metres=0.06, degrees=3)
-
-    in_lab(body)
+async def test_a_square_is_driven_with_bad_odometry(lab: Lab, disturbance: Disturbance) -> None:
+    disturb(lab, "/odom", disturbance)
+    artifact = await lab.make(ArtCmdVel)
+    for _ in range(4):
+        await lab.do(artifact, "moveForward", 1)
+        await lab.do(artifact, "rotate", 90)
+    assert_at(lab, 0, 0, 0, metres=0.06, degrees=3)
 
 
-def test_positions_that_overtake_each_other_are_never_shown_backwards() -> None:
-    async def body(lab: Lab) -> None:
-        disturb(lab, "/odom", delayed(0.0, jitter=0.2, seed=5))
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        artifact = await lab.make(ArtCmdVel)
-        await lab.do(artifact, "moveForward", 2)
-        shown = [float(str(x)) for x, _, _ in watcher.values("odom")]
-        there = shown.index(max(shown))  # from there on it makes up for what it has driven too far
-        assert there > 20
-        assert shown[: there + 1] == sorted(shown[: there + 1])
-
-    in_lab(body)
+async def test_positions_that_overtake_each_other_are_never_shown_backwards(lab: Lab) -> None:
+    disturb(lab, "/odom", delayed(0.0, jitter=0.2, seed=5))
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    artifact = await lab.make(ArtCmdVel)
+    await lab.do(artifact, "moveForward", 2)
+    shown = [float(str(x)) for x, _, _ in watcher.values("odom")]
+    there = shown.index(max(shown))  # from there on it makes up for what it has driven too far
+    assert there > 20
+    assert shown[: there + 1] == sorted(shown[: there + 1])
 
 
-def test_odometry_that_is_lost_for_good_stops_the_robot() -> None:
-    async def body(lab: Lab) -> None:
-        lab.record()
-        artifact = await lab.make(ArtCmdVel)
-        moving = lab.begin(artifact, "moveForward", 5)
-        await lab.sleep(2)
-        disturb(lab, "/odom", dropped())
-        await moving.done
-        assert moving.reason == "no_odometry(5)"
-        assert lab.last_command == STANDSTILL
-        assert lab.speed() == (0.0, 0.0)
-
-    in_lab(body)
+async def test_odometry_that_is_lost_for_good_stops_the_robot(lab: Lab) -> None:
+    lab.record()
+    artifact = await lab.make(ArtCmdVel)
+    moving = lab.begin(artifact, "moveForward", 5)
+    await lab.sleep(2)
+    disturb(lab, "/odom", dropped())
+    await moving.done
+    assert moving.reason == "no_odometry(5)"
+    assert lab.last_command == STANDSTILL
+    assert lab.speed() == (0.0, 0.0)

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from robot_lab import STANDSTILL, Lab, Watcher, in_lab
+from robot_lab import STANDSTILL, Lab, Watcher
 
 from jacaros.artifacts import Atom, Structure
 from jacaros.artifacts.kit.faults import FAR, SILENCE, Faults, Stamps
@@ -65,61 +65,49 @@ def test_bad_messages_are_reported_on_the_1st_10th_and_100th_occurrence() -> Non
 
 
 @pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
-def test_a_number_that_is_not_finite_is_reported_and_not_shown(number: float) -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        artifact = await lab.make(ArtOdometry)
-        watcher = lab.watch(artifact)
-        await robot.say(1)
-        await robot.say(number)
-        await robot.say(2, w=number)
-        await robot.say(3)
-        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
-        assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
-        assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
-        assert lab.logged == [f"[{artifact.name}] /odom: pose.pose.position.x is {number}; message dropped"]
-
-    in_lab(body, None)
+async def test_a_number_that_is_not_finite_is_reported_and_not_shown(lab: Lab, number: float) -> None:
+    robot = Robot(lab)
+    artifact = await lab.make(ArtOdometry)
+    watcher = lab.watch(artifact)
+    await robot.say(1)
+    await robot.say(number)
+    await robot.say(2, w=number)
+    await robot.say(3)
+    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
+    assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
+    assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
+    assert lab.logged == [f"[{artifact.name}] /odom: pose.pose.position.x is {number}; message dropped"]
 
 
-def test_older_odometry_is_dropped_and_repeated_odometry_is_ignored() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        await robot.say(1)
-        await robot.say(2)
-        await robot.say(1, stamp=-0.5)
-        await robot.say(2, stamp=-0.04)
-        await robot.say(3)
-        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]
-        assert whys(watcher) == ["out_of_order(0.48)"]
-
-    in_lab(body, None)
+async def test_older_odometry_is_dropped_and_repeated_odometry_is_ignored(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await robot.say(1)
+    await robot.say(2)
+    await robot.say(1, stamp=-0.5)
+    await robot.say(2, stamp=-0.04)
+    await robot.say(3)
+    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]
+    assert whys(watcher) == ["out_of_order(0.48)"]
 
 
-def test_a_clock_that_jumped_back_is_believed_after_a_few_messages() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        await robot.say(1)
-        for x in (2, 3, 4, 5):
-            await robot.say(x, stamp=-5)
-        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (4, 0, 0), (5, 0, 0)]
-        assert whys(watcher) == ["out_of_order(4.98)", "clock_jumped(4.94)"]
-
-    in_lab(body, None)
+async def test_a_clock_that_jumped_back_is_believed_after_a_few_messages(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await robot.say(1)
+    for x in (2, 3, 4, 5):
+        await robot.say(x, stamp=-5)
+    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (4, 0, 0), (5, 0, 0)]
+    assert whys(watcher) == ["out_of_order(4.98)", "clock_jumped(4.94)"]
 
 
-def test_late_messages_between_good_ones_are_not_a_jump() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        for x in range(1, 9):
-            await robot.say(x)
-            await robot.say(-x, stamp=-1)
-        assert watcher.values("odom") == [(x, 0, 0) for x in range(9)]
-
-    in_lab(body, None)
+async def test_late_messages_between_good_ones_are_not_a_jump(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    for x in range(1, 9):
+        await robot.say(x)
+        await robot.say(-x, stamp=-1)
+    assert watcher.values("odom") == [(x, 0, 0) for x in range(9)]
 
 
 def judged(*messages: tuple[float, float]) -> tuple[list[str], list[float]]:
@@ -169,18 +157,15 @@ def test_a_constant_stamp_is_ignored() -> None:
     assert judged(*[(float(n), 100.0) for n in range(10)]) == ([], [0.0] * 10)
 
 
-def test_a_stamp_far_off_our_clock_is_used_and_reported() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        await robot.say(1, stamp=None)
-        await robot.say(2, stamp=-1000)
-        await robot.say(3, stamp=FAR - 1)
-        assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
-        assert whys(watcher) == ["stamp_off(-1000)"]
-        assert "use_sim_time" in lab.logged[0]
-
-    in_lab(body, None)
+async def test_a_stamp_far_off_our_clock_is_used_and_reported(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await robot.say(1, stamp=None)
+    await robot.say(2, stamp=-1000)
+    await robot.say(3, stamp=FAR - 1)
+    assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
+    assert whys(watcher) == ["stamp_off(-1000)"]
+    assert "use_sim_time" in lab.logged[0]
 
 
 def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
@@ -193,73 +178,61 @@ def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
     assert told == ["stamp_off(1700000000)"]
 
 
-def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        await robot.say(1)
-        await robot.say(50, frame="map")
-        await robot.say(2, frame="/odom")
-        await robot.say(3, frame="")
-        assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
-        assert whys(watcher) == ["wrong_frame(map)"]
-        await lab.sleep(SILENCE)
-        await robot.say(50, frame="map")
-        assert watcher.holds("odom") == [(50, 0, 0)]
-
-    in_lab(body, None)
+async def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await robot.say(1)
+    await robot.say(50, frame="map")
+    await robot.say(2, frame="/odom")
+    await robot.say(3, frame="")
+    assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
+    assert whys(watcher) == ["wrong_frame(map)"]
+    await lab.sleep(SILENCE)
+    await robot.say(50, frame="map")
+    assert watcher.holds("odom") == [(50, 0, 0)]
 
 
-def test_a_frame_that_is_asked_for_is_the_only_one() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry, Structure("frame", (Atom("odom"),))))
-        await robot.say(50, frame="map")
-        await lab.sleep(SILENCE)
-        await robot.say(50, frame="map")
-        await robot.say(1, frame="odom")
-        assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0)]
-
-    in_lab(body, None)
+async def test_a_frame_that_is_asked_for_is_the_only_one(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry, Structure("frame", (Atom("odom"),))))
+    await robot.say(50, frame="map")
+    await lab.sleep(SILENCE)
+    await robot.say(50, frame="map")
+    await robot.say(1, frame="odom")
+    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0)]
 
 
-def test_a_scan_without_a_range_and_a_battery_without_a_number_are_reported() -> None:
-    async def body(lab: Lab) -> None:
-        scanner = lab.watch(await lab.make(ArtBaseScan))
-        battery = lab.watch(await lab.make(ArtSimBattery, Structure("source", (Atom("robot"),))))
-        scans = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
-        scans.publish(scans.message(ranges=[1.0, math.inf, 1.0], range_max=math.inf))
-        charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
-        charges.publish(charges.message(percentage=math.nan))
-        await lab.sleep(0.1)
-        assert scanner.values("laserrange") == [(0, 0, 0, 0, 0)]
-        assert [(name, *map(str, told)) for name, told in scanner.signals] == [
-            ("bad_message", "/scan", 'not_finite("laserrange")')
-        ]
-        assert battery.holds("battery") == []
-        assert [(name, *map(str, told)) for name, told in battery.signals] == [
-            ("bad_message", "/battery_state", 'not_finite("percentage")')
-        ]
-
-    in_lab(body, None)
+async def test_a_scan_without_a_range_and_a_battery_without_a_number_are_reported(lab: Lab) -> None:
+    scanner = lab.watch(await lab.make(ArtBaseScan))
+    battery = lab.watch(await lab.make(ArtSimBattery, Structure("source", (Atom("robot"),))))
+    scans = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
+    scans.publish(scans.message(ranges=[1.0, math.inf, 1.0], range_max=math.inf))
+    charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+    charges.publish(charges.message(percentage=math.nan))
+    await lab.sleep(0.1)
+    assert scanner.values("laserrange") == [(0, 0, 0, 0, 0)]
+    assert [(name, *map(str, told)) for name, told in scanner.signals] == [
+        ("bad_message", "/scan", 'not_finite("laserrange")')
+    ]
+    assert battery.holds("battery") == []
+    assert [(name, *map(str, told)) for name, told in battery.signals] == [
+        ("bad_message", "/battery_state", 'not_finite("percentage")')
+    ]
 
 
-def test_a_silent_battery_is_unknown() -> None:
-    async def body(lab: Lab) -> None:
-        options = (Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
-        artifact = await lab.make(ArtSimBattery, *options)
-        watcher = lab.watch(artifact)
-        charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
-        charges.publish(charges.message(percentage=0.8))
-        await lab.sleep(2.9)
-        assert watcher.holds("battery") == [(80,)]
-        await lab.sleep(0.2)
-        assert watcher.holds("battery") == watcher.holds("diagnostics") == []
-        charges.publish(charges.message(percentage=0.8))
-        await lab.sleep(0.1)
-        assert watcher.holds("battery") == [(80,)]
-
-    in_lab(body, None)
+async def test_a_silent_battery_is_unknown(lab: Lab) -> None:
+    options = (Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
+    artifact = await lab.make(ArtSimBattery, *options)
+    watcher = lab.watch(artifact)
+    charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+    charges.publish(charges.message(percentage=0.8))
+    await lab.sleep(2.9)
+    assert watcher.holds("battery") == [(80,)]
+    await lab.sleep(0.2)
+    assert watcher.holds("battery") == watcher.holds("diagnostics") == []
+    charges.publish(charges.message(percentage=0.8))
+    await lab.sleep(0.1)
+    assert watcher.holds("battery") == [(80,)]
 
 
 # Motion.
@@ -294,136 +267,114 @@ def feed(lab: Lab, until: float, fault: Any) -> None:
     tick()
 
 
-def test_a_robot_that_loses_its_pose_stops_immediately_and_the_motion_fails_with_a_reason() -> None:
+async def test_a_robot_that_loses_its_pose_stops_immediately_and_the_motion_fails_with_a_reason(
+    lab: Lab,
+) -> None:
     def fault(message: Any, now: float) -> None:
         if now >= 2.0:
             message.pose.pose.position.x = math.nan
 
-    async def body(lab: Lab) -> None:
-        lab.record()
-        feed(lab, 20, fault)
-        artifact = await lab.make(ArtCmdVel)
-        watcher = lab.watch(artifact)
-        failed = await lab.call(artifact, "moveForward", 5)
-        assert failed.reason == "no_odometry(5)"
-        assert failed.outcome is not None
-        assert "messages were bad" in str(failed.outcome.message)
-        assert any(linear > 0 for _, linear, _ in lab.commands)
-        assert all(command[1:] == STANDSTILL for command in lab.commands if command[0] > 2.1)
-        assert all(math.isfinite(number) for command in lab.commands for number in command)
-        assert "not_finite(pose.pose.position.x)" in whys(watcher)
-
-    in_lab(body, None)
+    lab.record()
+    feed(lab, 20, fault)
+    artifact = await lab.make(ArtCmdVel)
+    watcher = lab.watch(artifact)
+    failed = await lab.call(artifact, "moveForward", 5)
+    assert failed.reason == "no_odometry(5)"
+    assert failed.outcome is not None
+    assert "messages were bad" in str(failed.outcome.message)
+    assert any(linear > 0 for _, linear, _ in lab.commands)
+    assert all(command[1:] == STANDSTILL for command in lab.commands if command[0] > 2.1)
+    assert all(math.isfinite(number) for command in lab.commands for number in command)
+    assert "not_finite(pose.pose.position.x)" in whys(watcher)
 
 
-def test_a_few_bad_poses_only_slow_a_motion_down() -> None:
+async def test_a_few_bad_poses_only_slow_a_motion_down(lab: Lab) -> None:
     def fault(message: Any, now: float) -> None:
         if 2.0 <= now < 2.5:
             message.pose.pose.orientation.z = math.nan
 
-    async def body(lab: Lab) -> None:
-        feed(lab, 30, fault)
-        artifact = await lab.make(ArtCmdVel)
-        await lab.do(artifact, "moveForward", 2)
-
-    in_lab(body, None)
+    feed(lab, 30, fault)
+    artifact = await lab.make(ArtCmdVel)
+    await lab.do(artifact, "moveForward", 2)
 
 
-def test_a_pose_from_another_frame_does_not_lead_a_motion_astray() -> None:
+async def test_a_pose_from_another_frame_does_not_lead_a_motion_astray(lab: Lab) -> None:
     def fault(message: Any, now: float) -> None:
         if 1.5 <= now < 1.9:
             message.header.frame_id = "map"
             message.pose.pose.position.x += 100.0
 
-    async def body(lab: Lab) -> None:
-        lab.record()
-        feed(lab, 30, fault)
-        artifact = await lab.make(ArtCmdVel)
-        await lab.do(artifact, "moveForward", 2)
-        assert all(linear >= -0.05 for _, linear, _ in lab.commands)
-
-    in_lab(body, None)
+    lab.record()
+    feed(lab, 30, fault)
+    artifact = await lab.make(ArtCmdVel)
+    await lab.do(artifact, "moveForward", 2)
+    assert all(linear >= -0.05 for _, linear, _ in lab.commands)
 
 
 # Connection.
 
 
-def test_a_topic_is_connected_while_it_has_a_publisher() -> None:
-    async def body(lab: Lab) -> None:
-        watcher = lab.watch(await lab.make(ArtTutorial, "r", Structure("watch_connection", (True,))))
-        assert watcher.holds("connected") == []
-        publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
-        await lab.sleep(1)
-        assert watcher.holds("connected") == [("/r/chatter",)]
-        publisher.close()
-        await lab.sleep(1)
-        assert watcher.holds("connected") == []
-        publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
-        publisher.publish(publisher.message(data="again"))
-        await lab.sleep(0.01)
-        assert watcher.holds("connected") == [("/r/chatter",)]
-        assert watcher.holds("r_chatter") == [("again",)]
-
-    in_lab(body, None)
+async def test_a_topic_is_connected_while_it_has_a_publisher(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtTutorial, "r", Structure("watch_connection", (True,))))
+    assert watcher.holds("connected") == []
+    publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
+    await lab.sleep(1)
+    assert watcher.holds("connected") == [("/r/chatter",)]
+    publisher.close()
+    await lab.sleep(1)
+    assert watcher.holds("connected") == []
+    publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
+    publisher.publish(publisher.message(data="again"))
+    await lab.sleep(0.01)
+    assert watcher.holds("connected") == [("/r/chatter",)]
+    assert watcher.holds("r_chatter") == [("again",)]
 
 
-def test_a_topic_is_lost_with_the_graph_and_found_again_with_it() -> None:
-    async def body(lab: Lab) -> None:
-        lab.backend.publisher("/odom", ODOMETRY)
-        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (True,))))
-        assert watcher.holds("connected") == [("/odom",)]
-        graph = lab.backend.graph  # type: ignore[attr-defined]
-        graph.interrupt()
-        assert watcher.holds("connected") == []
-        graph.restore()
-        assert watcher.holds("connected") == [("/odom",)]
-
-    in_lab(body, None)
+async def test_a_topic_is_lost_with_the_graph_and_found_again_with_it(lab: Lab) -> None:
+    lab.backend.publisher("/odom", ODOMETRY)
+    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (True,))))
+    assert watcher.holds("connected") == [("/odom",)]
+    graph = lab.backend.graph  # type: ignore[attr-defined]
+    graph.interrupt()
+    assert watcher.holds("connected") == []
+    graph.restore()
+    assert watcher.holds("connected") == [("/odom",)]
 
 
-def test_a_topic_stays_connected_when_the_master_dies_and_its_publisher_lives() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
-        await robot.say(1)
-        backend: Any = lab.backend
-        backend.set_connected(False)
-        await lab.sleep(1)
-        await robot.say(2)
-        await lab.sleep(1.5)
-        assert watcher.holds("connected") == [("/odom",)]
-
-    in_lab(body, None)
+async def test_a_topic_stays_connected_when_the_master_dies_and_its_publisher_lives(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
+    await robot.say(1)
+    backend: Any = lab.backend
+    backend.set_connected(False)
+    await lab.sleep(1)
+    await robot.say(2)
+    await lab.sleep(1.5)
+    assert watcher.holds("connected") == [("/odom",)]
 
 
-def test_a_silent_publisher_is_lost_where_messages_are_expected() -> None:
-    async def body(lab: Lab) -> None:
-        robot = Robot(lab)
-        watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
-        await lab.sleep(1)
-        assert watcher.holds("connected") == []
-        await robot.say(1)
-        assert watcher.holds("connected") == [("/odom",)]
-        await lab.sleep(2.6)
-        assert watcher.holds("connected") == []
-        await robot.say(1)
-        assert watcher.holds("connected") == [("/odom",)]
-
-    in_lab(body, None)
+async def test_a_silent_publisher_is_lost_where_messages_are_expected(lab: Lab) -> None:
+    robot = Robot(lab)
+    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
+    await lab.sleep(1)
+    assert watcher.holds("connected") == []
+    await robot.say(1)
+    assert watcher.holds("connected") == [("/odom",)]
+    await lab.sleep(2.6)
+    assert watcher.holds("connected") == []
+    await robot.say(1)
+    assert watcher.holds("connected") == [("/odom",)]
 
 
-def test_connections_are_watched_only_with_the_option_and_until_disposal() -> None:
-    async def body(lab: Lab) -> None:
-        lab.backend.publisher("/odom", ODOMETRY)
-        watcher = lab.watch(await lab.make(ArtOdometry))
-        await lab.sleep(1)
-        assert watcher.holds("connected") == []
-        artifact = await lab.make(ArtOdometry, Structure("watch_connection", (True,)))
-        await lab.sleep(1)
-        lab.workspace.dispose_artifact(artifact)
-        backend: Any = lab.backend
-        backend.set_connected(False)
-        await lab.sleep(2)
-        assert [line for line in lab.logged if "connected" in line] == []
-
-    in_lab(body, None)
+async def test_connections_are_watched_only_with_the_option_and_until_disposal(lab: Lab) -> None:
+    lab.backend.publisher("/odom", ODOMETRY)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await lab.sleep(1)
+    assert watcher.holds("connected") == []
+    artifact = await lab.make(ArtOdometry, Structure("watch_connection", (True,)))
+    await lab.sleep(1)
+    lab.workspace.dispose_artifact(artifact)
+    backend: Any = lab.backend
+    backend.set_connected(False)
+    await lab.sleep(2)
+    assert [line for line in lab.logged if "connected" in line] == []

@@ -1,10 +1,9 @@
 """Operations that publish wait until a subscription is matched, so that their first message arrives."""
 
-from collections.abc import Awaitable, Callable
-from typing import Any, cast
+from typing import cast
 
 import pytest
-from robot_lab import STANDSTILL, Lab, in_lab
+from robot_lab import STANDSTILL, Lab
 
 from jacaros.artifacts import Structure
 from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
@@ -14,14 +13,9 @@ from jacaros.ros.backend import DISCOVERY, Publisher, Sample
 from jacaros.ros.guarded import guarded_by
 
 
-def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:
-    """Run *body* where a subscription that a test makes later is like one that is matched late."""
-
-    async def with_discovery(lab: Lab) -> None:
-        lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
-        await body(lab)
-
-    return in_lab(with_discovery, world=None)
+def on_a_graph(lab: Lab) -> None:
+    """From now on a subscription that a test makes is like one that is matched late."""
+    lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
 
 
 def driving(lab: Lab) -> list[float]:
@@ -33,155 +27,132 @@ def warnings(lab: Lab) -> list[str]:
     return [line for line in lab.logged if "subscriber" in line]
 
 
-def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        motion = lab.begin(wheels, "move", 25)
-        await lab.sleep(1.0)
-        lab.record()
-        await motion.done
-        await lab.sleep(0.1)
-        assert len(driving(lab)) == 26
-        assert driving(lab)[0] == pytest.approx(1.25, abs=0.06)
-        assert lab.last_command == STANDSTILL
-        assert warnings(lab) == []
-
-    on_a_graph(body)
+async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    motion = lab.begin(wheels, "move", 25)
+    await lab.sleep(1.0)
+    lab.record()
+    await motion.done
+    await lab.sleep(0.1)
+    assert len(driving(lab)) == 26
+    assert driving(lab)[0] == pytest.approx(1.25, abs=0.06)
+    assert lab.last_command == STANDSTILL
+    assert warnings(lab) == []
 
 
-def test_a_motion_begins_immediately_when_a_base_is_matched() -> None:
-    async def body(lab: Lab) -> None:
-        lab.record()
-        await lab.do(await lab.make(ArtCmdVel), "move", 4)
-        await lab.sleep(0.1)
-        assert driving(lab) == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
-
-    on_a_graph(body)
+async def test_a_motion_begins_immediately_when_a_base_is_matched(lab: Lab) -> None:
+    on_a_graph(lab)
+    lab.record()
+    await lab.do(await lab.make(ArtCmdVel), "move", 4)
+    await lab.sleep(0.1)
+    assert driving(lab) == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
 
 
-def test_in_the_graph_inside_the_process_nothing_waits() -> None:
-    async def body(lab: Lab) -> None:
-        await lab.do(await lab.make(ArtCmdVel), "move", 4)
-        assert lab.clock.elapsed == pytest.approx(0.5)
-        assert len(warnings(lab)) == 1
-
-    in_lab(body, world=None)
+async def test_in_the_graph_inside_the_process_nothing_waits(lab: Lab) -> None:
+    await lab.do(await lab.make(ArtCmdVel), "move", 4)
+    assert lab.clock.elapsed == pytest.approx(0.5)
+    assert len(warnings(lab)) == 1
 
 
-def test_a_motion_without_a_base_warns_once_and_begins() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        for ends in (3.5, 7.0):
-            await lab.do(wheels, "move", 4)
-            assert lab.clock.elapsed == pytest.approx(ends, abs=0.11)
-        (warning,) = warnings(lab)
-        assert warning.endswith(
-            " warning: no subscriber on topic /cmd_vel after 3 s; publishing anyway\n"
-            "  help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
-        )
-
-    on_a_graph(body)
-
-
-def test_a_base_that_left_is_waited_for_again() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        base = lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", lambda sample: None)
+async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    for ends in (3.5, 7.0):
         await lab.do(wheels, "move", 4)
-        base.close()
-        motion = lab.begin(wheels, "move", 4)
-        await lab.sleep(2.0)
-        lab.record()
-        await motion.done
-        await lab.sleep(0.1)
-        assert len(driving(lab)) == 5
-
-    on_a_graph(body)
+        assert lab.clock.elapsed == pytest.approx(ends, abs=0.11)
+    (warning,) = warnings(lab)
+    assert warning.endswith(
+        " warning: no subscriber on topic /cmd_vel after 3 s; publishing anyway\n"
+        "  help: start the node that subscribes to it; `jacaros ros list` shows the topics of the graph"
+    )
 
 
-def test_a_motion_fails_by_option_when_no_base_is_matched() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(
-            ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,))
-        )
-        run = await lab.call(wheels, "move", 4)
-        assert lab.clock.elapsed == pytest.approx(1.0)
-        assert run.reason == 'unmatched("/cmd_vel")'
-        assert warnings(lab) == []
-
-    on_a_graph(body)
-
-
-def test_a_motion_that_waits_for_its_base_is_aborted_immediately() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        motion = lab.begin(wheels, "move", 25)
-        await lab.sleep(0.5)
-        await lab.do(wheels, "abortMoving")
-        await motion.done
-        assert lab.clock.elapsed == pytest.approx(0.5)
-        assert motion.reason == "aborted(0)"
-
-    on_a_graph(body)
+async def test_a_base_that_left_is_waited_for_again(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    base = lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", lambda sample: None)
+    await lab.do(wheels, "move", 4)
+    base.close()
+    motion = lab.begin(wheels, "move", 4)
+    await lab.sleep(2.0)
+    lab.record()
+    await motion.done
+    await lab.sleep(0.1)
+    assert len(driving(lab)) == 5
 
 
-def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        motion = lab.begin(wheels, "move", 25)
-        await lab.sleep(0.5)
-        motion.execution.cancel()
-        lab.record()
-        await lab.sleep(5.0)
-        assert driving(lab) == []
-
-    on_a_graph(body)
+async def test_a_motion_fails_by_option_when_no_base_is_matched(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,)))
+    run = await lab.call(wheels, "move", 4)
+    assert lab.clock.elapsed == pytest.approx(1.0)
+    assert run.reason == 'unmatched("/cmd_vel")'
+    assert warnings(lab) == []
 
 
-def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_when_it_is_resumed() -> None:
-    async def body(lab: Lab) -> None:
-        wheels = await lab.make(ArtCmdVel)
-        motion = lab.begin(wheels, "move", 4)
-        await lab.sleep(0.5)
-        motion.execution.pause()
-        lab.record()
-        await lab.sleep(5.0)
-        assert driving(lab) == []
-        motion.execution.resume()
-        await motion.done
-        await lab.sleep(0.1)
-        assert len(driving(lab)) == 5
-
-    on_a_graph(body)
+async def test_a_motion_that_waits_for_its_base_is_aborted_immediately(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    motion = lab.begin(wheels, "move", 25)
+    await lab.sleep(0.5)
+    await lab.do(wheels, "abortMoving")
+    await motion.done
+    assert lab.clock.elapsed == pytest.approx(0.5)
+    assert motion.reason == "aborted(0)"
 
 
-def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched() -> None:
-    async def body(lab: Lab) -> None:
-        household = await lab.make(ArtCleaning)
-        work = lab.begin(household, "clean", 3)
-        await lab.sleep(1.0)
-        tasks: list[str] = []
-
-        def take(sample: Sample) -> None:
-            tasks.append(sample.message.data)
-
-        lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", take)
-        await work.done
-        assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
-
-    on_a_graph(body)
+async def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives(lab: Lab) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    motion = lab.begin(wheels, "move", 25)
+    await lab.sleep(0.5)
+    motion.execution.cancel()
+    lab.record()
+    await lab.sleep(5.0)
+    assert driving(lab) == []
 
 
-def test_a_household_without_subscribers_is_delayed_once() -> None:
-    async def body(lab: Lab) -> None:
-        household = await lab.make(ArtCleaning)
-        await lab.do(household, "clean", 1)
-        assert lab.clock.elapsed == pytest.approx(5.5)
-        await lab.do(household, "clean", 1)
-        assert lab.clock.elapsed == pytest.approx(8.0)
-        assert len(warnings(lab)) == 1
+async def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_when_it_is_resumed(
+    lab: Lab,
+) -> None:
+    on_a_graph(lab)
+    wheels = await lab.make(ArtCmdVel)
+    motion = lab.begin(wheels, "move", 4)
+    await lab.sleep(0.5)
+    motion.execution.pause()
+    lab.record()
+    await lab.sleep(5.0)
+    assert driving(lab) == []
+    motion.execution.resume()
+    await motion.done
+    await lab.sleep(0.1)
+    assert len(driving(lab)) == 5
 
-    on_a_graph(body)
+
+async def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched(lab: Lab) -> None:
+    on_a_graph(lab)
+    household = await lab.make(ArtCleaning)
+    work = lab.begin(household, "clean", 3)
+    await lab.sleep(1.0)
+    tasks: list[str] = []
+
+    def take(sample: Sample) -> None:
+        tasks.append(sample.message.data)
+
+    lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", take)
+    await work.done
+    assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
+
+
+async def test_a_household_without_subscribers_is_delayed_once(lab: Lab) -> None:
+    on_a_graph(lab)
+    household = await lab.make(ArtCleaning)
+    await lab.do(household, "clean", 1)
+    assert lab.clock.elapsed == pytest.approx(5.5)
+    await lab.do(household, "clean", 1)
+    assert lab.clock.elapsed == pytest.approx(8.0)
+    assert len(warnings(lab)) == 1
 
 
 class Topic:
@@ -226,62 +197,51 @@ def test_a_message_that_is_suspended_while_it_waits_does_not_block_the_others() 
     assert matching.exists()
 
 
-def test_the_first_command_waits_until_the_guard_has_found_the_base() -> None:
-    async def body(lab: Lab) -> None:
-        guarded = guarded_by(lab.backend)
-        guarded.found["guard"] = {}
-        lab.record()
-        wheels = await lab.make(ArtCmdVel)
-        motion = lab.begin(wheels, "move", 4)
-        await lab.sleep(5.0)
-        assert driving(lab) == []
-        guarded.found["guard"] = {"/cmd_vel": 1}
-        await motion.done
-        assert driving(lab)[0] == pytest.approx(5.0 + SETTLING, abs=0.06)
-        await lab.do(wheels, "move", 4)
-        assert warnings(lab) == []
-
-    on_a_graph(body)
+async def test_the_first_command_waits_until_the_guard_has_found_the_base(lab: Lab) -> None:
+    on_a_graph(lab)
+    guarded = guarded_by(lab.backend)
+    guarded.found["guard"] = {}
+    lab.record()
+    wheels = await lab.make(ArtCmdVel)
+    motion = lab.begin(wheels, "move", 4)
+    await lab.sleep(5.0)
+    assert driving(lab) == []
+    guarded.found["guard"] = {"/cmd_vel": 1}
+    await motion.done
+    assert driving(lab)[0] == pytest.approx(5.0 + SETTLING, abs=0.06)
+    await lab.do(wheels, "move", 4)
+    assert warnings(lab) == []
 
 
-def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready() -> None:
-    async def body(lab: Lab) -> None:
-        guarded_by(lab.backend).found["guard"] = {"/cmd_vel": 1}
-        lab.record()
-        lab.record()
-        lab.begin(await lab.make(ArtCmdVel), "move", 4)
-        await lab.sleep(1.0)
-        assert driving(lab) == []
-
-    on_a_graph(body)
+async def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready(lab: Lab) -> None:
+    on_a_graph(lab)
+    guarded_by(lab.backend).found["guard"] = {"/cmd_vel": 1}
+    lab.record()
+    lab.record()
+    lab.begin(await lab.make(ArtCmdVel), "move", 4)
+    await lab.sleep(1.0)
+    assert driving(lab) == []
 
 
-def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once() -> None:
-    async def body(lab: Lab) -> None:
-        guarded_by(lab.backend).found["guard"] = {"/other": 1}
-        lab.record()
-        wheels = await lab.make(ArtCmdVel)
-        await lab.do(wheels, "move", 4)
-        assert driving(lab)[0] == pytest.approx(GUARD_TIMEOUT, abs=0.06)
-        begun = lab.clock.elapsed
-        await lab.do(wheels, "move", 4)
-        assert lab.clock.elapsed - begun == pytest.approx(0.5, abs=0.06)
-        [warning] = warnings(lab)
-        assert (
-            "the guard has not found the subscriber of topic /cmd_vel after 10 s; publishing anyway"
-            in warning
-        )
-        assert "`jacaros ros show /cmd_vel`" in warning
-
-    on_a_graph(body)
+async def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once(lab: Lab) -> None:
+    on_a_graph(lab)
+    guarded_by(lab.backend).found["guard"] = {"/other": 1}
+    lab.record()
+    wheels = await lab.make(ArtCmdVel)
+    await lab.do(wheels, "move", 4)
+    assert driving(lab)[0] == pytest.approx(GUARD_TIMEOUT, abs=0.06)
+    begun = lab.clock.elapsed
+    await lab.do(wheels, "move", 4)
+    assert lab.clock.elapsed - begun == pytest.approx(0.5, abs=0.06)
+    [warning] = warnings(lab)
+    assert "the guard has not found the subscriber of topic /cmd_vel after 10 s; publishing anyway" in warning
+    assert "`jacaros ros show /cmd_vel`" in warning
 
 
-def test_topics_that_drive_nothing_do_not_wait_for_a_guard() -> None:
-    async def body(lab: Lab) -> None:
-        guarded_by(lab.backend).found["guard"] = {}
-        household = await lab.make(ArtCleaning)
-        lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", lambda sample: None)
-        await lab.do(household, "clean", 1)
-        assert lab.clock.elapsed == pytest.approx(2.5)
-
-    on_a_graph(body)
+async def test_topics_that_drive_nothing_do_not_wait_for_a_guard(lab: Lab) -> None:
+    on_a_graph(lab)
+    guarded_by(lab.backend).found["guard"] = {}
+    household = await lab.make(ArtCleaning)
+    lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", lambda sample: None)
+    await lab.do(household, "clean", 1)
+    assert lab.clock.elapsed == pytest.approx(2.5)

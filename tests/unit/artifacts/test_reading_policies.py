@@ -5,7 +5,7 @@ import math
 from typing import Any, ClassVar
 
 import pytest
-from robot_lab import Lab, Watcher, in_lab
+from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import Structure, operation
 from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, RangeOfView, Reading, ReadingPolicy, Values
@@ -183,36 +183,30 @@ class SlowWatcher(Watcher):
         return name in self.untaken
 
 
-def test_a_lagging_observer_gets_the_newest_value_when_it_has_caught_up() -> None:
-    async def body(lab: Lab) -> None:
-        odom = Odom(lab)
-        artifact = await lab.make(ArtOdometry)
-        watcher = SlowWatcher(lab.clock)
-        lab.workspace.focus(artifact, watcher)
-        watcher.untaken.clear()
-        for number in range(1, 500):
-            odom.say(number)
-            await lab.sleep(0.001)
-        assert watcher.values("odom")[1:] == [(1, 0, 0)]
-        watcher.untaken.clear()
-        await lab.sleep(0.01)
-        assert watcher.values("odom")[1:] == [(1, 0, 0), (499, 0, 0)]
-
-    in_lab(body, None)
+async def test_a_lagging_observer_gets_the_newest_value_when_it_has_caught_up(lab: Lab) -> None:
+    odom = Odom(lab)
+    artifact = await lab.make(ArtOdometry)
+    watcher = SlowWatcher(lab.clock)
+    lab.workspace.focus(artifact, watcher)
+    watcher.untaken.clear()
+    for number in range(1, 500):
+        odom.say(number)
+        await lab.sleep(0.001)
+    assert watcher.values("odom")[1:] == [(1, 0, 0)]
+    watcher.untaken.clear()
+    await lab.sleep(0.01)
+    assert watcher.values("odom")[1:] == [(1, 0, 0), (499, 0, 0)]
 
 
-def test_messages_that_each_count_do_not_wait() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtTutorial)
-        watcher = SlowWatcher(lab.clock)
-        lab.workspace.focus(artifact, watcher)
-        publisher = lab.backend.publisher("/chatter", "std_msgs/msg/String")
-        for word in ("a", "b", "c"):
-            publisher.publish(publisher.message(data=word))
-        await lab.sleep(0.1)
-        assert watcher.values("chatter") == [("",), ("a",), ("b",), ("c",)]
-
-    in_lab(body, None)
+async def test_messages_that_each_count_do_not_wait(lab: Lab) -> None:
+    artifact = await lab.make(ArtTutorial)
+    watcher = SlowWatcher(lab.clock)
+    lab.workspace.focus(artifact, watcher)
+    publisher = lab.backend.publisher("/chatter", "std_msgs/msg/String")
+    for word in ("a", "b", "c"):
+        publisher.publish(publisher.message(data=word))
+    await lab.sleep(0.1)
+    assert watcher.values("chatter") == [("",), ("a",), ("b",), ("c",)]
 
 
 class Holder(RosArtifact):
@@ -229,58 +223,49 @@ class Holder(RosArtifact):
         await self.clock.sleep(2)  # no step: no other operation runs
 
 
-def test_at_most_one_update_waits_while_an_operation_keeps_the_artifact() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(Holder)
-        watcher = lab.watch(artifact)
-        [made] = Holder.made
-        holding = lab.begin(artifact, "hold")
-        await lab.sleep(0.1)
-        for number in range(1, 100):
-            made.level.take((number,))
-            await lab.sleep(0.001)
-        await holding.done
-        await lab.sleep(0.1)
-        assert watcher.values("level") == [(0,), (1,), (99,)]
-
-    in_lab(body, None)
+async def test_at_most_one_update_waits_while_an_operation_keeps_the_artifact(lab: Lab) -> None:
+    artifact = await lab.make(Holder)
+    watcher = lab.watch(artifact)
+    [made] = Holder.made
+    holding = lab.begin(artifact, "hold")
+    await lab.sleep(0.1)
+    for number in range(1, 100):
+        made.level.take((number,))
+        await lab.sleep(0.001)
+    await holding.done
+    await lab.sleep(0.1)
+    assert watcher.values("level") == [(0,), (1,), (99,)]
 
 
-def test_a_property_expires_and_comes_back() -> None:
-    async def body(lab: Lab) -> None:
-        odom = Odom(lab)
-        artifact = await lab.make(ArtOdometry, Structure("expire", (2,)))
-        watcher = lab.watch(artifact)
-        assert watcher.holds("odom") == []
-        odom.say(1)
-        await lab.sleep(1)
-        assert watcher.holds("odom") == [(1, 0, 0)]
-        await lab.sleep(1.5)
-        assert watcher.holds("odom") == watcher.holds("pose") == []
-        assert (await lab.call(artifact, "getCurrentOdom")).reason == "no_odometry(5)"
-        odom.say(1)
-        await lab.sleep(0.1)
-        assert watcher.holds("odom") == [(1, 0, 0)]
-        await lab.do(artifact, "getCurrentOdom")
-
-    in_lab(body, None)
+async def test_a_property_expires_and_comes_back(lab: Lab) -> None:
+    odom = Odom(lab)
+    artifact = await lab.make(ArtOdometry, Structure("expire", (2,)))
+    watcher = lab.watch(artifact)
+    assert watcher.holds("odom") == []
+    odom.say(1)
+    await lab.sleep(1)
+    assert watcher.holds("odom") == [(1, 0, 0)]
+    await lab.sleep(1.5)
+    assert watcher.holds("odom") == watcher.holds("pose") == []
+    assert (await lab.call(artifact, "getCurrentOdom")).reason == "no_odometry(5)"
+    odom.say(1)
+    await lab.sleep(0.1)
+    assert watcher.holds("odom") == [(1, 0, 0)]
+    await lab.do(artifact, "getCurrentOdom")
 
 
-def test_a_scan_on_demand_expires_too_and_is_defined_by_the_operation() -> None:
-    async def body(lab: Lab) -> None:
-        options = (Structure("expire", (1,)), Structure("mode", ("on_demand",)))
-        artifact = await lab.make(ArtBaseScan, *options)
-        watcher = lab.watch(artifact)
-        publisher = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
-        publisher.publish(publisher.message(ranges=[1.0] * 5, range_max=5.0))
-        await lab.sleep(0.5)
-        assert watcher.holds("laserrange") == []
-        await lab.do(artifact, "getCurrentBaseScan")
-        assert watcher.holds("laserrange") == [(1, 1, 1, 1, 1)]
-        await lab.sleep(1)
-        assert watcher.holds("laserrange") == []
-
-    in_lab(body, None)
+async def test_a_scan_on_demand_expires_too_and_is_defined_by_the_operation(lab: Lab) -> None:
+    options = (Structure("expire", (1,)), Structure("mode", ("on_demand",)))
+    artifact = await lab.make(ArtBaseScan, *options)
+    watcher = lab.watch(artifact)
+    publisher = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
+    publisher.publish(publisher.message(ranges=[1.0] * 5, range_max=5.0))
+    await lab.sleep(0.5)
+    assert watcher.holds("laserrange") == []
+    await lab.do(artifact, "getCurrentBaseScan")
+    assert watcher.holds("laserrange") == [(1, 1, 1, 1, 1)]
+    await lab.sleep(1)
+    assert watcher.holds("laserrange") == []
 
 
 # The range of view.
@@ -319,20 +304,17 @@ class Landmarks(RosArtifact):
         self.view.stand(x, y)
 
 
-def test_elements_in_view_are_properties_and_one_that_stays_gives_no_event() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(Landmarks)
-        watcher = lab.watch(artifact)
-        publisher = lab.backend.publisher("/landmarks", "geometry_msgs/msg/PoseArray")
-        poses = [{"position": {"x": float(x)}} for x in range(5)]
-        publisher.publish(publisher.message(poses=poses))
-        await lab.sleep(0.1)
-        await lab.do(artifact, "stand", 0, 0)
-        assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0)]
-        await lab.do(artifact, "stand", 1, 0)
-        assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
-        assert watcher.values("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
-        await lab.do(artifact, "stand", 9, 0)
-        assert watcher.holds("landmark") == []
-
-    in_lab(body, None)
+async def test_elements_in_view_are_properties_and_one_that_stays_gives_no_event(lab: Lab) -> None:
+    artifact = await lab.make(Landmarks)
+    watcher = lab.watch(artifact)
+    publisher = lab.backend.publisher("/landmarks", "geometry_msgs/msg/PoseArray")
+    poses = [{"position": {"x": float(x)}} for x in range(5)]
+    publisher.publish(publisher.message(poses=poses))
+    await lab.sleep(0.1)
+    await lab.do(artifact, "stand", 0, 0)
+    assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0)]
+    await lab.do(artifact, "stand", 1, 0)
+    assert watcher.holds("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
+    assert watcher.values("landmark") == [(0, 0), (1, 0), (2, 0), (3, 0)]
+    await lab.do(artifact, "stand", 9, 0)
+    assert watcher.holds("landmark") == []

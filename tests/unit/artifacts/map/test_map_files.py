@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.map.map_files import Grid, MapFileError, load, save
@@ -77,42 +77,34 @@ def test_cells_of_another_size_are_obstacles_if_some_of_them_is() -> None:
     assert Grid(1.0, 1, ORIGIN, b"").labels(1.0) == {}
 
 
-def test_an_agent_saves_its_map_and_another_loads_it(tmp_path: Path) -> None:
+async def test_an_agent_saves_its_map_and_another_loads_it(lab: Lab, tmp_path: Path) -> None:
     file = str(tmp_path / "map.yaml")
-
-    async def body(lab: Lab) -> None:
-        first = await lab.make(ArtSlamData)
-        for x, word in enumerate(["home", "free", "unknown", "obstacle"]):
-            await lab.do(first, "updateSlamData", x, 0, word)
-        await lab.do(first, "saveMap", file)
-        second = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
-        watcher = lab.watch(second)
-        await lab.do(second, "updateSlamData", 9, 0, "free")
-        await lab.do(second, "loadMap", file)
-        assert ("home", 0, 0) in watcher.holds("pos2d")
-        out = Out()
-        for x, word in enumerate(["home", "free", "unknown", "wall"]):
-            await lab.do(second, "getSlamData", x, 0, out)
-            assert out.value == word
-        await lab.do(second, "getSlamData", 9, 0, out)
-        assert out.value == "unknown"
-
-    in_lab(body, None)
+    first = await lab.make(ArtSlamData)
+    for x, word in enumerate(["home", "free", "unknown", "obstacle"]):
+        await lab.do(first, "updateSlamData", x, 0, word)
+    await lab.do(first, "saveMap", file)
+    second = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
+    watcher = lab.watch(second)
+    await lab.do(second, "updateSlamData", 9, 0, "free")
+    await lab.do(second, "loadMap", file)
+    assert ("home", 0, 0) in watcher.holds("pos2d")
+    out = Out()
+    for x, word in enumerate(["home", "free", "unknown", "wall"]):
+        await lab.do(second, "getSlamData", x, 0, out)
+        assert out.value == word
+    await lab.do(second, "getSlamData", 9, 0, out)
+    assert out.value == "unknown"
 
 
-def test_files_that_cannot_be_written_or_read_fail_with_a_reason(tmp_path: Path) -> None:
+async def test_files_that_cannot_be_written_or_read_fail_with_a_reason(lab: Lab, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
-
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
-        other = await lab.make(ArtSlamData)
-        run = await lab.call(artifact, "saveMap", str(tmp_path / "file" / "map.yaml"))
-        assert run.reason.startswith("map_file(")
-        missing = str(tmp_path / "none.yaml")
-        assert (await lab.call(artifact, "loadMap", missing)).reason == f'map_file("{missing}")'
-        await lab.do(other, "saveMap", str(tmp_path / "map.yaml"))
-        run = await lab.call(artifact, "loadMap", str(tmp_path / "map.yaml"))
-        assert run.outcome is not None
-        assert "the cells of" in (run.outcome.message or "")
-
-    in_lab(body, None)
+    artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
+    other = await lab.make(ArtSlamData)
+    run = await lab.call(artifact, "saveMap", str(tmp_path / "file" / "map.yaml"))
+    assert run.reason.startswith("map_file(")
+    missing = str(tmp_path / "none.yaml")
+    assert (await lab.call(artifact, "loadMap", missing)).reason == f'map_file("{missing}")'
+    await lab.do(other, "saveMap", str(tmp_path / "map.yaml"))
+    run = await lab.call(artifact, "loadMap", str(tmp_path / "map.yaml"))
+    assert run.outcome is not None
+    assert "the cells of" in (run.outcome.message or "")

@@ -6,7 +6,7 @@ from collections import deque
 from itertools import pairwise
 
 import pytest
-from robot_lab import Lab, Watcher, in_lab
+from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.map.cells import Cell
@@ -27,219 +27,180 @@ async def label(lab: Lab, artifact: ArtifactId, rows: list[str]) -> None:
                 await lab.do(artifact, "updateSlamData", x, y, words[sign])
 
 
-def test_a_range_of_view_shows_all_its_cells() -> None:
+async def test_a_range_of_view_shows_all_its_cells(lab: Lab) -> None:
     """Defect 10: one property took all cells in turn, so a belief base ended with the last one alone."""
-
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["...", ".#.", " .G"])
-        await lab.do(artifact, "getVisionRange", 0, 0, 1)
-        seen = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle")]
-        assert watcher.holds("cell") == seen
-        assert watcher.holds("currentRange") == [([cell(*each) for each in seen],)]
-        assert watcher.signals == [("currentRange", each) for each in seen]
-
-    in_lab(body, None)
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["...", ".#.", " .G"])
+    await lab.do(artifact, "getVisionRange", 0, 0, 1)
+    seen = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle")]
+    assert watcher.holds("cell") == seen
+    assert watcher.holds("currentRange") == [([cell(*each) for each in seen],)]
+    assert watcher.signals == [("currentRange", each) for each in seen]
 
 
-def test_the_next_range_replaces_the_cells_and_reports_only_new_ones() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["....."])
-        await lab.do(artifact, "getVisionRange", 1, 0, 1)
-        told = len(watcher.values("cell"))
-        await lab.do(artifact, "updateSlamData", 1, 0, "home")
-        await lab.do(artifact, "getVisionRange", 2, 0, 1)
-        assert sorted(watcher.holds("cell")) == [(1, 0, "home"), (2, 0, "free"), (3, 0, "free")]
-        assert watcher.values("cell")[told:] == [(1, 0, "home"), (3, 0, "free")]
-        await lab.do(artifact, "getVisionRange", 50, 50, 1)
-        assert watcher.holds("cell") == []
-        await lab.do(artifact, "getVisionRange", 2, 0, 99)
-        assert len(watcher.holds("cell")) == 5
-
-    in_lab(body, None)
+async def test_the_next_range_replaces_the_cells_and_reports_only_new_ones(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["....."])
+    await lab.do(artifact, "getVisionRange", 1, 0, 1)
+    told = len(watcher.values("cell"))
+    await lab.do(artifact, "updateSlamData", 1, 0, "home")
+    await lab.do(artifact, "getVisionRange", 2, 0, 1)
+    assert sorted(watcher.holds("cell")) == [(1, 0, "home"), (2, 0, "free"), (3, 0, "free")]
+    assert watcher.values("cell")[told:] == [(1, 0, "home"), (3, 0, "free")]
+    await lab.do(artifact, "getVisionRange", 50, 50, 1)
+    assert watcher.holds("cell") == []
+    await lab.do(artifact, "getVisionRange", 2, 0, 99)
+    assert len(watcher.holds("cell")) == 5
 
 
-def test_nothing_is_written_by_looking() -> None:
+async def test_nothing_is_written_by_looking(lab: Lab) -> None:
     """Defect 10: the original overwrote the cell 0, 0 with test data at each look."""
-
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        await lab.do(artifact, "getVisionRange", 0, 0, 3)
-        out = Out()
-        await lab.do(artifact, "getSlamData", 0, 0, out)
-        assert out.value == Atom("unknown")
-        await lab.do(artifact, "updateSlamData", 0, 0, "home")
-        await lab.do(artifact, "getSlamData", 0, 0, out)
-        assert out.value == "home"
-
-    in_lab(body, None)
+    artifact = await lab.make(ArtSlamData)
+    await lab.do(artifact, "getVisionRange", 0, 0, 3)
+    out = Out()
+    await lab.do(artifact, "getSlamData", 0, 0, out)
+    assert out.value == Atom("unknown")
+    await lab.do(artifact, "updateSlamData", 0, 0, "home")
+    await lab.do(artifact, "getSlamData", 0, 0, out)
+    assert out.value == "home"
 
 
-def test_the_agents_cell_is_shown_and_the_map_can_be_forgotten() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["..G"])
-        await lab.do(artifact, "updatePos", 1, 0)
-        await lab.do(artifact, "getVisionRange", 1, 0, 1)
-        await lab.do(artifact, "getRoute")
-        assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0), ("goal", 2, 0)]
-        await lab.do(artifact, "clear")
-        assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0)]
-        assert watcher.holds("cell") == []
-        assert watcher.holds("route") == [([],)]
-        assert (await lab.call(artifact, "getRoute")).reason == "no_goal"
-
-    in_lab(body, None)
+async def test_the_agents_cell_is_shown_and_the_map_can_be_forgotten(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["..G"])
+    await lab.do(artifact, "updatePos", 1, 0)
+    await lab.do(artifact, "getVisionRange", 1, 0, 1)
+    await lab.do(artifact, "getRoute")
+    assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0), ("goal", 2, 0)]
+    await lab.do(artifact, "clear")
+    assert watcher.holds("pos2d") == [(1, 0), ("me", 1, 0)]
+    assert watcher.holds("cell") == []
+    assert watcher.holds("route") == [([],)]
+    assert (await lab.call(artifact, "getRoute")).reason == "no_goal"
 
 
-def test_the_range_of_view_signals_each_cell_as_in_the_thesis() -> None:
+async def test_the_range_of_view_signals_each_cell_as_in_the_thesis(lab: Lab) -> None:
     """Listing B.1: column by column, and again for a cell that was in view before."""
-
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["..", ".#"])
-        await lab.do(artifact, "getVisionRange", 0, 0, 1)
-        await lab.do(artifact, "getVisionRange", 1, 1, 0)
-        assert [arguments for _, arguments in watcher.signals] == [
-            (0, 0, "free"),
-            (0, 1, "free"),
-            (1, 0, "free"),
-            (1, 1, "obstacle"),
-            (1, 1, "obstacle"),
-        ]
-        assert watcher.holds("currentRange") == [([cell(1, 1, "obstacle")],)]
-
-    in_lab(body, None)
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["..", ".#"])
+    await lab.do(artifact, "getVisionRange", 0, 0, 1)
+    await lab.do(artifact, "getVisionRange", 1, 1, 0)
+    assert [arguments for _, arguments in watcher.signals] == [
+        (0, 0, "free"),
+        (0, 1, "free"),
+        (1, 0, "free"),
+        (1, 1, "obstacle"),
+        (1, 1, "obstacle"),
+    ]
+    assert watcher.holds("currentRange") == [([cell(1, 1, "obstacle")],)]
 
 
-def test_objects_have_their_cells_and_obstacles_while_they_are_in_view() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["..G", ".#."])
-        await lab.do(artifact, "updateSlamData", 0, 1, "home")
-        await lab.do(artifact, "updateObject", "robot_2", 5, 5)
-        places = {("me", 0, 0), ("goal", 2, 0), ("home", 0, 1)}
-        assert objects(watcher) == places | {("robot_2", 5, 5)}
-        await lab.do(artifact, "updateObject", "robot_2", 5, 6)
-        await lab.do(artifact, "getVisionRange", 0, 0, 1)
-        assert objects(watcher) == places | {("robot_2", 5, 6), ("obstacle", 1, 1)}
-        await lab.do(artifact, "removeObject", "robot_2")
-        await lab.do(artifact, "removeObject", "robot_3")
-        await lab.do(artifact, "updateSlamData", 0, 1, "free")
-        await lab.do(artifact, "getVisionRange", 9, 9, 1)
-        assert objects(watcher) == {("me", 0, 0), ("goal", 2, 0)}
-        await lab.do(artifact, "updateSlamData", 1, 0, "free")
-        assert isinstance(next(iter(objects(watcher)))[0], Atom)
-
-    in_lab(body, None)
+async def test_objects_have_their_cells_and_obstacles_while_they_are_in_view(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["..G", ".#."])
+    await lab.do(artifact, "updateSlamData", 0, 1, "home")
+    await lab.do(artifact, "updateObject", "robot_2", 5, 5)
+    places = {("me", 0, 0), ("goal", 2, 0), ("home", 0, 1)}
+    assert objects(watcher) == places | {("robot_2", 5, 5)}
+    await lab.do(artifact, "updateObject", "robot_2", 5, 6)
+    await lab.do(artifact, "getVisionRange", 0, 0, 1)
+    assert objects(watcher) == places | {("robot_2", 5, 6), ("obstacle", 1, 1)}
+    await lab.do(artifact, "removeObject", "robot_2")
+    await lab.do(artifact, "removeObject", "robot_3")
+    await lab.do(artifact, "updateSlamData", 0, 1, "free")
+    await lab.do(artifact, "getVisionRange", 9, 9, 1)
+    assert objects(watcher) == {("me", 0, 0), ("goal", 2, 0)}
+    await lab.do(artifact, "updateSlamData", 1, 0, "free")
+    assert isinstance(next(iter(objects(watcher)))[0], Atom)
 
 
 def objects(watcher: Watcher) -> set[tuple[object, ...]]:
     return {values for values in watcher.holds("pos2d") if len(values) == 3}
 
 
-def test_steps_move_the_agent_and_turn_it() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["...", "..."])
-        for step, here in [("moveUp", (0, 1)), ("moveRight", (1, 1)), ("moveDown", (1, 0))]:
-            await lab.do(artifact, step)
-            assert watcher.holds("pos2d") == [here, ("me", *here)]
-        await lab.do(artifact, "getRoute", 2, 0)
-        assert watcher.holds("direction") == [("east",)]
-        assert watcher.holds("degrees") == [(90,)]
-        await lab.do(artifact, "moveLeft")
-        await lab.do(artifact, "getRoute", 1, 0)
-        assert watcher.holds("degrees") == [(180,)]
-        await lab.do(artifact, "updatePos", "north", 1, 0)
-        await lab.do(artifact, "getRoute", 2, 0)
-        assert watcher.holds("degrees") == [(-90,)]
-        await lab.do(artifact, "getRoute", 1, 0)
-        assert watcher.holds("direction") == [("reached",)]
-        assert (await lab.call(artifact, "updatePos", "up", 1, 0)).reason == 'unknown_direction("up")'
-
-    in_lab(body, None)
+async def test_steps_move_the_agent_and_turn_it(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["...", "..."])
+    for step, here in [("moveUp", (0, 1)), ("moveRight", (1, 1)), ("moveDown", (1, 0))]:
+        await lab.do(artifact, step)
+        assert watcher.holds("pos2d") == [here, ("me", *here)]
+    await lab.do(artifact, "getRoute", 2, 0)
+    assert watcher.holds("direction") == [("east",)]
+    assert watcher.holds("degrees") == [(90,)]
+    await lab.do(artifact, "moveLeft")
+    await lab.do(artifact, "getRoute", 1, 0)
+    assert watcher.holds("degrees") == [(180,)]
+    await lab.do(artifact, "updatePos", "north", 1, 0)
+    await lab.do(artifact, "getRoute", 2, 0)
+    assert watcher.holds("degrees") == [(-90,)]
+    await lab.do(artifact, "getRoute", 1, 0)
+    assert watcher.holds("direction") == [("reached",)]
+    assert (await lab.call(artifact, "updatePos", "up", 1, 0)).reason == 'unknown_direction("up")'
 
 
-def test_the_distance_is_that_since_the_last_question() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
-        out = Out()
-        for _ in range(3):
-            await lab.do(artifact, "moveUp")
-        await lab.do(artifact, "updatePos", 4, 3)
-        await lab.do(artifact, "getDistance", out)
-        assert out.value == 3.5
-        await lab.do(artifact, "getDistance", out)
-        assert out.value == 0
-        await lab.do(artifact, "updatePos", 1, 7)
-        await lab.do(artifact, "getDistance", out)
-        assert out.value == 2.5
-
-    in_lab(body, None)
+async def test_the_distance_is_that_since_the_last_question(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
+    out = Out()
+    for _ in range(3):
+        await lab.do(artifact, "moveUp")
+    await lab.do(artifact, "updatePos", 4, 3)
+    await lab.do(artifact, "getDistance", out)
+    assert out.value == 3.5
+    await lab.do(artifact, "getDistance", out)
+    assert out.value == 0
+    await lab.do(artifact, "updatePos", 1, 7)
+    await lab.do(artifact, "getDistance", out)
+    assert out.value == 2.5
 
 
-def test_the_map_is_printed_north_at_the_top() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData, name="map")
-        await label(lab, artifact, [".#G", ". .", "..."])
-        await lab.do(artifact, "updateSlamData", 2, 2, "unknown")
-        await lab.do(artifact, "updateObject", "robot_2", 1, 2)
-        await lab.do(artifact, "updatePos", -1, 1)
-        await lab.do(artifact, "printSlamData")
-        assert lab.logged == ["[map]    2  .R", "[map]    1 @. .", "[map]    0  .#G", "[map]    x -1"]
-
-    in_lab(body, None)
+async def test_the_map_is_printed_north_at_the_top(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData, name="map")
+    await label(lab, artifact, [".#G", ". .", "..."])
+    await lab.do(artifact, "updateSlamData", 2, 2, "unknown")
+    await lab.do(artifact, "updateObject", "robot_2", 1, 2)
+    await lab.do(artifact, "updatePos", -1, 1)
+    await lab.do(artifact, "printSlamData")
+    assert lab.logged == ["[map]    2  .R", "[map]    1 @. .", "[map]    0  .#G", "[map]    x -1"]
 
 
-def test_a_route_leads_round_obstacles_to_the_goal_and_shows_the_direction() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, ["...", "##.", "G.."])
-        out = Out()
-        await lab.do(artifact, "getRoute", out)
-        way = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2)]
-        assert out.value == [cell(*each) for each in way]
-        assert watcher.holds("route") == [(out.value,)]
-        assert watcher.holds("degrees") == [(0,)]
-        await lab.do(artifact, "updatePos", 2, 0)
-        await lab.do(artifact, "getRoute", 2, 2)
-        assert watcher.holds("degrees") == [(90,)]
-        await lab.do(artifact, "getRoute", 2, 1, out)
-        assert out.value == [cell(2, 0), cell(2, 1)]
-
-    in_lab(body, None)
+async def test_a_route_leads_round_obstacles_to_the_goal_and_shows_the_direction(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, ["...", "##.", "G.."])
+    out = Out()
+    await lab.do(artifact, "getRoute", out)
+    way = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2)]
+    assert out.value == [cell(*each) for each in way]
+    assert watcher.holds("route") == [(out.value,)]
+    assert watcher.holds("degrees") == [(0,)]
+    await lab.do(artifact, "updatePos", 2, 0)
+    await lab.do(artifact, "getRoute", 2, 2)
+    assert watcher.holds("degrees") == [(90,)]
+    await lab.do(artifact, "getRoute", 2, 1, out)
+    assert out.value == [cell(2, 0), cell(2, 1)]
 
 
-def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData)
-        watcher = lab.watch(artifact)
-        await label(lab, artifact, [".#G"])
-        assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
-        assert (await lab.call(artifact, "getRoute", 1, 0)).reason == "no_route(1,0)"
-        assert (await lab.call(artifact, "getRoute", 7, 7)).reason == "no_route(7,7)"
-        assert watcher.holds("route") == [([],)]
-
-    in_lab(body, None)
+async def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData)
+    watcher = lab.watch(artifact)
+    await label(lab, artifact, [".#G"])
+    assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
+    assert (await lab.call(artifact, "getRoute", 1, 0)).reason == "no_route(1,0)"
+    assert (await lab.call(artifact, "getRoute", 7, 7)).reason == "no_route(7,7)"
+    assert watcher.holds("route") == [([],)]
 
 
-def test_the_label_of_obstacles_is_an_option() -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
-        for x, word in enumerate(["free", "wall", "goal"]):
-            await lab.do(artifact, "updateSlamData", x, 0, word)
-        assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
-
-    in_lab(body, None)
+async def test_the_label_of_obstacles_is_an_option(lab: Lab) -> None:
+    artifact = await lab.make(ArtSlamData, Structure("obstacle", ("wall",)))
+    for x, word in enumerate(["free", "wall", "goal"]):
+        await lab.do(artifact, "updateSlamData", x, 0, word)
+    assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
 
 
 # The search.
@@ -286,21 +247,17 @@ def relaxed(free: set[Cell], start: Cell) -> dict[Cell, float]:
     return costs
 
 
-def test_a_route_along_an_axis_is_a_word_and_how_far_to_turn_for_it() -> None:
+async def test_a_route_along_an_axis_is_a_word_and_how_far_to_turn_for_it(lab: Lab) -> None:
     """The grid navigation of the original system: one axis after the other."""
-
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtSlamData, "north")
-        watcher = lab.watch(artifact)
-        told = []
-        for current, goal, axis in ((0, -4, "Y"), (0, 3, "x"), (3, 3, "X"), (0, 2, "Y"), (5, 1, "X")):
-            await lab.do(artifact, "getRoute", current, goal, axis)
-            told.append((*watcher.holds("route")[0], *watcher.holds("degrees")[0]))
-        assert told == [("south", 180), ("east", 90), ("reached", 0), ("north", 90), ("west", 90)]
-        assert watcher.signals == [("tick_route", ())] * 5
-        await lab.do(artifact, "updateProperties", "east", 0)
-        await lab.do(artifact, "getRoute", 0, 1, "Y")
-        assert watcher.holds("degrees") == [(90,)]
-        assert (await lab.call(artifact, "getRoute", 0, 1, "Z")).reason == 'unknown_axis("Z")'
-
-    in_lab(body, None)
+    artifact = await lab.make(ArtSlamData, "north")
+    watcher = lab.watch(artifact)
+    told = []
+    for current, goal, axis in ((0, -4, "Y"), (0, 3, "x"), (3, 3, "X"), (0, 2, "Y"), (5, 1, "X")):
+        await lab.do(artifact, "getRoute", current, goal, axis)
+        told.append((*watcher.holds("route")[0], *watcher.holds("degrees")[0]))
+    assert told == [("south", 180), ("east", 90), ("reached", 0), ("north", 90), ("west", 90)]
+    assert watcher.signals == [("tick_route", ())] * 5
+    await lab.do(artifact, "updateProperties", "east", 0)
+    await lab.do(artifact, "getRoute", 0, 1, "Y")
+    assert watcher.holds("degrees") == [(90,)]
+    assert (await lab.call(artifact, "getRoute", 0, 1, "Z")).reason == 'unknown_axis("Z")'

@@ -7,10 +7,9 @@ from operator import itemgetter
 from typing import Any
 
 import pytest
-from mapped_lab import settle, with_mapped
+from mapped_lab import mapped, settle
 from robot_lab import TWIST, Lab, Watcher, apart
 
-from jacaros.artifacts import ArtifactId
 from jacaros.artifacts.mapping.file import MappingError, read_mapping
 
 POINT = "geometry_msgs/msg/PointStamped"
@@ -46,108 +45,90 @@ class Sender:
         await settle()
 
 
-def derived(entry: str, body: Any) -> Lab:
-    """Run *body* with a mapping that derives *entry*."""
-
-    async def in_it(lab: Lab, artifact: ArtifactId) -> None:
-        await body(Sender(lab, lab.watch(artifact)))
-
-    return with_mapped(f"{MAPPING}derived:\n  {entry}\n", in_it)
+async def derived(lab: Lab, entry: str) -> Sender:
+    """Make an artifact whose mapping derives *entry*."""
+    artifact = await lab.make(mapped(f"{MAPPING}derived:\n  {entry}\n"))
+    return Sender(lab, lab.watch(artifact))
 
 
-def test_a_count_of_signals_comes_and_goes_with_the_window() -> None:
-    async def body(s: Sender) -> None:
-        for _ in range(3):
-            await s.send("hit", 1.0)
-            await s.lab.sleep(0.5)
-        assert s.watcher.holds("often") == [()]
-        await s.lab.sleep(0.9)
-        assert s.watcher.holds("often") == [()]
-        await s.lab.sleep(0.2)
-        await settle()
-        assert s.watcher.holds("often") == []
-
-    derived("often: {count: hit, within: 2.5, at_least: 3}", body)
+async def test_a_count_of_signals_comes_and_goes_with_the_window(lab: Lab) -> None:
+    s = await derived(lab, "often: {count: hit, within: 2.5, at_least: 3}")
+    for _ in range(3):
+        await s.send("hit", 1.0)
+        await s.lab.sleep(0.5)
+    assert s.watcher.holds("often") == [()]
+    await s.lab.sleep(0.9)
+    assert s.watcher.holds("often") == [()]
+    await s.lab.sleep(0.2)
+    await settle()
+    assert s.watcher.holds("often") == []
 
 
-def test_messages_count_that_a_dead_band_drops() -> None:
-    async def body(s: Sender) -> None:
-        for x in (1.0, 2.0, 6.0):
-            await s.send("a", x)
-        assert s.watcher.values("number") == [(1,), (2,), (3,)]
-        await s.lab.sleep(10.1)
-        await settle()
-        assert s.watcher.holds("number") == []
-
-    derived("number: {count: a, within: 10}", body)
+async def test_messages_count_that_a_dead_band_drops(lab: Lab) -> None:
+    s = await derived(lab, "number: {count: a, within: 10}")
+    for x in (1.0, 2.0, 6.0):
+        await s.send("a", x)
+    assert s.watcher.values("number") == [(1,), (2,), (3,)]
+    await s.lab.sleep(10.1)
+    await settle()
+    assert s.watcher.holds("number") == []
 
 
-def test_stamps_count_and_not_arrivals() -> None:
-    async def body(s: Sender) -> None:
-        await s.send("a", 1.0)
-        await s.lab.sleep(2.0)
-        await s.send("a", 3.0, ago=1.0)
-        assert s.watcher.holds("recent") == [(2,)]
-        await s.lab.sleep(1.6)  # longer than the window after its stamp, not after its arrival
-        await settle()
-        assert s.watcher.holds("recent") == []
-
-    derived("recent: {count: a, within: 2.5}", body)
+async def test_stamps_count_and_not_arrivals(lab: Lab) -> None:
+    s = await derived(lab, "recent: {count: a, within: 2.5}")
+    await s.send("a", 1.0)
+    await s.lab.sleep(2.0)
+    await s.send("a", 3.0, ago=1.0)
+    assert s.watcher.holds("recent") == [(2,)]
+    await s.lab.sleep(1.6)  # longer than the window after its stamp, not after its arrival
+    await settle()
+    assert s.watcher.holds("recent") == []
 
 
-def test_a_message_that_took_long_counts_although_the_window_has_moved() -> None:
-    async def body(s: Sender) -> None:
-        await s.send("a", 1.0)
-        await s.lab.sleep(1.0)
-        await settle()
-        assert s.watcher.holds("many") == []
-        await s.send("a", 1.0, ago=0.15)
-        assert s.watcher.holds("many") == [(1,)]
-
-    derived("many: {count: a, within: 1}", body)
+async def test_a_message_that_took_long_counts_although_the_window_has_moved(lab: Lab) -> None:
+    s = await derived(lab, "many: {count: a, within: 1}")
+    await s.send("a", 1.0)
+    await s.lab.sleep(1.0)
+    await settle()
+    assert s.watcher.holds("many") == []
+    await s.send("a", 1.0, ago=0.15)
+    assert s.watcher.holds("many") == [(1,)]
 
 
-def test_topics_come_together_by_their_stamps() -> None:
-    async def body(s: Sender) -> None:
-        await s.lab.sleep(1.0)
-        await s.send("b", 10.0)
-        await s.lab.sleep(0.1)
-        await s.send("a", 1.0, ago=0.08)
-        await s.send("a", 2.0)
-        assert s.watcher.values("joined") == [(1.0, 10.0)]
-
-    derived("joined: {together: [a, b], within: 0.05}", body)
+async def test_topics_come_together_by_their_stamps(lab: Lab) -> None:
+    s = await derived(lab, "joined: {together: [a, b], within: 0.05}")
+    await s.lab.sleep(1.0)
+    await s.send("b", 10.0)
+    await s.lab.sleep(0.1)
+    await s.send("a", 1.0, ago=0.08)
+    await s.send("a", 2.0)
+    assert s.watcher.values("joined") == [(1.0, 10.0)]
 
 
-def test_entries_may_be_derived_of_those_above() -> None:
-    async def body(s: Sender) -> None:
-        for x in (5.0, 50.0, 5.0):
-            await s.send("a", x)
-        assert s.watcher.holds("unsteady") == [()]
-
-    derived(
+async def test_entries_may_be_derived_of_those_above(lab: Lab) -> None:
+    s = await derived(
+        lab,
         "low: {hysteresis: a, on_below: 10, off_above: 20}\n  unsteady: {count: low, within: 5, at_least: 2}",
-        body,
     )
+    for x in (5.0, 50.0, 5.0):
+        await s.send("a", x)
+    assert s.watcher.holds("unsteady") == [()]
 
 
-def test_frames_are_streams() -> None:
+async def test_frames_are_streams(lab: Lab) -> None:
     text = """
 frames:
   pose: {target: map, source: base_link}
 derived:
   far: {hysteresis: pose, on_above: 1.5, off_below: 0.5}
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        watcher, seen = lab.watch(artifact), []
-        for x in (0.0, 1.6, 0.8, 0.4):
-            await _stand(lab, x)
-            await lab.sleep(0.5)
-            seen.append(watcher.holds("far") == [()])
-        assert seen == [False, True, True, False]
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    watcher, seen = lab.watch(artifact), []
+    for x in (0.0, 1.6, 0.8, 0.4):
+        await _stand(lab, x)
+        await lab.sleep(0.5)
+        seen.append(watcher.holds("far") == [()])
+    assert seen == [False, True, True, False]
 
 
 AT_STAMPS = f"""
@@ -162,39 +143,37 @@ derived:
 """
 
 
-def test_a_frame_is_looked_up_at_the_stamps_of_messages() -> None:
+@pytest.mark.world("empty")
+async def test_a_frame_is_looked_up_at_the_stamps_of_messages(lab: Lab) -> None:
     """The robot drives a circle at 0.5 m/s; poses are compared with the true ones of the stamps.
 
     The simulator sends tf and scans at the same ticks, every 50 ms and every 200 ms. The stamps of the marks are between,
     and the world moves in steps of 20 ms, 10 mm and 1.1 degrees.
     """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        watcher = lab.watch(artifact)
-        truth: list[tuple[float, tuple[float, float, float]]] = []
-        wheels = lab.backend.publisher("/cmd_vel", TWIST)
-        marks = lab.backend.publisher("mark", POINT)
-        for _ in range(40):
-            wheels.publish(wheels.message(linear={"x": 0.5}, angular={"z": 1.0}))
-            for step in range(20):
-                truth.append((lab.clock.now(), lab.pose()))
-                if step == 13:
-                    marks.publish(marks.message(header={"stamp": lab.clock.now()}))
-                await lab.sleep(0.005)
-        stamp, newest = 0.0, []
-        for name, values in watcher.changes:
-            if name == "scan":
-                stamp = float(str(values[0]))
-            elif name == "pose" and stamp:
-                newest.append(_off(stamp, values, truth))
-        assert max(newest) > (0.05, 5.0)
-        for name, count, most in (("at_scan", 19, 1e-9), ("at_mark", 39, 0.005)):
-            off = [_off(float(str(stamp)), pose, truth) for stamp, *pose in watcher.values(name)]
-            assert len(off) >= count
-            assert max(metres for metres, _ in off) < most
-            assert max(degrees for _, degrees in off) < 100.0 * most
-
-    with_mapped(AT_STAMPS, body, world="empty")
+    artifact = await lab.make(mapped(AT_STAMPS))
+    watcher = lab.watch(artifact)
+    truth: list[tuple[float, tuple[float, float, float]]] = []
+    wheels = lab.backend.publisher("/cmd_vel", TWIST)
+    marks = lab.backend.publisher("mark", POINT)
+    for _ in range(40):
+        wheels.publish(wheels.message(linear={"x": 0.5}, angular={"z": 1.0}))
+        for step in range(20):
+            truth.append((lab.clock.now(), lab.pose()))
+            if step == 13:
+                marks.publish(marks.message(header={"stamp": lab.clock.now()}))
+            await lab.sleep(0.005)
+    stamp, newest = 0.0, []
+    for name, values in watcher.changes:
+        if name == "scan":
+            stamp = float(str(values[0]))
+        elif name == "pose" and stamp:
+            newest.append(_off(stamp, values, truth))
+    assert max(newest) > (0.05, 5.0)
+    for name, count, most in (("at_scan", 19, 1e-9), ("at_mark", 39, 0.005)):
+        off = [_off(float(str(stamp)), pose, truth) for stamp, *pose in watcher.values(name)]
+        assert len(off) >= count
+        assert max(metres for metres, _ in off) < most
+        assert max(degrees for _, degrees in off) < 100.0 * most
 
 
 TWO_AND_A_FRAME = """
@@ -205,42 +184,36 @@ derived:
 """
 
 
-def test_a_frame_and_two_topics_come_together() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        s = Sender(lab, lab.watch(artifact))
-        await lab.sleep(1.0)
-        for x in (0.0, 1.0):
-            await _stand(lab, x)
-            await lab.sleep(0.2)
-        await s.send("b", 9.0, ago=0.29)
-        assert s.watcher.holds("scene") == []
-        await s.send("a", 5.0, ago=0.3)  # 0.1 s after the first transform, of the two that are 0.2 s apart
-        assert s.watcher.holds("scene") == [(5.0, pytest.approx(0.5, abs=1e-5), 0.0, 0.0, 9.0)]
-
-    with_mapped(MAPPING + TWO_AND_A_FRAME, body)
-
-
-def test_a_message_without_a_transform_is_dropped_and_logged() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        s = Sender(lab, lab.watch(artifact))
-        await lab.sleep(4.0)
-        await _stand(lab, 0.0)
-        await lab.sleep(0.1)
-        await s.send("a", 1.0)
-        await s.send("b", 2.0)
+async def test_a_frame_and_two_topics_come_together(lab: Lab) -> None:
+    artifact = await lab.make(mapped(MAPPING + TWO_AND_A_FRAME))
+    s = Sender(lab, lab.watch(artifact))
+    await lab.sleep(1.0)
+    for x in (0.0, 1.0):
+        await _stand(lab, x)
         await lab.sleep(0.2)
-        assert not any("without a transform" in line for line in lab.logged)
-        await lab.sleep(0.1)
-        assert any(
-            "`scene`: dropped 1 message without a transform: no transform" in line for line in lab.logged
-        )
-        await s.send("a", 3.0)
-        await s.send("b", 4.0)
-        await lab.sleep(0.1)
-        await _stand(lab, 0.2)
-        assert [each[0] for each in s.watcher.holds("scene")] == [3.0]
+    await s.send("b", 9.0, ago=0.29)
+    assert s.watcher.holds("scene") == []
+    await s.send("a", 5.0, ago=0.3)  # 0.1 s after the first transform, of the two that are 0.2 s apart
+    assert s.watcher.holds("scene") == [(5.0, pytest.approx(0.5, abs=1e-5), 0.0, 0.0, 9.0)]
 
-    with_mapped(MAPPING + TWO_AND_A_FRAME, body)
+
+async def test_a_message_without_a_transform_is_dropped_and_logged(lab: Lab) -> None:
+    artifact = await lab.make(mapped(MAPPING + TWO_AND_A_FRAME))
+    s = Sender(lab, lab.watch(artifact))
+    await lab.sleep(4.0)
+    await _stand(lab, 0.0)
+    await lab.sleep(0.1)
+    await s.send("a", 1.0)
+    await s.send("b", 2.0)
+    await lab.sleep(0.2)
+    assert not any("without a transform" in line for line in lab.logged)
+    await lab.sleep(0.1)
+    assert any("`scene`: dropped 1 message without a transform: no transform" in line for line in lab.logged)
+    await s.send("a", 3.0)
+    await s.send("b", 4.0)
+    await lab.sleep(0.1)
+    await _stand(lab, 0.2)
+    assert [each[0] for each in s.watcher.holds("scene")] == [3.0]
 
 
 async def _stand(lab: Lab, x: float) -> None:

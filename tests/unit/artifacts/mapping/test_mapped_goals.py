@@ -4,7 +4,7 @@ import asyncio
 from typing import Any
 
 import pytest
-from mapped_lab import settle, with_mapped
+from mapped_lab import mapped, settle, with_mapped
 from robot_lab import Lab
 
 from jacaros.artifacts import ArtifactId, Out
@@ -53,84 +53,70 @@ def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
     return events
 
 
-def test_a_goal_with_feedback_and_result() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        watcher, out = lab.watch(artifact), Out()
-        await lab.do(artifact, "count", 3, 1, out)
-        await settle()
-        assert out.value == 3
-        assert watcher.values("at") == [(1,), (2,), (3,)]
-        assert watcher.holds("at") == []
-
-    with_mapped(COUNT.replace("MORE", ""), body)
+async def test_a_goal_with_feedback_and_result(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+    offer(lab)
+    watcher, out = lab.watch(artifact), Out()
+    await lab.do(artifact, "count", 3, 1, out)
+    await settle()
+    assert out.value == 3
+    assert watcher.values("at") == [(1,), (2,), (3,)]
+    assert watcher.holds("at") == []
 
 
-def test_a_cancelled_operation_cancels_its_goal() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        watcher = lab.watch(artifact)
-        run = lab.begin(artifact, "count", 9, 1, Out())
-        await lab.sleep(1.5)
-        assert watcher.holds("at") == [(1,)]
-        run.execution.cancel()
-        await lab.sleep(0.1)
-        assert events == ["begin", "cancelled"]
-        assert watcher.holds("at") == []
-
-    with_mapped(COUNT.replace("MORE", ""), body)
+async def test_a_cancelled_operation_cancels_its_goal(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+    events = offer(lab)
+    watcher = lab.watch(artifact)
+    run = lab.begin(artifact, "count", 9, 1, Out())
+    await lab.sleep(1.5)
+    assert watcher.holds("at") == [(1,)]
+    run.execution.cancel()
+    await lab.sleep(0.1)
+    assert events == ["begin", "cancelled"]
+    assert watcher.holds("at") == []
 
 
-def test_an_aborted_goal_fails_with_the_reason() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
-
-    with_mapped(COUNT.replace("MORE", ""), body)
+async def test_an_aborted_goal_fails_with_the_reason(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+    offer(lab)
+    assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
 
 
-def test_a_goal_that_is_rejected() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab, ActionPolicy(accept=lambda goal: "no"))
-        assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
-
-    with_mapped(COUNT.replace("MORE", ""), body)
+async def test_a_goal_that_is_rejected(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+    offer(lab, ActionPolicy(accept=lambda goal: "no"))
+    assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
 
 
-def test_a_goal_that_takes_too_long() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
-        await lab.sleep(0.1)
-        assert events == ["begin", "cancelled"]
-
-    with_mapped(COUNT.replace("MORE", "timeout: 3"), body)
+async def test_a_goal_that_takes_too_long(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "timeout: 3")))
+    events = offer(lab)
+    assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
+    await lab.sleep(0.1)
+    assert events == ["begin", "cancelled"]
 
 
-def test_a_goal_without_success_fails() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        offer(lab)
-        assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
-        await lab.do(artifact, "count", 3, 1, Out())
-
-    with_mapped(COUNT.replace("MORE", "success: {path: last, is: 3}"), body)
+async def test_a_goal_without_success_fails(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "success: {path: last, is: 3}")))
+    offer(lab)
+    assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
+    await lab.do(artifact, "count", 3, 1, Out())
 
 
-def test_a_suspended_goal_is_cancelled_and_sent_again() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        events = offer(lab)
-        out = Out()
-        run = lab.begin(artifact, "count", 3, 1, out)
-        await lab.sleep(1.5)
-        run.execution.pause()
-        await lab.sleep(1)
-        assert events == ["begin", "cancelled"]
-        run.execution.resume()
-        await run.done
-        assert events == ["begin", "cancelled", "begin"]
-        assert out.value == 3
-
-    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+async def test_a_suspended_goal_is_cancelled_and_sent_again(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "suspend: cancel")))
+    events = offer(lab)
+    out = Out()
+    run = lab.begin(artifact, "count", 3, 1, out)
+    await lab.sleep(1.5)
+    run.execution.pause()
+    await lab.sleep(1)
+    assert events == ["begin", "cancelled"]
+    run.execution.resume()
+    await run.done
+    assert events == ["begin", "cancelled", "begin"]
+    assert out.value == 3
 
 
 def test_a_goal_is_cancelled_while_suspended_by_default() -> None:
@@ -172,24 +158,20 @@ operations:
 """
 
 
-def test_a_value_outside_the_range_of_its_field_fails_the_operation() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        assert (await lab.call(artifact, "say", 256 * "x")).reason == 'wrong_value("nested_type_name")'
-        assert (await lab.call(artifact, "form", [1, 2, 3, 4])).reason == 'wrong_value("dimensions")'
-        assert (await lab.call(artifact, "buzz", 256)).reason == 'wrong_value("id")'
-        await lab.do(artifact, "say", 255 * "x")
-        await lab.do(artifact, "form", [1, 2, 3])
-        await lab.do(artifact, "buzz", 255)
-
-    with_mapped(BOUNDED, body)
+async def test_a_value_outside_the_range_of_its_field_fails_the_operation(lab: Lab) -> None:
+    artifact = await lab.make(mapped(BOUNDED))
+    assert (await lab.call(artifact, "say", 256 * "x")).reason == 'wrong_value("nested_type_name")'
+    assert (await lab.call(artifact, "form", [1, 2, 3, 4])).reason == 'wrong_value("dimensions")'
+    assert (await lab.call(artifact, "buzz", 256)).reason == 'wrong_value("id")'
+    await lab.do(artifact, "say", 255 * "x")
+    await lab.do(artifact, "form", [1, 2, 3])
+    await lab.do(artifact, "buzz", 255)
 
 
-def test_a_negative_duration_is_refused_before_anything_is_sent() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        assert (await lab.call(artifact, "mark", -3)).reason == 'wrong_value("lifetime")'
-        await lab.do(artifact, "mark", 3)
-
-    with_mapped(MARK, body)
+async def test_a_negative_duration_is_refused_before_anything_is_sent(lab: Lab) -> None:
+    artifact = await lab.make(mapped(MARK))
+    assert (await lab.call(artifact, "mark", -3)).reason == 'wrong_value("lifetime")'
+    await lab.do(artifact, "mark", 3)
 
 
 DOCK = """
@@ -210,15 +192,16 @@ operations:
         ("aborted: [num_retries, success]", 'aborted(902,"no dock",3,true)'),
     ],
 )
-def test_an_aborted_goal_has_the_code_and_the_fields_of_the_mapping(more: str, reason: str) -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        async def execute(goal: ServerGoal) -> Any:
-            raise Abort("no dock", {"error_code": 902, "num_retries": 3})
+async def test_an_aborted_goal_has_the_code_and_the_fields_of_the_mapping(
+    lab: Lab, more: str, reason: str
+) -> None:
+    artifact = await lab.make(mapped(DOCK.replace("MORE", more)))
 
-        lab.backend.action_server("dock", "nav2_msgs/action/DockRobot", execute)
-        assert (await lab.call(artifact, "dock")).reason == reason
+    async def execute(goal: ServerGoal) -> Any:
+        raise Abort("no dock", {"error_code": 902, "num_retries": 3})
 
-    with_mapped(DOCK.replace("MORE", more), body)
+    lab.backend.action_server("dock", "nav2_msgs/action/DockRobot", execute)
+    assert (await lab.call(artifact, "dock")).reason == reason
 
 
 def test_a_code_or_field_that_the_result_does_not_have_is_an_error() -> None:
@@ -226,35 +209,34 @@ def test_a_code_or_field_that_the_result_does_not_have_is_an_error() -> None:
         check_mapping(read_mapping(DOCK.replace("MORE", "code: reason")), stored_interfaces(()))
 
 
-def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        async def brake(goal: ServerGoal) -> Any:
-            try:
-                goal.feedback(current=1)
-                await lab.clock.sleep(100)
-            except asyncio.CancelledError:
-                for number in range(2, 9):
-                    goal.feedback(current=number)
-                    await lab.clock.sleep(0.1)
-                raise
+async def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing(lab: Lab) -> None:
+    artifact = await lab.make(mapped(COUNT.replace("MORE", "suspend: cancel")))
 
-        lab.backend.action_server("count", "jacaros_interfaces/action/Count", brake)
-        watcher = lab.watch(artifact)
-        run = lab.begin(artifact, "count", 9, 1, Out())
-        await lab.sleep(1)
-        assert watcher.holds("at") == [(1,)]
-        run.execution.pause()
-        await lab.sleep(2)
-        assert watcher.holds("at") == []
-        run.execution.resume()
-        await lab.sleep(1)
-        assert watcher.holds("at") == [(1,)]
-        run.execution.cancel()
-        await lab.sleep(2)
-        assert watcher.holds("at") == []
-        assert watcher.values("at") == [(1,), (1,)]
+    async def brake(goal: ServerGoal) -> Any:
+        try:
+            goal.feedback(current=1)
+            await lab.clock.sleep(100)
+        except asyncio.CancelledError:
+            for number in range(2, 9):
+                goal.feedback(current=number)
+                await lab.clock.sleep(0.1)
+            raise
 
-    with_mapped(COUNT.replace("MORE", "suspend: cancel"), body)
+    lab.backend.action_server("count", "jacaros_interfaces/action/Count", brake)
+    watcher = lab.watch(artifact)
+    run = lab.begin(artifact, "count", 9, 1, Out())
+    await lab.sleep(1)
+    assert watcher.holds("at") == [(1,)]
+    run.execution.pause()
+    await lab.sleep(2)
+    assert watcher.holds("at") == []
+    run.execution.resume()
+    await lab.sleep(1)
+    assert watcher.holds("at") == [(1,)]
+    run.execution.cancel()
+    await lab.sleep(2)
+    assert watcher.holds("at") == []
+    assert watcher.values("at") == [(1,), (1,)]
 
 
 HOLD = """
@@ -334,7 +316,7 @@ def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again() -> N
     with_mapped(text, body)
 
 
-def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter() -> None:
+async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab) -> None:
     text = (
         COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}")
         + """
@@ -342,24 +324,21 @@ def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter() -> None:
   go_on: {set_parameter: speed, node: lab, value: 1}
 """
     )
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        own = lab.backend.parameters()
-        own.declare("speed", Declaration(0))
-        held: list[bool] = []
-        lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
-        offer(lab)
-        run = lab.begin(artifact, "count", 3, 1, Out())
-        await lab.sleep(0.5)
-        run.execution.pause()
-        await lab.sleep(1)
-        assert held == [True]
-        assert await own.get("speed") == 0
-        run.execution.resume()
-        await run.done
-        assert await own.get("speed") == 1
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    own = lab.backend.parameters()
+    own.declare("speed", Declaration(0))
+    held: list[bool] = []
+    lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
+    offer(lab)
+    run = lab.begin(artifact, "count", 3, 1, Out())
+    await lab.sleep(0.5)
+    run.execution.pause()
+    await lab.sleep(1)
+    assert held == [True]
+    assert await own.get("speed") == 0
+    run.execution.resume()
+    await run.done
+    assert await own.get("speed") == 1
 
 
 def test_a_dropped_goal_leaves_no_paused_server_behind() -> None:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Awaitable, Callable
 
 import pytest
-from mapped_lab import mapped, settle, with_mapped
+from mapped_lab import mapped, settle
 from robot_lab import STANDSTILL, Lab, in_lab
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
@@ -30,141 +30,121 @@ operations:
 # ---- publishing
 
 
-def test_publishing_once() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        await lab.do(artifact, "go", 0.5)
-        await settle()
-        assert lab.last_command == (0.5, 0.0)
-
-    with_mapped(DRIVE, body)
+async def test_publishing_once(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    await lab.do(artifact, "go", 0.5)
+    await settle()
+    assert lab.last_command == (0.5, 0.0)
 
 
-def test_publishing_for_a_while_ends_with_zero() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        await lab.do(artifact, "drive", 0.5, 180, 1)
-        await settle()
-        times = [time for time, *_ in lab.commands]
-        assert times == [round(0.1 * n, 6) for n in range(11)]
-        assert lab.commands[0][1:] == pytest.approx((0.5, 3.141592653589793))
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_publishing_for_a_while_ends_with_zero(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    await lab.do(artifact, "drive", 0.5, 180, 1)
+    await settle()
+    times = [time for time, *_ in lab.commands]
+    assert times == [round(0.1 * n, 6) for n in range(11)]
+    assert lab.commands[0][1:] == pytest.approx((0.5, 3.141592653589793))
+    assert lab.last_command == STANDSTILL
 
 
-def test_a_robot_stops_when_its_operation_is_cancelled() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        run = lab.begin(artifact, "drive", 0.5, 0, 10)
-        await lab.sleep(1)
-        run.execution.cancel()
-        await settle()
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_a_robot_stops_when_its_operation_is_cancelled(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    run = lab.begin(artifact, "drive", 0.5, 0, 10)
+    await lab.sleep(1)
+    run.execution.cancel()
+    await settle()
+    assert lab.last_command == STANDSTILL
 
 
-def test_publishing_for_a_while_fails_when_the_process_was_frozen_meanwhile() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        run = lab.begin(artifact, "drive", 0.5, 0, 10)
-        await lab.sleep(1)
-        lab.clock.busy(2000 * lab.clock.CYCLES_PER_MILLISECOND)
-        await run.done
-        await settle()
-        assert run.reason == "interrupted(3)"
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_publishing_for_a_while_fails_when_the_process_was_frozen_meanwhile(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    run = lab.begin(artifact, "drive", 0.5, 0, 10)
+    await lab.sleep(1)
+    lab.clock.busy(2000 * lab.clock.CYCLES_PER_MILLISECOND)
+    await run.done
+    await settle()
+    assert run.reason == "interrupted(3)"
+    assert lab.last_command == STANDSTILL
 
 
-def test_publishing_for_a_while_fails_when_a_guard_has_stopped_the_robot() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        run = lab.begin(artifact, "drive", 0.5, 0, 10)
-        await lab.sleep(1)
-        guarded_by(lab.backend).interrupt()
-        await run.done
-        await settle()
-        assert run.reason == "interrupted(1)"
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_publishing_for_a_while_fails_when_a_guard_has_stopped_the_robot(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    run = lab.begin(artifact, "drive", 0.5, 0, 10)
+    await lab.sleep(1)
+    guarded_by(lab.backend).interrupt()
+    await run.done
+    await settle()
+    assert run.reason == "interrupted(1)"
+    assert lab.last_command == STANDSTILL
 
 
-def test_a_pause_stops_the_robot_and_does_not_count() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        run = lab.begin(artifact, "drive", 0.5, 0, 2)
-        await lab.sleep(1.05)
-        run.execution.pause()
-        await settle()
-        assert lab.last_command == STANDSTILL
-        count = len(lab.commands)
-        await lab.sleep(5)
-        assert len(lab.commands) == count
-        run.execution.resume()
-        await run.done
-        assert lab.clock.elapsed == pytest.approx(7.0)
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_a_pause_stops_the_robot_and_does_not_count(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    run = lab.begin(artifact, "drive", 0.5, 0, 2)
+    await lab.sleep(1.05)
+    run.execution.pause()
+    await settle()
+    assert lab.last_command == STANDSTILL
+    count = len(lab.commands)
+    await lab.sleep(5)
+    assert len(lab.commands) == count
+    run.execution.resume()
+    await run.done
+    assert lab.clock.elapsed == pytest.approx(7.0)
+    assert lab.last_command == STANDSTILL
 
 
-def test_one_motion_waits_for_another() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        first = lab.begin(artifact, "drive", 0.5, 0, 1)
-        second = lab.begin(artifact, "drive", -0.5, 0, 1)
-        await first.done
-        await second.done
-        assert lab.clock.elapsed == pytest.approx(2.0)
-        signs = [speed for _, speed, _ in lab.commands if speed]
-        assert signs == sorted(signs, reverse=True)
-
-    with_mapped(DRIVE, body)
+async def test_one_motion_waits_for_another(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    first = lab.begin(artifact, "drive", 0.5, 0, 1)
+    second = lab.begin(artifact, "drive", -0.5, 0, 1)
+    await first.done
+    await second.done
+    assert lab.clock.elapsed == pytest.approx(2.0)
+    signs = [speed for _, speed, _ in lab.commands if speed]
+    assert signs == sorted(signs, reverse=True)
 
 
-def test_a_motion_that_is_suspended_while_it_waits_does_not_stop_the_one_that_drives() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        first = lab.begin(artifact, "drive", 0.5, 0, 2)
-        second = lab.begin(artifact, "drive", -0.5, 0, 1)
-        await lab.sleep(1.05)
-        second.execution.pause()
-        await lab.sleep(0.5)
-        assert STANDSTILL not in [command for _, *command in lab.commands]
-        assert all(speed == 0.5 for _, speed, _ in lab.commands)
-        second.execution.cancel()
-        await first.done
-        await settle()
-        assert lab.commands[-1][0] == pytest.approx(2)
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_a_motion_that_is_suspended_while_it_waits_does_not_stop_the_one_that_drives(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    first = lab.begin(artifact, "drive", 0.5, 0, 2)
+    second = lab.begin(artifact, "drive", -0.5, 0, 1)
+    await lab.sleep(1.05)
+    second.execution.pause()
+    await lab.sleep(0.5)
+    assert STANDSTILL not in [command for _, *command in lab.commands]
+    assert all(speed == 0.5 for _, speed, _ in lab.commands)
+    second.execution.cancel()
+    await first.done
+    await settle()
+    assert lab.commands[-1][0] == pytest.approx(2)
+    assert lab.last_command == STANDSTILL
 
 
-def test_a_robot_that_was_sent_a_velocity_stops_when_the_artifact_goes() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        await lab.do(artifact, "go", 0.5)
-        lab.workspace.dispose_artifact(artifact)
-        await settle()
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_a_robot_that_was_sent_a_velocity_stops_when_the_artifact_goes(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    await lab.do(artifact, "go", 0.5)
+    lab.workspace.dispose_artifact(artifact)
+    await settle()
+    assert lab.last_command == STANDSTILL
 
 
-def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        await lab.do(artifact, "go", 0.5)
-        lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # what a signal of the system does
-        await settle()
-        assert lab.last_command == STANDSTILL
-
-    with_mapped(DRIVE, body)
+async def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends(lab: Lab) -> None:
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    await lab.do(artifact, "go", 0.5)
+    lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # what a signal of the system does
+    await settle()
+    assert lab.last_command == STANDSTILL
 
 
 @pytest.mark.parametrize(
@@ -175,35 +155,30 @@ def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends() -> None:
         ((float("inf"),), 'wrong_value("velocity")'),
     ],
 )
-def test_a_value_that_does_not_fit_fails_and_sends_nothing(
-    arguments: tuple[object, ...], reason: str
+async def test_a_value_that_does_not_fit_fails_and_sends_nothing(
+    lab: Lab, arguments: tuple[object, ...], reason: str
 ) -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.record()
-        assert (await lab.call(artifact, "go", *arguments)).reason == reason
-        await settle()
-        assert lab.commands == []
-
-    with_mapped(DRIVE, body)
+    artifact = await lab.make(mapped(DRIVE))
+    lab.record()
+    assert (await lab.call(artifact, "go", *arguments)).reason == reason
+    await settle()
+    assert lab.commands == []
 
 
-def test_a_missing_type_is_taken_from_the_subscriber() -> None:
+async def test_a_missing_type_is_taken_from_the_subscriber(lab: Lab) -> None:
     text = "operations: {go: {parameters: [v], publish: cmd_vel, fields: {linear.x: $v}}}"
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        failed = await lab.call(artifact, "go", 1)
-        assert failed.reason == 'type_unknown("/cmd_vel")'
-        assert failed.outcome is not None
-        assert "write its type in m.yaml:1" in (failed.outcome.message or "")
-        lab.record()
-        await lab.do(artifact, "go", 1)
-        await settle()
-        assert lab.last_command == (1.0, 0.0)
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    failed = await lab.call(artifact, "go", 1)
+    assert failed.reason == 'type_unknown("/cmd_vel")'
+    assert failed.outcome is not None
+    assert "write its type in m.yaml:1" in (failed.outcome.message or "")
+    lab.record()
+    await lab.do(artifact, "go", 1)
+    await settle()
+    assert lab.last_command == (1.0, 0.0)
 
 
-def test_a_last_message_of_ones_own() -> None:
+async def test_a_last_message_of_ones_own(lab: Lab) -> None:
     text = """
 operations:
   horn:
@@ -214,17 +189,12 @@ operations:
     rate: 4
     duration: 1
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        heard: list[bool] = []
-        lab.backend.subscription(
-            "horn", "std_msgs/msg/Bool", lambda sample: heard.append(sample.message.data)
-        )
-        await lab.do(artifact, "horn")
-        await settle()
-        assert heard == [True] * 4 + [False]
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    heard: list[bool] = []
+    lab.backend.subscription("horn", "std_msgs/msg/Bool", lambda sample: heard.append(sample.message.data))
+    await lab.do(artifact, "horn")
+    await settle()
+    assert heard == [True] * 4 + [False]
 
 
 # ---- waiting for a subscriber
@@ -364,29 +334,23 @@ operations:
 """
 
 
-def test_a_service_with_request_and_output() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.backend.service("/r1/add", "example_interfaces/srv/AddTwoInts", lambda r: {"sum": r.a + r.b})
-        out = Out()
-        await lab.do(artifact, "add", 2, 3, out)
-        assert out.value == 5
-
-    with_mapped(ADD, body, "r1")
+async def test_a_service_with_request_and_output(lab: Lab) -> None:
+    artifact = await lab.make(mapped(ADD), "r1")
+    lab.backend.service("/r1/add", "example_interfaces/srv/AddTwoInts", lambda r: {"sum": r.a + r.b})
+    out = Out()
+    await lab.do(artifact, "add", 2, 3, out)
+    assert out.value == 5
 
 
-def test_a_service_that_is_not_there() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        assert (await lab.call(artifact, "add", 2, 3, Out())).reason == "service_unavailable(add)"
-        assert lab.clock.elapsed == pytest.approx(10.0)
-
-    with_mapped(ADD, body)
+async def test_a_service_that_is_not_there(lab: Lab) -> None:
+    artifact = await lab.make(mapped(ADD))
+    assert (await lab.call(artifact, "add", 2, 3, Out())).reason == "service_unavailable(add)"
+    assert lab.clock.elapsed == pytest.approx(10.0)
 
 
-def test_a_request_that_does_not_fit() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        assert (await lab.call(artifact, "add", 2.5, 3, Out())).reason == 'wrong_value("a")'
-
-    with_mapped(ADD, body)
+async def test_a_request_that_does_not_fit(lab: Lab) -> None:
+    artifact = await lab.make(mapped(ADD))
+    assert (await lab.call(artifact, "add", 2.5, 3, Out())).reason == 'wrong_value("a")'
 
 
 @pytest.mark.parametrize(
@@ -398,30 +362,24 @@ def test_a_request_that_does_not_fit() -> None:
         (", success: {path: message, is: not now}", "None"),
     ],
 )
-def test_a_service_that_refuses(more: str, reason: str) -> None:
+async def test_a_service_that_refuses(lab: Lab, more: str, reason: str) -> None:
     text = f"operations: {{go: {{service: s, type: std_srvs/srv/Trigger{more}}}}}"
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": False, "message": "not now"})
-        assert (await lab.call(artifact, "go")).reason == reason
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": False, "message": "not now"})
+    assert (await lab.call(artifact, "go")).reason == reason
 
 
-def test_the_type_of_a_service_is_found() -> None:
+async def test_the_type_of_a_service_is_found(lab: Lab) -> None:
     text = "operations: {go: {service: s, outputs: [message]}}"
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        assert (await lab.call(artifact, "go", Out())).reason == 'type_unknown("/s")'
-        lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": True, "message": "done"})
-        out = Out()
-        await lab.do(artifact, "go", out)
-        assert out.value == "done"
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    assert (await lab.call(artifact, "go", Out())).reason == 'type_unknown("/s")'
+    lab.backend.service("s", "std_srvs/srv/Trigger", lambda _: {"success": True, "message": "done"})
+    out = Out()
+    await lab.do(artifact, "go", out)
+    assert out.value == "done"
 
 
-def test_frames_in_goals_get_the_prefix_of_the_robot() -> None:
+async def test_frames_in_goals_get_the_prefix_of_the_robot(lab: Lab) -> None:
     text = """
 operations:
   look:
@@ -430,20 +388,17 @@ operations:
     fields: {header.frame_id: base_link, header.stamp: now}
   far: {publish: p, type: geometry_msgs/msg/PointStamped, fields: {header.frame_id: map}}
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        heard: list[str] = []
-        lab.backend.subscription(
-            "/r1/p",
-            "geometry_msgs/msg/PointStamped",
-            lambda sample: heard.append(sample.message.header.frame_id),
-        )
-        await lab.do(artifact, "look")
-        await lab.do(artifact, "far")
-        await settle()
-        assert heard == ["r1/base_link", "map"]
-
-    with_mapped(text, body, "r1")
+    artifact = await lab.make(mapped(text), "r1")
+    heard: list[str] = []
+    lab.backend.subscription(
+        "/r1/p",
+        "geometry_msgs/msg/PointStamped",
+        lambda sample: heard.append(sample.message.header.frame_id),
+    )
+    await lab.do(artifact, "look")
+    await lab.do(artifact, "far")
+    await settle()
+    assert heard == ["r1/base_link", "map"]
 
 
 # ---- parameters, and properties on demand
@@ -457,88 +412,74 @@ operations:
 """
 
 
-def test_parameters_of_nodes_are_set_and_given() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        own = lab.backend.parameters()
-        own.declare("speed", Declaration(0.5, maximum=2.0))
-        await lab.do(artifact, "limit", 75)
-        assert await own.get("speed") == 0.75
-        await lab.do(artifact, "set", 1)
-        out = Out()
-        await lab.do(artifact, "limited", out)
-        assert out.value == 1.0
-        assert (await lab.call(artifact, "set", 3)).reason == "parameter_refused(speed)"
-        assert (await lab.call(artifact, "lost", Out())).reason == "parameter_unknown(spede)"
-
-    with_mapped(PARAMETERS, body)
+async def test_parameters_of_nodes_are_set_and_given(lab: Lab) -> None:
+    artifact = await lab.make(mapped(PARAMETERS))
+    own = lab.backend.parameters()
+    own.declare("speed", Declaration(0.5, maximum=2.0))
+    await lab.do(artifact, "limit", 75)
+    assert await own.get("speed") == 0.75
+    await lab.do(artifact, "set", 1)
+    out = Out()
+    await lab.do(artifact, "limited", out)
+    assert out.value == 1.0
+    assert (await lab.call(artifact, "set", 3)).reason == "parameter_refused(speed)"
+    assert (await lab.call(artifact, "lost", Out())).reason == "parameter_unknown(spede)"
 
 
-def test_a_parameter_that_is_not_a_number_has_no_unit() -> None:
+async def test_a_parameter_that_is_not_a_number_has_no_unit(lab: Lab) -> None:
     text = """
 operations:
   turn: {get_parameter: turn, node: lab, outputs: [{path: ., unit: degrees, round: 0, names: {none: nowhere}}]}
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        own, out = lab.backend.parameters(), Out()
-        own.declare("turn", Declaration("left"))
-        failed = await lab.call(artifact, "turn", out)
-        assert failed.reason == 'wrong_value("turn")'
-        assert failed.outcome is not None
-        assert (
-            'parameter `turn`: expected a number, found "left": leave out its unit' in failed.outcome.message
-        )
-        await own.set("turn", "none")
-        await lab.do(artifact, "turn", out)
-        assert out.value == Atom("nowhere")
-        own.withdraw("turn")
-        own.declare("turn", Declaration([0.0, math.pi]))
-        await lab.do(artifact, "turn", out)
-        assert out.value == [0, 180]
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    own, out = lab.backend.parameters(), Out()
+    own.declare("turn", Declaration("left"))
+    failed = await lab.call(artifact, "turn", out)
+    assert failed.reason == 'wrong_value("turn")'
+    assert failed.outcome is not None
+    assert 'parameter `turn`: expected a number, found "left": leave out its unit' in failed.outcome.message
+    await own.set("turn", "none")
+    await lab.do(artifact, "turn", out)
+    assert out.value == Atom("nowhere")
+    own.withdraw("turn")
+    own.declare("turn", Declaration([0.0, math.pi]))
+    await lab.do(artifact, "turn", out)
+    assert out.value == [0, 180]
 
 
-def test_read_gives_the_newest_values() -> None:
+@pytest.mark.world("empty")
+async def test_read_gives_the_newest_values(lab: Lab) -> None:
     text = """
 properties:
   pose: {topic: odom, fields: [pose.pose.position.x, {path: pose.pose.orientation, as: yaw, unit: degrees}]}
 operations:
   where: {read: pose}
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        x, yaw = Out(), Out()
-        await lab.do(artifact, "where", x, yaw)
-        assert (x.value, yaw.value) == (0.0, 0.0)
-
-    with_mapped(text, body, world="empty")
+    artifact = await lab.make(mapped(text))
+    x, yaw = Out(), Out()
+    await lab.do(artifact, "where", x, yaw)
+    assert (x.value, yaw.value) == (0.0, 0.0)
 
 
-def test_operations_have_their_arities_and_names_of_parameters() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        interface = lab.workspace.interface(artifact)
-        assert interface.operations.keys() == ["add/3"]
-        found = interface.operations.find("add", 3)
-        assert found is not None
-        assert str(found.signature) == "x: any value, y: any value, -sum"
-        assert (await lab.call(artifact, "add", 1)).reason != "None"
-
-    with_mapped(ADD, body)
+async def test_operations_have_their_arities_and_names_of_parameters(lab: Lab) -> None:
+    artifact = await lab.make(mapped(ADD))
+    interface = lab.workspace.interface(artifact)
+    assert interface.operations.keys() == ["add/3"]
+    found = interface.operations.find("add", 3)
+    assert found is not None
+    assert str(found.signature) == "x: any value, y: any value, -sum"
+    assert (await lab.call(artifact, "add", 1)).reason != "None"
 
 
-def test_a_mismatched_term_is_reported_in_the_notation_of_agents() -> None:
+async def test_a_mismatched_term_is_reported_in_the_notation_of_agents(lab: Lab) -> None:
     text = "operations: {say: {parameters: [a], publish: s, type: std_msgs/msg/String, fields: {data: $a}}}"
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        run = await lab.call(artifact, "say", Structure("f", (Atom("x"), "y")))
-        assert run.outcome is not None
-        assert run.outcome.message == 'std_msgs/msg/String: field data is string, but f(x,"y") is given'
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    run = await lab.call(artifact, "say", Structure("f", (Atom("x"), "y")))
+    assert run.outcome is not None
+    assert run.outcome.message == 'std_msgs/msg/String: field data is string, but f(x,"y") is given'
 
 
-def test_operations_of_one_name_with_other_numbers_of_arguments() -> None:
+async def test_operations_of_one_name_with_other_numbers_of_arguments(lab: Lab) -> None:
     text = """
 operations:
   say:
@@ -546,19 +487,16 @@ operations:
     - {parameters: [a], publish: s, type: std_msgs/msg/String, fields: {data: $a}}
     - {parameters: [a], service: ask, type: std_srvs/srv/SetBool, request: {data: $a}, outputs: [message]}
 """
-
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        heard: list[str] = []
-        lab.backend.subscription("s", "std_msgs/msg/String", lambda sample: heard.append(sample.message.data))
-        lab.backend.service("ask", "std_srvs/srv/SetBool", lambda request: {"success": True, "message": "ok"})
-        await lab.do(artifact, "say")
-        await lab.do(artifact, "say", "word")
-        answer = Out()
-        await lab.do(artifact, "say", True, answer)
-        await settle()
-        assert (heard, answer.value) == (["nothing", "word"], "ok")
-
-    with_mapped(text, body)
+    artifact = await lab.make(mapped(text))
+    heard: list[str] = []
+    lab.backend.subscription("s", "std_msgs/msg/String", lambda sample: heard.append(sample.message.data))
+    lab.backend.service("ask", "std_srvs/srv/SetBool", lambda request: {"success": True, "message": "ok"})
+    await lab.do(artifact, "say")
+    await lab.do(artifact, "say", "word")
+    answer = Out()
+    await lab.do(artifact, "say", True, answer)
+    await settle()
+    assert (heard, answer.value) == (["nothing", "word"], "ok")
 
 
 def test_operations_of_one_name_with_as_many_arguments_are_refused() -> None:

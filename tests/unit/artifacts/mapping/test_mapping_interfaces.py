@@ -5,12 +5,14 @@ from typing import Any
 
 import pytest
 from mapped_lab import settle
-from robot_lab import Lab, in_lab
+from robot_lab import Lab
 
 from jacaros.artifacts import Out
 from jacaros.artifacts.mapping.artifact import mapped_type
 from jacaros.artifacts.mapping.file import MappingError, load_mapping
 from jacaros.cli.main import call
+
+pytestmark = pytest.mark.world("empty")
 
 SHELF = """
 interfaces: types
@@ -36,21 +38,18 @@ def store(tmp_path: Path) -> Path:
     return tmp_path / "store.yaml"
 
 
-def test_types_of_ones_own_are_shown_and_called(store: Path) -> None:
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(mapped_type(load_mapping(store), "store"))
-        seen = lab.watch(artifact)
-        shelves = lab.backend.publisher("shelf", "my_store_msgs/msg/Shelf")
-        shelves.publish({"label": "top", "state": 2, "sizes": [{"x": 1.0}, {"x": 2.5}]})
-        await settle()
-        assert [tuple(map(str, values)) for values in seen.holds("shelf")] == [("top", "empty", "[1.0, 2.5]")]
+async def test_types_of_ones_own_are_shown_and_called(lab: Lab, store: Path) -> None:
+    artifact = await lab.make(mapped_type(load_mapping(store), "store"))
+    seen = lab.watch(artifact)
+    shelves = lab.backend.publisher("shelf", "my_store_msgs/msg/Shelf")
+    shelves.publish({"label": "top", "state": 2, "sizes": [{"x": 1.0}, {"x": 2.5}]})
+    await settle()
+    assert [tuple(map(str, values)) for values in seen.holds("shelf")] == [("top", "empty", "[1.0, 2.5]")]
 
-        asked: list[Any] = []
-        lab.backend.service("clear", "my_store_msgs/srv/Clear", lambda request: asked.append(request.label))
-        await lab.do(artifact, "clear", "top", Out())
-        assert asked == ["top"]
-
-    in_lab(body)
+    asked: list[Any] = []
+    lab.backend.service("clear", "my_store_msgs/srv/Clear", lambda request: asked.append(request.label))
+    await lab.do(artifact, "clear", "top", Out())
+    assert asked == ["top"]
 
 
 def test_the_check_knows_them(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
