@@ -115,11 +115,8 @@ def mapped_type(mapping: MappingFile, name: str) -> type[MappedArtifact]:
         **methods(part),
     }
     tuned = any(each.declaration is not None for each in part.parameters)
-    return type(_class_name(name), (TunedArtifact if tuned else MappedArtifact,), members)
-
-
-def _class_name(name: str) -> str:
-    return "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+    plain = "".join(c if c.isalnum() or c == "_" else "_" for c in name)
+    return type(plain, (TunedArtifact if tuned else MappedArtifact,), members)
 
 
 _made: dict[tuple[Path, int, str], type[MappedArtifact]] = {}

@@ -51,15 +51,10 @@ def known(written: Written, needed: str, interfaces: Interfaces, problems: list[
     try:
         interfaces.fields(needed)
     except UnknownInterface as error:
-        problems.append(
-            written.place.problem(f"the type `{written.text}` {UNCERTAIN}", _cure(written.text, error))
-        )
+        help = suggestion(written.text, known_types(written.text.split("/")[1]), str(error), 2)
+        problems.append(written.place.problem(f"the type `{written.text}` {UNCERTAIN}", help))
         return False
     return True
-
-
-def _cure(type_name: str, error: UnknownInterface) -> str:
-    return suggestion(type_name, known_types(type_name.split("/")[1]), str(error), 2)
 
 
 def check_topic(topic: TopicPart, type_name: str, interfaces: Interfaces, problems: list[Problem]) -> None:

@@ -161,13 +161,9 @@ def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> st
         own = names[place : place + field.count]
         place += field.count
         if word:
-            values.append(f"{_span(own)}: {word}")
+            values.append(f"{own[0]}{f' to {own[-1]}' if own[1:] else ''}: {word}")
     told = told.rstrip(".")
     return f"{told}. {'; '.join(values)}" if values else told
-
-
-def _span(names: list[str]) -> str:
-    return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
 
 
 def variables(fields: tuple[FieldPart, ...]) -> list[str]:

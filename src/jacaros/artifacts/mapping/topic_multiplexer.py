@@ -72,7 +72,9 @@ class TopicMultiplexer:
         # Latched messages are old when they arrive, and valid.
         latched = self._subscription is not None and self._subscription.latched
         old = (
-            not latched and stamps is not None and not stamps.accept(_stamp_of(sample.message), sample.stamp)
+            not latched
+            and stamps is not None
+            and not stamps.accept(to_seconds(sample.message.header.stamp), sample.stamp)
         )
         for updater in self._updaters:
             if not (old and updater.is_state):
@@ -109,10 +111,6 @@ async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
                 host.report_once(each, each.written.place, text, help)
         told, missed = True, missed or late
         await host.sleep(LOOK)
-
-
-def _stamp_of(message: Any) -> float:
-    return to_seconds(message.header.stamp)
 
 
 class Updater:

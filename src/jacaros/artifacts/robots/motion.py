@@ -6,6 +6,7 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, NoReturn
 
@@ -34,9 +35,9 @@ from jacaros.artifacts.robots.odometry import (
     NO_TRANSFORM,
     ODOMETRY,
     Drift,
-    DrivingFrame,
     Odometer,
     Odometry,
+    driving_frame,
     pose_values,
 )
 from jacaros.plane.pose import Pose
@@ -101,7 +102,7 @@ class Motion:
             wheels,
             wheels.motions,
             WHEELS,
-            lambda: wheels.command(STANDSTILL),
+            partial(wheels.command, STANDSTILL),
             lambda state: wheels.show(self, state),
         )
         self._begun = False
@@ -475,7 +476,7 @@ class WheeledArtifact(RosArtifact):
             return None
         name = frame_name(str(self.options["frame"]), self.frame_prefix)
         try:
-            return DrivingFrame(self.ros, name).placed
+            return driving_frame(self.ros, name)
         except CapabilityMissing as error:
             self.fail(f"frame({name}): {error}", "ros_error", name)
 

@@ -224,8 +224,8 @@ OLDEST_TRANSFORM = 2.0
 """Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
 
 
-class DrivingFrame:
-    """Convert odometry to another frame (REP 105), by the newest transform between the two.
+def driving_frame(ros: Backend, name: str) -> Callable[[Odometry], Odometry | None]:
+    """Return the conversion of odometry to another frame (REP 105), by the newest transform; None while it is unknown.
 
     Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in
     ``map``.
@@ -237,16 +237,12 @@ class DrivingFrame:
     Raises:
         CapabilityMissing: the graph has no tf.
     """
+    ros.tf_listen()
 
-    def __init__(self, ros: Backend, name: str) -> None:
-        self._ros, self.name = ros, name
-        ros.tf_listen()
-
-    def placed(self, odometry: Odometry) -> Odometry | None:
-        """Return the odometry with the pose in this frame; None while the transform is unknown."""
+    def placed(odometry: Odometry) -> Odometry | None:
         header = odometry.sample.message.header
         try:
-            transform = self._ros.tf_lookup(self.name, header.frame_id)
+            transform = ros.tf_lookup(name, header.frame_id)
         except TransformUnavailable:
             return None
         told = to_seconds(header.stamp)
@@ -256,6 +252,8 @@ class DrivingFrame:
         position = transform.apply(odometry.position)
         heading = normalised(odometry.pose.yaw + transform.yaw)
         return replace(odometry, position=position, pose=Pose(position[0], position[1], heading))
+
+    return placed
 
 
 # Advice for robots that drive by odometry although a localisation finds them elsewhere.
