@@ -267,12 +267,8 @@ def not_finite(values: Values) -> float | None:
 MOVED = 0.01
 """Metres that a robot must move before the elements in view are computed again."""
 
-Place = Callable[[Values], tuple[float, float]]
-"""Return the position of an element: x and y in metres, in the frame of the robot's position."""
 
-
-def first_two(element: Values) -> tuple[float, float]:
-    """Return the position of an element whose first two values are x and y."""
+def _position(element: Values) -> tuple[float, float]:
     x, y = element[:2]
     assert isinstance(x, int | float)
     assert isinstance(y, int | float)
@@ -280,27 +276,24 @@ def first_two(element: Values) -> tuple[float, float]:
 
 
 class RangeOfView:
-    """The elements of the newest message within a range of the robot.
+    """The elements of the newest message within a range of the robot; their first two values are x and y in metres.
 
     Until the robot's position is known, nothing is in view.
 
     Args:
         reach: metres, inclusive.
         show: called with the elements in view, in the order of the message, whenever they change.
-        place: returns the position of an element.
     """
 
-    def __init__(
-        self, reach: float, show: Callable[[list[Values], Cause | None], None], place: Place = first_two
-    ) -> None:
-        self._reach, self._show, self._place = reach, show, place
+    def __init__(self, reach: float, show: Callable[[list[Values], Cause | None], None]) -> None:
+        self._reach, self._show = reach, show
         self._elements: list[tuple[float, float, Values]] = []
         self._here: tuple[float, float] | None = None
         self._shown: list[Values] = []
 
     def take(self, elements: Iterable[Values], cause: Cause | None = None) -> None:
         """Take the elements of a message; an element whose position is not finite is never in view."""
-        self._elements = [(*self._place(each), each) for each in elements]
+        self._elements = [(*_position(each), each) for each in elements]
         self._look(cause)
 
     def stand(self, x: float, y: float, cause: Cause | None = None) -> None:

@@ -39,8 +39,6 @@ from jacaros.files.yaml import Node, Problem, YamlFileError, read_document, read
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Folder of the mappings that come with the package."""
 
-ENDINGS = (".yaml", ".yml")
-
 _NAME = re.compile(r"[^\s#/]+")
 
 

@@ -289,46 +289,27 @@ AIMING = Tolerance(math.radians(1.0), math.radians(2.0))
 """How exactly `DriveTo` turns towards its point: it corrects the rest while driving."""
 
 
-class TurnTo:
+class TurnTo(Turn):
     """Turn the short way round to an absolute heading; after a rest, from the robot's present heading."""
 
-    activity = "turning"
-    needs_odometry = True
-
     def __init__(self, heading: float) -> None:
+        super().__init__(0.0)
         self._goal = heading
-        self._turn = Turn(0.0)
         self._before = 0.0
 
     @property
     def covered(self) -> float:
         """Degrees turned."""
-        return self._before + self._turn.covered
-
-    def seconds(self, limits: Limits) -> float:
-        """As `Turn`."""
-        return self._turn.seconds(limits)
-
-    def progress(self, pose: Pose) -> float:
-        """Radians still to turn."""
-        return self._turn.progress(pose)
+        return self._before + super().covered
 
     def begin(self, pose: Pose) -> None:
         """Choose the shorter side."""
-        self._turn = Turn(normalised(self._goal - pose.yaw))
-        self._turn.begin(pose)
-
-    def command(self, outlook: Outlook) -> Step | None:
-        """As `Turn`."""
-        return self._turn.command(outlook)
-
-    def rest(self, pose: Pose) -> None:
-        """Note the angle turned so far."""
-        self._turn.rest(pose)
-        self._before += self._turn.covered
+        self._angle, self._approach = normalised(self._goal - pose.yaw), Approach(ANGLE)
+        super().begin(pose)
 
     def go_on(self, pose: Pose) -> None:
         """Begin again from the present heading."""
+        self._before = self.covered
         self.begin(pose)
 
 
@@ -341,7 +322,6 @@ class DriveTo:
         self._goal = Pose(x, y, 0.0)
         self._part: Straight | Turn | None = None
         self._driven = 0.0
-        self._nominal = 0.0
         self._way = 0.0
 
     @property

@@ -24,9 +24,6 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 NO_ODOMETRY = "no_odometry"
 NO_TRANSFORM = "no_transform"
 
-STANDING = Velocity(0.02, 0.05)
-"""A robot slower than this (metres and radians per second) stands still."""
-
 
 @dataclass(slots=True)
 class Odometry:
@@ -43,12 +40,6 @@ class Odometry:
     pose: Pose
     velocity: Velocity
     sample: Sample
-
-    @property
-    def standing(self) -> bool:
-        """Whether the robot stands still."""
-        moves = abs(self.velocity.linear) > STANDING.linear
-        return not moves and abs(self.velocity.angular) <= STANDING.angular
 
 
 def read_odometry(sample: Sample) -> Odometry:
