@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure, text
-from jacaros.artifacts.mapping.decoding import ANGLE, MessageHandle, check_conversion, owner_of
-from jacaros.artifacts.mapping.fields import ANGLES, Conversion, WrongPath
+from jacaros.artifacts.mapping.decoding import ANGLE, MessageHandle, check_conversion, octet, owner_of
+from jacaros.artifacts.mapping.fields import ANGLES, WrongPath
 from jacaros.artifacts.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow, tried
 from jacaros.artifacts.mapping.operations import ALL_OF_IT, OperationPart, Source, ValuePart
 from jacaros.files.yaml import Problem
@@ -64,11 +64,11 @@ def builder(
         adapt: changes constants, given the name of the field, such as frame names.
     """
     before = len(problems)
-    made: list[tuple[ValuePart, Give]] = []
-    for part in values:
-        give = tried(part.place, problems, _give, part, type_name, interfaces, problems, adapt)
-        if give is not None:
-            made.append((part, give))
+    gives = [
+        (part, tried(part.place, problems, _Encoder.give_of, part, type_name, interfaces, problems, adapt))
+        for part in values
+    ]
+    made = [(part, give) for part, give in gives if give is not None]
     problems += _gaps(values)
     if len(problems) > before:
         return None
@@ -124,130 +124,142 @@ def _gaps(values: Sequence[ValuePart]) -> list[Problem]:
             found.append(part.place.problem(told, "leave one of them out"))
         for depth, step in enumerate(part.target.steps):
             if isinstance(step, int) and not 0 <= step < len(numbers[part.target.steps[:depth]]):
-                found.append(
-                    part.place.problem(
-                        f"`{part.target.text}`: earlier elements are missing", "begin with [0]"
-                    )
-                )
+                told = f"`{part.target.text}`: earlier elements are missing"
+                found.append(part.place.problem(told, "begin with [0]"))
     return found
 
 
-def _give(
-    part: ValuePart,
-    type_name: str,
-    interfaces: Interfaces,
-    problems: list[Problem],
-    adapt: Adapt,
-) -> Give:
-    root = FieldType(type_name)
-    leaf = follow(part.target, root, interfaces.fields)
-    owner, last = owner_of(part.target, root, interfaces)
-    if part.source is Source.ELEMENTS:
-        return _each(part, leaf, interfaces, problems, adapt)
-    check_conversion(part.conversion, part.target.text, leaf, "makes a quaternion", "leave it out")
-    check_unit(part.conversion, part.target, root, interfaces)
-    convert = _converter(part.conversion, leaf, owner, last, interfaces)
-    path = part.target.text
-    if part.source is Source.NOW:
-        if leaf.base not in TIMES or leaf.array:
-            raise WrongPath(f"`now` is a time, but `{path}` is {leaf}", "write another value")
-        return lambda arguments, now: now
-    if part.source is Source.CONSTANT:
-        value = _constant(part, adapt(last, part.value), convert, leaf, owner, interfaces)
-        return lambda arguments, now: value
-    number = part.parameter
+class _Encoder:
+    """The conversion of one value to its field.
 
-    def of_parameter(arguments: Sequence[object], now: float) -> Any:
-        if number == ALL_OF_IT:
-            given: object = arguments[0] if len(arguments) == 1 else list(arguments)
-        elif number < len(arguments):
-            given = arguments[number]
-        else:
-            told = f"`{path}` is part {number + 1} of an element, but the element has {len(arguments)}"
-            raise WrongValue(told, path)
+    Args:
+        part: the value.
+        type_name: message type.
+        interfaces: knows the types.
+    """
+
+    def __init__(self, part: ValuePart, type_name: str, interfaces: Interfaces) -> None:
+        self._part, self._interfaces, self._path = part, interfaces, part.target.text
+        self._root = FieldType(type_name)
+        self._leaf = follow(part.target, self._root, interfaces.fields)
+        self._owner, self._last = owner_of(part.target, self._root, interfaces)
+
+    @classmethod
+    def give_of(
+        cls, part: ValuePart, type_name: str, interfaces: Interfaces, problems: list[Problem], adapt: Adapt
+    ) -> Give:
+        """Return the function that gives the value of a field, for `builder`."""
+        return cls(part, type_name, interfaces).give(problems, adapt)
+
+    def give(self, problems: list[Problem], adapt: Adapt) -> Give:
+        """Return the function that gives the value; parameters as for `builder`."""
+        part, leaf, path = self._part, self._leaf, self._path
+        if part.source is Source.ELEMENTS:
+            return self._each(problems, adapt)
+        check_conversion(part.conversion, path, leaf, "makes a quaternion", "leave it out")
+        check_unit(part.conversion, part.target, self._root, self._interfaces)
+        convert = self._converter()
+        if part.source is Source.NOW:
+            if leaf.base not in TIMES or leaf.array:
+                raise WrongPath(f"`now` is a time, but `{path}` is {leaf}", "write another value")
+            return lambda arguments, now: now
+        if part.source is Source.CONSTANT:
+            value = self._constant(adapt(self._last, part.value), convert)
+            return lambda arguments, now: value
+        number = part.parameter
+
+        def of_parameter(arguments: Sequence[object], now: float) -> Any:
+            if number == ALL_OF_IT:
+                given: object = arguments[0] if len(arguments) == 1 else list(arguments)
+            elif number < len(arguments):
+                given = arguments[number]
+            else:
+                told = f"`{path}` is part {number + 1} of an element, but the element has {len(arguments)}"
+                raise WrongValue(told, path)
+            try:
+                return convert(given)
+            except (TypeError, ValueError) as error:
+                told = f"`{path}` ({leaf}) cannot be {text(given, quoted=True)}: {error}"
+                raise WrongValue(told, path) from None
+
+        return of_parameter
+
+    def _constant(self, value: object, convert: Callable[[Any], Any]) -> Any:
+        """Convert a constant to the type of the field, and try it on a message."""
+        path, leaf, owner = self._path, self._leaf, self._owner
+        named = leaf.base in INTEGER_RANGES or leaf.base == "bool"
+        if isinstance(value, str) and named and not self._part.conversion.kind:
+            known = constants(self._interfaces, owner)
+            if value not in known:
+                plain = "write true or false" if leaf.base == "bool" else "write a number"
+                help = f"its constants: {', '.join(known)}" if known else f"{plain}, or a parameter: $name"
+                raise WrongPath(f"`{path}` is {leaf}, but {value!r} is not a constant of {owner}", help)
+            return octet(known[value])
         try:
-            return convert(given)
+            converted = convert(value)
         except (TypeError, ValueError) as error:
-            told = f"`{path}` ({leaf}) cannot be {text(given, quoted=True)}: {error}"
-            raise WrongValue(told, path) from None
+            told = f"`{path}` ({leaf}) cannot be {value!r}: {error}"
+            raise WrongPath(told, "write another value") from None
+        last = self._part.target.steps[-1]
+        try:
+            if isinstance(last, str):
+                self._interfaces.message(owner, **{last[1:]: converted})
+            elif not leaf.is_message:
+                single_value(leaf, converted)
+        except (MessageMismatch, TypeError, ValueError) as error:
+            told = str(error) if isinstance(error, MessageMismatch) else f"`{path}` is {leaf}, but {error}"
+            raise WrongPath(told, "write another value, or a parameter: $name") from None
+        return converted
 
-    return of_parameter
-
-
-def _constant(
-    part: ValuePart,
-    value: object,
-    convert: Callable[[Any], Any],
-    leaf: FieldType,
-    owner: str,
-    interfaces: Interfaces,
-) -> Any:
-    """Convert a constant to the type of the field, and try it on a message."""
-    path = part.target.text
-    if (
-        isinstance(value, str)
-        and (leaf.base in INTEGER_RANGES or leaf.base == "bool")
-        and not part.conversion.kind
-    ):
-        known = constants(interfaces, owner)
-        if value not in known:
-            plain = "write true or false" if leaf.base == "bool" else "write a number"
-            listed = ", ".join(known)
-            told = f"`{path}` is {leaf}, but {value!r} is not a constant of {owner}"
-            raise WrongPath(told, f"its constants: {listed}" if listed else f"{plain}, or a parameter: $name")
-        value = known[value]
-        return value[0] if isinstance(value, bytes) else value
-    try:
-        converted = convert(value)
-    except (TypeError, ValueError) as error:
-        raise WrongPath(f"`{path}` ({leaf}) cannot be {value!r}: {error}", "write another value") from None
-    last = part.target.steps[-1]
-    try:
-        if isinstance(last, str):
-            interfaces.message(owner, **{last[1:]: converted})
-        elif not leaf.is_message:
-            single_value(leaf, converted)
-    except MessageMismatch as error:
-        raise WrongPath(str(error), "write another value, or a parameter: $name") from None
-    except (TypeError, ValueError) as error:
-        told = f"`{path}` is {leaf}, but {error}"
-        raise WrongPath(told, "write another value, or a parameter: $name") from None
-    return converted
-
-
-def _converter(
-    conversion: Conversion, leaf: FieldType, owner: str, last: str, interfaces: Interfaces
-) -> Callable[[Any], Any]:
-    steps: list[Callable[[Any], Any]] = []
-    words: dict[str, Any] = {str(name): value for value, name in conversion.names}
-    if (line := conversion.line) is not None:
-        steps.append(
-            lambda value: (
-                [line.back(_number(each)) for each in value] if leaf.array else line.back(_number(value))
+    def _converter(self) -> Callable[[Any], Any]:
+        leaf, conversion, interfaces = self._leaf, self._part.conversion, self._interfaces
+        steps: list[Callable[[Any], Any]] = []
+        words: dict[str, Any] = {str(name): value for value, name in conversion.names}
+        if (line := conversion.line) is not None:
+            steps.append(
+                lambda value: (
+                    [line.back(_number(each)) for each in value] if leaf.array else line.back(_number(value))
+                )
             )
-        )
-    if conversion.kind in ANGLES:
-        axis = ANGLE[conversion.kind][1]
-        steps.append(lambda value: {axis: math.sin(_number(value) / 2), "w": math.cos(_number(value) / 2)})
-    if conversion.kind == "name":
-        meant = chosen(constants(interfaces, owner), last, conversion.prefix)
-        if not meant:
-            raise WrongPath(f"{owner} has no constants for `{last}`", "write names: {0: ...}")
-        words |= {name: value[0] if isinstance(value, bytes) else value for name, value in meant.items()}
+        if conversion.kind in ANGLES:
+            axis = ANGLE[conversion.kind][1]
+            steps.append(
+                lambda value: {axis: math.sin(_number(value) / 2), "w": math.cos(_number(value) / 2)}
+            )
+        if conversion.kind == "name":
+            meant = chosen(constants(interfaces, self._owner), self._last, conversion.prefix)
+            if not meant:
+                told = f"{self._owner} has no constants for `{self._last}`"
+                raise WrongPath(told, "write names: {0: ...}")
+            words |= {name: octet(value) for name, value in meant.items()}
+        if DURATION in (leaf.base, self._owner) and not leaf.array:  # as a whole, or its seconds
+            steps.append(_not_negative)
 
-    if DURATION in (leaf.base, owner) and not leaf.array:  # as a whole, or its seconds
-        steps.append(_not_negative)
+        def convert(value: Any) -> Any:
+            # A name stands for the message's value, which has the message's unit.
+            if words and isinstance(value, str):
+                return for_field(_word(value, words), leaf, interfaces)
+            for step in steps:
+                value = step(value)
+            return for_field(value, leaf, interfaces)
 
-    def convert(value: Any) -> Any:
-        if words and isinstance(
-            value, str
-        ):  # a name stands for the message's value, which has the message's unit
-            return for_field(_word(value, words), leaf, interfaces)
-        for step in steps:
-            value = step(value)
-        return for_field(value, leaf, interfaces)
+        return convert
 
-    return convert
+    def _each(self, problems: list[Problem], adapt: Adapt) -> Give:
+        """Return a function that builds a list of messages from a list of structures, lists or single values."""
+        path, leaf, number = self._path, self._leaf, self._part.parameter
+        if not leaf.array or not leaf.is_message:
+            raise WrongPath(f"`each` fills a list of messages, but `{path}` is {leaf}", "write a value")
+        fill = builder(self._part.elements, leaf.base, self._interfaces, problems, adapt)
+
+        def of_elements(arguments: Sequence[object], now: float) -> Any:
+            given = arguments[number]
+            if isinstance(given, str) or not isinstance(given, list | tuple):
+                raise WrongValue(f"`{path}`: expected a list, found {text(given, quoted=True)}", path)
+            assert fill is not None
+            return [fill(_parts(each), now) for each in given]
+
+        return of_elements
 
 
 def _not_negative(value: Any) -> Any:
@@ -294,30 +306,6 @@ def _message(value: Any, type_name: str, interfaces: Interfaces) -> Any:
         name: for_field(part, kind, interfaces)
         for (name, kind), part in zip(known.items(), parts, strict=True)
     }
-
-
-def _each(
-    part: ValuePart,
-    leaf: FieldType,
-    interfaces: Interfaces,
-    problems: list[Problem],
-    adapt: Adapt,
-) -> Give:
-    """Return a function that builds a list of messages from a list of structures, lists or single values."""
-    path = part.target.text
-    if not leaf.array or not leaf.is_message:
-        raise WrongPath(f"`each` fills a list of messages, but `{path}` is {leaf}", "write a value")
-    fill = builder(part.elements, leaf.base, interfaces, problems, adapt)
-    number = part.parameter
-
-    def of_elements(arguments: Sequence[object], now: float) -> Any:
-        given = arguments[number]
-        if isinstance(given, str) or not isinstance(given, list | tuple):
-            raise WrongValue(f"`{path}`: expected a list, found {text(given, quoted=True)}", path)
-        assert fill is not None
-        return [fill(_parts(each), now) for each in given]
-
-    return of_elements
 
 
 def _parts(element: object) -> Sequence[object]:
