@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
@@ -22,6 +23,7 @@ LOOK = 0.5
 """Seconds between two checks of who publishes a topic."""
 
 
+@dataclass(eq=False)
 class Connection:
     """Track whether a publisher of a topic is connected.
 
@@ -36,24 +38,21 @@ class Connection:
         expire: the topic also counts as lost after this number of seconds without a message; None: never.
     """
 
-    def __init__(
-        self,
-        backend: Backend,
-        clock: Clock,
-        subscription: Subscription,
-        changed: Callable[[bool], None],
-        expire: float | None = None,
-    ) -> None:
-        self.connected = False
-        self._clock, self._subscription, self._changed, self._expire = clock, subscription, changed, expire
+    backend: Backend
+    clock: Clock
+    subscription: Subscription
+    changed: Callable[[bool], None]
+    expire: float | None = None
+
+    def __post_init__(self) -> None:
+        self.connected = self._closed = False
         self._heard: float | None = None
-        self._closed = False
-        _watch(backend, self)
+        _watch(self.backend, self)
         self._look_again()
 
     def hear(self) -> None:
         """Note that a message arrived."""
-        self._heard = self._clock.elapsed
+        self._heard = self.clock.elapsed
         if not self.connected:
             self.look()
 
@@ -63,7 +62,7 @@ class Connection:
             connected = self._is_connected()
             if connected != self.connected:
                 self.connected = connected
-                self._changed(connected)
+                self.changed(connected)
 
     def close(self) -> None:
         """Stop checking."""
@@ -71,17 +70,17 @@ class Connection:
         self._timer.cancel()
 
     def _is_connected(self) -> bool:
-        if self._subscription.publisher_count == 0:
+        if self.subscription.publisher_count == 0:
             self._heard = None
             return False
-        if self._expire is None:
+        if self.expire is None:
             return True
-        return self._heard is not None and self._clock.elapsed - self._heard < self._expire
+        return self._heard is not None and self.clock.elapsed - self._heard < self.expire
 
     def _look_again(self) -> None:
         self.look()
-        pause = LOOK if self._expire is None else min(LOOK, self._expire)
-        self._timer = self._clock.call_later(pause, self._look_again)
+        pause = LOOK if self.expire is None else min(LOOK, self.expire)
+        self._timer = self.clock.call_later(pause, self._look_again)
 
 
 _watched: WeakKeyDictionary[Backend, WeakSet[Connection]] = WeakKeyDictionary()
@@ -101,6 +100,7 @@ def _watch(backend: Backend, connection: Connection) -> None:
     connections.add(connection)
 
 
+@dataclass(eq=False)
 class MissingTopic:
     """Log a warning if no message of a topic has arrived after `MISSING_AFTER` seconds, and the graph shows why.
 
@@ -116,67 +116,63 @@ class MissingTopic:
         heard: returns whether a message has arrived.
     """
 
-    def __init__(
-        self,
-        backend: Backend,
-        clock: Clock,
-        subscription: Subscription,
-        type_name: str,
-        log: Callable[[str], None],
-        heard: Callable[[], bool],
-    ) -> None:
-        self._backend, self._clock = backend, clock
-        self._subscription, self._type_name = subscription, type_name
-        self._log, self._heard = log, heard
-        self._connected = backend.connected
+    backend: Backend
+    clock: Clock
+    subscription: Subscription
+    type_name: str
+    log: Callable[[str], None]
+    heard: Callable[[], bool]
+
+    def __post_init__(self) -> None:
+        self._connected = self.backend.connected
         self._search: asyncio.Task[None] | None = None
         self._wait()
 
     def _wait(self) -> None:
-        self._timer = self._clock.call_later(MISSING_AFTER, self._look)
+        self._timer = self.clock.call_later(MISSING_AFTER, self._look)
 
     def _look(self) -> None:
-        connected_before, self._connected = self._connected, self._backend.connected
+        connected_before, self._connected = self._connected, self.backend.connected
         if not (connected_before and self._connected):
             self._wait()  # discovery is incomplete just after the graph was found
-        elif not self._heard():
+        elif not self.heard():
             self._search = asyncio.ensure_future(self._report())
 
     async def _report(self) -> None:
         contents = GraphContents()
         with suppress(RosError):
             try:
-                contents = await self._backend.contents()
+                contents = await self.backend.contents()
             except ServiceUnavailable as unknown:  # without rosapi, a publisher cannot be looked for
-                topic = f"topic {self._subscription.topic} ({self._type_name})"
-                self._log(f"no message on {topic}; the graph cannot be queried: {unknown}")
+                topic = f"topic {self.subscription.topic} ({self.type_name})"
+                self.log(f"no message on {topic}; the graph cannot be queried: {unknown}")
                 return
-        info = contents.topics.get(self._subscription.topic)
+        info = contents.topics.get(self.subscription.topic)
         # The count may be unknown where another process is asked for it; the contents are what it just said.
-        if self._subscription.publisher_count == 0 and not (info and info.publishers):
+        if self.subscription.publisher_count == 0 and not (info and info.publishers):
             self._report_missing(contents)
         else:
             self._report_silent(info)
 
     def _report_silent(self, info: TopicInfo | None) -> None:
-        topic = self._subscription.topic
-        nodes = "" if self._subscription.latched else latching(info)
+        topic = self.subscription.topic
+        nodes = "" if self.subscription.latched else latching(info)
         if nodes:
-            self._log(
+            self.log(
                 f"no message on topic {topic}: {nodes} latches its messages, and earlier ones were not requested\n"
                 "  help: write `qos: latched` (in Python: qos=LATCHED)"
             )
-        elif info is not None and self._backend.name == "rosbridge":
-            self._log(
-                f"no message on topic {topic} ({self._type_name}) yet, although it has a publisher\n"
+        elif info is not None and self.backend.name == "rosbridge":
+            self.log(
+                f"no message on topic {topic} ({self.type_name}) yet, although it has a publisher\n"
                 "  help: a rosbridge server sends nothing if it cannot convert the type; its log says so"
             )
 
     def _report_missing(self, contents: GraphContents) -> None:
-        topic = self._subscription.topic
-        near = contents.near_topics(topic, message_type(self._type_name), "publishers")
-        self._log(
-            f"no publisher on topic {topic} ({self._type_name}); still listening"
+        topic = self.subscription.topic
+        near = contents.near_topics(topic, message_type(self.type_name), "publishers")
+        self.log(
+            f"no publisher on topic {topic} ({self.type_name}); still listening"
             + (
                 f"\n  help: {did_you_mean(near)} `--namespace NAME` and `--remap OLD:=NEW` change the names of a run"
                 if near
@@ -215,6 +211,7 @@ Missed = Callable[[str, float, bool], None]
 """Called with the topic, the seconds, and whether the previous wait also timed out."""
 
 
+@dataclass(eq=False)
 class Matching:
     """Delay the operations that publish on a topic so that the first message arrives.
 
@@ -225,17 +222,12 @@ class Matching:
         covered: returns whether the guards have found that number of subscribers, too.
     """
 
-    def __init__(
-        self,
-        publisher: Publisher,
-        timeout: float,
-        missed: Missed,
-        covered: Callable[[int], bool] = lambda count: True,
-    ) -> None:
-        self._publisher = publisher
-        self._timeout = timeout
-        self._missed = missed
-        self._covered = covered
+    publisher: Publisher
+    timeout: float
+    missed: Missed
+    covered: Callable[[int], bool] = lambda count: True
+
+    def __post_init__(self) -> None:
         self._vain = False
         self._line: deque[object] = deque()
         """Waiting messages, in order: a later one must not overtake them when a subscriber is matched."""
@@ -245,8 +237,8 @@ class Matching:
         return not self._line and self._matched()
 
     def _matched(self) -> bool:
-        count = self._publisher.subscription_count
-        if count and self._covered(count):
+        count = self.publisher.subscription_count
+        if count and self.covered(count):
             self._vain = False
             return True
         return False
@@ -254,7 +246,7 @@ class Matching:
     @property
     def _limit(self) -> float:
         """The maximum wait in seconds: for a subscriber, or for a guard that has not found the subscriber yet."""
-        return max(self._timeout, GUARD_TIMEOUT) if self._publisher.subscription_count else self._timeout
+        return max(self.timeout, GUARD_TIMEOUT) if self.publisher.subscription_count else self.timeout
 
     def pauses(self, always: bool = False) -> Iterator[float]:
         """Yield the seconds of each pause until messages arrive or the time is over.
@@ -272,7 +264,7 @@ class Matching:
         claim = object()
         self._line.append(claim)
         try:
-            for _ in range(math.ceil(self._timeout / TURN)):
+            for _ in range(math.ceil(self.timeout / TURN)):
                 if self._line[0] is claim:
                     break
                 yield TURN
@@ -288,7 +280,7 @@ class Matching:
         if self._matched():  # the messages ahead have waited
             return
         looks = 0
-        if not self._vain or (always and not self._publisher.subscription_count):
+        if not self._vain or (always and not self.publisher.subscription_count):
             while looks < math.ceil(self._limit / MATCH_LOOK):
                 looks += 1
                 yield MATCH_LOOK
@@ -296,7 +288,7 @@ class Matching:
                     yield SETTLING
                     return
         again, self._vain = self._vain, True
-        self._missed(self._publisher.topic, self._limit, again)
+        self.missed(self.publisher.topic, self._limit, again)
 
 
 # Other nodes that command the same robot: a base follows whichever command came last, so motions end in wrong places.
@@ -309,32 +301,30 @@ RIVALS_LOOK = 1.0
 leaving."""
 
 
+@dataclass(eq=False)
 class OtherPublishers:
     """Watch the publishers of a velocity topic that belong neither to the run nor to its guard.
 
     Args:
         backend: the node of the run.
         clock: measures the pauses.
-        topic: absolute name.
+        watched: absolute name of the topic.
         changed: called with a node and whether it publishes now.
         log: takes a warning about a node that no other artifact of the run has reported.
     """
 
-    def __init__(
-        self,
-        backend: Backend,
-        clock: Clock,
-        topic: str,
-        changed: Callable[[str, bool], None],
-        log: Callable[[str], None],
-    ) -> None:
-        self._backend, self._clock, self._topic = backend, clock, topic
-        self._changed, self._log = changed, log
-        self._own = guards_of(backend.node_name) | EMBEDDED_WORLD
+    backend: Backend
+    clock: Clock
+    watched: str
+    changed: Callable[[str, bool], None]
+    log: Callable[[str], None]
+
+    def __post_init__(self) -> None:
+        self._own = guards_of(self.backend.node_name) | EMBEDDED_WORLD
         self._found: frozenset[str] = frozenset()
         self._shown: frozenset[str] = frozenset()
         self._query: asyncio.Task[None] | None = None
-        self._timer = clock.call_later(RIVALS_LOOK, self._look)
+        self._timer = self.clock.call_later(RIVALS_LOOK, self._look)
 
     def close(self) -> None:
         """Stop watching."""
@@ -347,17 +337,17 @@ class OtherPublishers:
 
     async def _ask(self) -> None:
         with suppress(RosError):  # the graph cannot be reached now, or not be queried at all
-            found = frozenset(await self._backend.other_publishers(self._topic))
+            found = frozenset(await self.backend.other_publishers(self.watched))
             before, self._found = self._found, found - self._own
             self._show(self._found & before)
-        self._timer = self._clock.call_later(RIVALS_LOOK, self._look)
+        self._timer = self.clock.call_later(RIVALS_LOOK, self._look)
 
     def _show(self, nodes: frozenset[str]) -> None:
         before, self._shown = self._shown, nodes
         for node in sorted(before ^ nodes):
-            self._changed(node, node in nodes)
-            if node in nodes and guarded_by(self._backend).is_news((self._topic, node)):
-                self._log(
-                    f"warning: {node} also publishes on {self._topic}: the robot follows whichever command came last\n"
+            self.changed(node, node in nodes)
+            if node in nodes and guarded_by(self.backend).is_news((self.watched, node)):
+                self.log(
+                    f"warning: {node} also publishes on {self.watched}: the robot follows whichever command came last\n"
                     "  help: give every source a topic of its own, and let twist_mux choose between them"
                 )
