@@ -84,11 +84,7 @@ class GoalRunner:
     """
 
     def __init__(
-        self,
-        client: ActionClient,
-        goal: Mapping[str, Any],
-        options: GoalOptions,
-        artifact: Artifact,
+        self, client: ActionClient, goal: Mapping[str, Any], options: GoalOptions, artifact: Artifact
     ) -> None:
         self._client, self._goal, self._options = client, goal, options
         self._clock, self._execution = artifact.clock, artifact.current

@@ -10,13 +10,7 @@ from jacaros.artifacts.env.artifact import Artifact, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import marks_of
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.kit.acting import (
-    GoalOptions,
-    GoalRunner,
-    Suspending,
-    Switch,
-    missing_number,
-)
+from jacaros.artifacts.kit.acting import GoalOptions, GoalRunner, Suspending, Switch, missing_number
 from jacaros.artifacts.kit.connection import (
     GUARD_TIMEOUT,
     MATCH_LOOK,

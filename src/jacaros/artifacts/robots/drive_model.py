@@ -45,10 +45,7 @@ class Limits:
 
     def clip(self, velocity: Velocity) -> Velocity:
         """Return the nearest velocity that the robot can drive."""
-        return Velocity(
-            clamp(velocity.linear, self.speed),
-            clamp(velocity.angular, self.turn_speed),
-        )
+        return Velocity(clamp(velocity.linear, self.speed), clamp(velocity.angular, self.turn_speed))
 
 
 DRIFT = 0.02

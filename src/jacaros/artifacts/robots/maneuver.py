@@ -143,10 +143,7 @@ class Straight:
         line, model = self._line, outlook.model
         self._along = line.along(outlook.pose)
         pulse = self._approach.speed(
-            model.linear,
-            outlook,
-            line.remaining(outlook.pose),
-            line.remaining(outlook.ahead),
+            model.linear, outlook, line.remaining(outlook.pose), line.remaining(outlook.ahead)
         )
         if pulse is None or not pulse.speed:
             return None if pulse is None else Step(STANDSTILL)
@@ -203,10 +200,7 @@ class Turn:
         """Continue turning."""
         self._now = outlook.pose.yaw
         pulse = self._approach.speed(
-            outlook.model.angular,
-            outlook,
-            self._remaining(outlook.pose),
-            self._remaining(outlook.ahead),
+            outlook.model.angular, outlook, self._remaining(outlook.pose), self._remaining(outlook.ahead)
         )
         return None if pulse is None else Step(Velocity(0.0, pulse.speed), pulse.seconds)
 

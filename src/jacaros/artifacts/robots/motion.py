@@ -25,10 +25,7 @@ from jacaros.artifacts.robots.drive_model import (
     read_quality,
     write_quality,
 )
-from jacaros.artifacts.robots.maneuver import (
-    Maneuver,
-    distance,
-)
+from jacaros.artifacts.robots.maneuver import Maneuver, distance
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, motions_of
 from jacaros.artifacts.robots.odometry import (
     LOCALISED,
