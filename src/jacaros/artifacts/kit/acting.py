@@ -205,7 +205,6 @@ class GoalRunner:
         return ending.result()
 
     async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
-        """Wait for the end of the pause or of the goal."""
         await self._resumed_or(ending, None)
         if not ending.done() and not await self._release():
             self._fail(f"cannot resume the goal of action {self._client.name}", "canceled")

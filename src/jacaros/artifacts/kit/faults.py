@@ -123,7 +123,6 @@ class Listener:
 
 
 def _line(error: Exception) -> int:
-    """Return the line that raised *error*."""
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next

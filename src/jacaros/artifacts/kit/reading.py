@@ -69,6 +69,7 @@ ALOOF = Outlet()
 """Ignores withdrawals and refusals, and never lags behind."""
 
 
+@dataclass(eq=False)
 class Reading:
     """The newest values of one sensor, and the decision when to deliver them.
 
@@ -83,37 +84,27 @@ class Reading:
         name: name of the property that shows the values, if any.
     """
 
-    def __init__(
-        self,
-        policy: ReadingPolicy,
-        clock: Clock,
-        deliver: Callable[[Values, Cause | None], None] | None = None,
-        outlet: Outlet = ALOOF,
-        name: str = "",
-    ) -> None:
-        self.policy, self.name = policy, name
+    policy: ReadingPolicy
+    clock: Clock
+    deliver: Callable[[Values, Cause | None], None] | None = None
+    outlet: Outlet = ALOOF
+    name: str = ""
+
+    def __post_init__(self) -> None:
         self.newest: Values | None = None
-        self._clock = clock
-        self._deliver = deliver
-        self._outlet = outlet
         self._delivered: Values | None = None
         self._cause: Cause | None = None
         self._pause: Timer | None = None
         self._expiry: Timer | None = None
         self._taken = 0.0
-        self._queue = Queue(clock, self._deliver_if_new)
+        self._queue = Queue(self.clock, self._deliver_if_new)
         self._expecting: list[asyncio.Future[None]] = []
 
     def take(self, values: Values, cause: Cause | None = None) -> None:
         """Take the values of a message, and deliver them now, later or never."""
         if self.policy.finite and (why := not_finite(values)) is not None:
-            self._outlet.refuse(why)
-        else:
-            self.take_finite(values, cause)
-
-    def take_finite(self, values: Values, cause: Cause | None = None) -> None:
-        """As `take`, for values whose numbers are known to be finite."""
-        if self.offer(values, cause):
+            self.outlet.refuse(why)
+        elif self.offer(values, cause):
             self._deliver_newest()
 
     def offer(self, values: Values, cause: Cause | None) -> bool:
@@ -149,13 +140,13 @@ class Reading:
         expected: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._expecting.append(expected)
         try:
-            await within(self._clock, expected, timeout)
+            await within(self.clock, expected, timeout)
         finally:
             self._expecting.remove(expected)
 
     def close(self) -> None:
         """Stop delivering."""
-        self._deliver, self._outlet = None, ALOOF
+        self.deliver, self.outlet = None, ALOOF
         self._queue.close()
         for timer in (self._pause, self._expiry):
             if timer is not None:
@@ -166,21 +157,21 @@ class Reading:
             self._deliver_newest()
 
     def _deliver_newest(self) -> None:
-        assert self._deliver is not None
+        assert self.deliver is not None
         assert self.newest is not None
-        self._deliver(self.newest, self._cause)
+        self.deliver(self.newest, self._cause)
 
     def _may_pass(self) -> bool:
         """Return whether to deliver the newest values now; if so, they count as delivered."""
-        if self.newest is None or self._deliver is None:
+        if self.newest is None or self.deliver is None:
             return False
         passes = self._delivered is None or self.policy.differ(self._delivered, self.newest)
         if passes:
-            if self.policy.latest_only and self._outlet.behind() and self._queue.wait():
+            if self.policy.latest_only and self.outlet.behind() and self._queue.wait():
                 return False
             self._delivered = self.newest
             if self.policy.rate is not None:
-                self._pause = self._clock.call_later(1.0 / self.policy.rate, self._end_pause)
+                self._pause = self.clock.call_later(1.0 / self.policy.rate, self._end_pause)
         self._queue.waits = False
         return passes
 
@@ -191,23 +182,24 @@ class Reading:
 
     def _confirm(self, seconds: float) -> None:
         # One timer serves any number of messages, so a fast sensor costs no more than a slow one.
-        self._taken = self._clock.elapsed
+        self._taken = self.clock.elapsed
         if self._expiry is None:
-            self._expiry = self._clock.call_later(seconds, self._look_at_age)
+            self._expiry = self.clock.call_later(seconds, self._look_at_age)
 
     def _look_at_age(self) -> None:
         assert self.policy.expire is not None
-        left = self._taken + self.policy.expire - self._clock.elapsed
+        left = self._taken + self.policy.expire - self.clock.elapsed
         if left > 1e-9:
-            self._expiry = self._clock.call_later(left, self._look_at_age)
+            self._expiry = self.clock.call_later(left, self._look_at_age)
             return
         self._expiry = None
         self.withdraw()
 
     def withdraw(self) -> None:
-        """Withdraw the delivered values; the next values are delivered in any case."""
-        self.newest = self._delivered = self._cause = None
-        self._outlet.withdraw()
+        """Withdraw the values of the newest message, if any; the next values are delivered in any case."""
+        if self.newest is not None:
+            self.newest = self._delivered = self._cause = None
+            self.outlet.withdraw()
 
 
 class Queue:

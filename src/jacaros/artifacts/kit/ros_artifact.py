@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, ClassVar, TypeVar
 
-from jacaros.artifacts.env.artifact import Artifact, internal_operation
+from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import marks_of
 from jacaros.artifacts.env.values import Atom, Structure
@@ -505,6 +505,11 @@ class RosArtifact(Artifact):
                 self.fail(f"no message arrived within {FIRST_MESSAGE:g} s", missing, FIRST_MESSAGE)
         assert reading.newest is not None
         return reading.newest
+
+    async def give_newest(self, reading: Reading, missing: str, *outs: Out) -> None:
+        """Give the `newest` values to the caller of an operation."""
+        for out, value in zip(outs, await self.newest(reading, missing), strict=True):
+            out.set(value)
 
     async def refresh(self, name: str, reading: Reading, missing: str) -> None:
         """Update the property *name* to the `newest` values, even if they are equal."""

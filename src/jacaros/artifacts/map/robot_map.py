@@ -13,7 +13,7 @@ from jacaros.artifacts.map.map_files import Grid
 from jacaros.artifacts.map.mapper import Mapper, ScanOptions
 from jacaros.artifacts.map.routes import Leg, around, frontier, nearest, next_leg
 from jacaros.artifacts.map.slam_data import ArtSlamData
-from jacaros.artifacts.robots.odometry import ODOMETRY, Odometer, Odometry
+from jacaros.artifacts.robots.odometry import Odometer, Odometry
 from jacaros.plane.pose import ORIGIN, Pose
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
@@ -112,9 +112,7 @@ class ArtMap(ArtSlamData):
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take_scan, SENSOR_DATA)
 
     def _listen_for_poses(self, pose_from: str) -> None:
-        topic = self.option("odometry_topic", "odom")
-        odometer = Odometer(self.faults_of(topic), self.clock, self._take_odometry)
-        self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
+        Odometer(self, self.option("odometry_topic", "odom"), self._take_odometry)
         if pose_from == "amcl":
             self.subscription(self.option("amcl_topic", "amcl_pose"), AMCL_POSE, self._take_pose, LATCHED)
         if self.option("things", False):

@@ -81,7 +81,6 @@ class MappedArtifact(Host):
             self.start(self.run_process, partial(find_types, self, untyped))
 
     def _declare_parameters(self) -> list[OwnParameter]:
-        """Declare the parameters of our own node."""
         parts = [part for part in self.part.parameters if part.declaration is not None]
         own = [self.kept(OwnParameter(self, part)) for part in parts]
         problems = [problem for each in own if (problem := each.declare()) is not None]

@@ -186,7 +186,6 @@ class _Decoder:
         return reduced
 
     def _element(self, single: FieldType) -> Element:
-        """Return the conversion of one value of the type *single*."""
         kind = self._conversion.kind
         self._check(single)
         after, fallback = converted(self._conversion), self._otherwise()
@@ -214,7 +213,6 @@ class _Decoder:
         return lambda raw, _: after(base(raw))
 
     def _check(self, single: FieldType) -> None:
-        """Reject a conversion that does not match the type."""
         kind, path = self._conversion.kind, self._path
         if kind not in LISTS:
             check_conversion(
@@ -227,7 +225,6 @@ class _Decoder:
             raise WrongPath(text, "leave it out")
 
     def _otherwise(self) -> Callable[[float, Any], object]:
-        """Return the replacement for a number that is not finite."""
         otherwise, path = self._field.otherwise, self._path
         if otherwise is None:
 
@@ -268,7 +265,6 @@ class _Decoder:
         return nearest
 
     def _named(self) -> Convert:
-        """Return the conversion of values to names of constants."""
         owner, last = owner_of(self._field.path, self._root, self._interfaces)
         known, prefix = constants(self._interfaces, owner), self._conversion.prefix
         meant = chosen(known, last, prefix)

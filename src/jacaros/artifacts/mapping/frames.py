@@ -48,7 +48,8 @@ class FrameUpdater:
         except TransformUnavailable as error:
             self._lose(error)
             return
-        if self._is_old(transform):
+        oldest = self._part.oldest
+        if oldest is not None and 0.0 < transform.stamp < self._host.clock.now() - oldest:
             self._withdraw()
             return
         self._host.annotate(
@@ -70,12 +71,6 @@ class FrameUpdater:
             self._host.report_once(
                 part.name, part.place, message, "are the nodes that publish these frames running?"
             )
-
-    def _is_old(self, transform: Transform) -> bool:
-        oldest = self._part.oldest
-        return (
-            oldest is not None and transform.stamp > 0.0 and self._host.clock.now() - transform.stamp > oldest
-        )
 
     def _withdraw(self) -> None:
         if self._reading.newest is not None:

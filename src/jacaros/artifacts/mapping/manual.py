@@ -105,7 +105,6 @@ def _of_parameter(part: ParameterPart) -> str:
 
 
 def _derived(part: DerivedPart, spec: Spec) -> str:
-    """Describe a derived property."""
     shape = OPERATORS[spec.operator]
     told = part.description or f"{shape.meaning}, of {' and '.join(spec.sources)}"
     values = "" if spec.gives != VALUE else "(Values)" if spec.operator == "together" else "(Value)"
@@ -122,7 +121,6 @@ def _from_topic(topic: TopicPart, interfaces: Interfaces) -> str:
 
 
 def _observed(topic: TopicPart, type_name: str, told: str, interfaces: Interfaces) -> str:
-    """Describe a property or signal."""
     fields, words = topic.fields, []
     if type_name:
         with suppress(WrongPath, UnknownInterface):
@@ -154,7 +152,6 @@ def _of_transform(field: FieldPart) -> str:
 
 
 def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> str:
-    """Describe a property and its values."""
     names, place = variables(fields), 0
     values = []
     for field, word in zip(fields, words, strict=False):

@@ -85,8 +85,6 @@ class _Operation:
 
 
 class _ServiceOperation(_Operation):
-    """One operation with ``service``."""
-
     _client: Client
 
     def _connect(self, type_name: str) -> None:
@@ -116,8 +114,6 @@ NOT_SHOWN = Atom("unknown")
 
 
 class _ActionOperation(_Operation):
-    """One operation with ``action``."""
-
     what = "action"
     _client: ActionClient
 
@@ -188,8 +184,6 @@ class _ActionOperation(_Operation):
 
 
 class _PublishOperation(_Operation):
-    """One operation with ``publish``."""
-
     what = "topic"
 
     _publisher: Publisher
@@ -308,7 +302,6 @@ class _PublishOperation(_Operation):
             self._motions.stops += 1
 
     def _end(self, inputs: Sequence[object]) -> None:
-        """Publish the last message, if any."""
         if (end := self._codec.end) is not None:
             self._moves = False
             self._publisher.publish(self._publisher.message(**end(inputs, self._host.clock.now())))
@@ -351,8 +344,6 @@ class _ParameterOperation:
 
 
 class _SetParameter(_ParameterOperation):
-    """One operation with ``set_parameter``."""
-
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Set the parameter."""
         try:
@@ -384,8 +375,6 @@ class _SetParameter(_ParameterOperation):
 
 
 class _GetParameter(_ParameterOperation):
-    """One operation with ``get_parameter``."""
-
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
         """Give the parameter."""
         field = self._part.outputs[0]
@@ -401,8 +390,6 @@ class _GetParameter(_ParameterOperation):
 
 
 class _RequestOperation:
-    """One operation with ``refresh`` or ``read``."""
-
     def __init__(self, host: Host, part: OperationPart) -> None:
         self._host, self._part = host, part
 
@@ -413,8 +400,7 @@ class _RequestOperation:
             if self._part.kind is OperationKind.REFRESH:
                 await self._host.refresh(wanted.text, reading, "no_message")
             else:
-                for out, value in zip(outs, await self._host.newest(reading, "no_message"), strict=True):
-                    out.set(value)
+                await self._host.give_newest(reading, "no_message", *outs)
 
 
 _RUNNERS: dict[OperationKind, Any] = {

@@ -282,7 +282,6 @@ def _answer(node: Node, part: OperationPart) -> dict[str, Any]:
 
 
 def _output(node: Node, part: OperationPart) -> dict[str, Any]:
-    """Read the output of an operation that gives the value of a parameter."""
     listed = each_of(node)
     if len(listed) != 1:
         node.wrong("a parameter has one value, so it has one output", "write outputs: [value]")
@@ -349,7 +348,6 @@ _SUSPEND = ("go_on", "cancel")
 
 
 def _suspend(node: Node, part: OperationPart) -> dict[str, Any]:
-    """Read the effect of suspending the intention on a goal."""
     if node.value == "pause":
         node.wrong(
             "an action can only be cancelled, not paused",
@@ -370,7 +368,6 @@ def _suspend(node: Node, part: OperationPart) -> dict[str, Any]:
 
 
 def _uses(node: Node) -> tuple[str, ...]:
-    """Read the resources that an operation holds."""
     found: list[str] = []
     for item in each_of(node):
         name = item.value

@@ -250,17 +250,13 @@ class NodeParameter(_Parameter):
         try:
             super()._take(value)
         except Unshowable as error:
-            self._withdraw()
+            self._reading.withdraw()
             part = self._part
             told = f"`{part.name}` is not shown: {error}"
             self._host.report_once((part.name, error.functor), part.place, told, error.help)
 
-    def _withdraw(self) -> None:
-        if self._reading.newest is not None:
-            self._reading.withdraw()
-
     def _lose(self, error: RosError) -> None:
-        self._withdraw()
+        self._reading.withdraw()
         part = self._part
         if isinstance(error, ParameterUnknown):
             told = f"`{part.name}` is unknown: {error}"

@@ -344,7 +344,6 @@ TRANSFORM = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES,
 
 
 def _of_transform(field: FieldPart) -> Iterator[Problem]:
-    """Yield mistakes in the conversion of a part of a transform."""
     place, conversion = field.path.text, field.conversion
     if place not in PLACES:
         yield field.place.problem(f"a transform has no `{place}`", f"it has {', '.join(PLACES)}")
@@ -361,7 +360,6 @@ def _of_transform(field: FieldPart) -> Iterator[Problem]:
 
 
 def _field(node: Node) -> FieldPart | None:
-    """Read the conversion of the value."""
     fields = read_fields(node)
     if len(fields) != 1 or fields[0].path.steps:
         node.wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")

@@ -216,7 +216,7 @@ class Updater:
         elif rows:
             self._host.annotate(self.part.name, rows[0].annotations)
             self._reading.take(rows[0].values, cause)
-        elif self._reading.newest is not None:
+        else:
             self._reading.withdraw()
 
     def _signal(self, rows: list[Row], cause: Cause | None) -> None:
@@ -334,7 +334,6 @@ class Elements:
                 host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
 
     def _alive(self, now: float, expire: float) -> dict[object, Row]:
-        """Return the elements that were seen recently."""
         alive = {
             key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
         }

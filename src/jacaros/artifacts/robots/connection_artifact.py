@@ -171,7 +171,6 @@ class ArtRos(RosArtifact):
         return self.option("timeout", PATIENCE)
 
     async def _asked(self, question: Awaitable[T], whom: str, what: str = "") -> T:
-        """Wait for an answer; a step boundary."""
         try:
             return await self.step(question)
         except (ServiceError, ParameterUnknown, ParameterRefused, TransformUnavailable) as error:

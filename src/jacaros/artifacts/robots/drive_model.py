@@ -382,7 +382,6 @@ class DriveModel:
         self.period += 0.1 * (interval - self.period)
 
     def _advance(self, until: float) -> None:
-        """Move the candidates on to *until*."""
         if until - self._ticked > 2.0 * WINDOW * TICK:
             self._ticked = until - WINDOW * TICK
         since, command = self._commands[-1]
@@ -491,7 +490,6 @@ class DriveModel:
                 self.angular.rolled(max(turn, abs(velocity.angular)))
 
     def _sent(self, start: float, end: float) -> list[Velocity]:
-        """Return the commands that held between two times."""
         return [each for *_, each in self._pending(start, end)]
 
     def ahead(self, now: float) -> tuple[Pose, Velocity]:

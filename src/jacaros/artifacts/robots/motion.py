@@ -4,7 +4,6 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,10 +29,10 @@ from jacaros.artifacts.robots.motion_claim import Aborted, Driving, motions_of
 from jacaros.artifacts.robots.odometry import (
     LOCALISED,
     NO_TRANSFORM,
-    ODOMETRY,
     Drift,
     Odometer,
     Odometry,
+    Placed,
     driving_frame,
     pose_values,
 )
@@ -209,7 +208,6 @@ class Motion:
         return Outlook(wheels.model, wheels.settings.limits, now, wheels.model.pose, ahead, velocity)
 
     async def _command(self, step: Step, periodic: bool = True) -> None:
-        """Send one command and wait until the next is due."""
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(step.velocity)
         await self._driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
@@ -270,7 +268,6 @@ class Motion:
         return Structure("no_odometry", (round(age or 0.0, 3),))
 
     def _sees(self) -> bool:
-        """Return whether the newest odometry is current."""
         age = self._wheels.odometer.age(self._wheels.clock.now())
         # If the clock was set back, the newest odometry is from the future and equally out of date.
         return age is not None and abs(age) <= STALE
@@ -347,7 +344,7 @@ class Motion:
 def _lack(odometer: Odometer) -> str:
     if odometer.lacking == NO_TRANSFORM:
         return "no transform from the frame of odometry to the driving frame; is the robot localised?"
-    bad = f" ({odometer.faults} messages were bad)" if odometer.faults else ""
+    bad = f" ({odometer.faults.total} messages were bad)" if odometer.faults.total else ""
     return f"no odometry{bad}"
 
 
@@ -447,19 +444,12 @@ class WheeledArtifact(RosArtifact):
         self.newest_pose = Reading(ReadingPolicy(on_demand=True), self.clock)
         self._commands = self.publisher(self.option("command_topic", self.command_topic), TWIST)
         self.matching = self.matching_of(self._commands)
-        topic = self.option("odometry_topic", "odom")
         self.model = DriveModel(self.settings.limits)
         self._read_quality()
         self.motions.models.append(self.model)
         self.at_dispose(lambda: self.motions.models.remove(self.model))
-        self.odometer = Odometer(
-            self.faults_of(topic),
-            self.clock,
-            self.on_odometry,
-            self.option("odometry_frame", ""),
-            self._placed(),
-        )
-        self.subscription(topic, ODOMETRY, self.odometer.take, SENSOR_DATA)
+        topic, frame = self.option("odometry_topic", "odom"), self.option("odometry_frame", "")
+        self.odometer = Odometer(self, topic, self.on_odometry, frame, self._placed())
         if "frame" not in self.options:
             drift = Drift(self.ros, self.odometer, lambda: bool(self._motions), self.log)
             localised = self.robot_topic("amcl_pose")
@@ -467,7 +457,7 @@ class WheeledArtifact(RosArtifact):
         self._drove = False
         self.motions.watch(self, self._stand, self._halt)
 
-    def _placed(self) -> Callable[[Odometry], Odometry | None] | None:
+    def _placed(self) -> Placed | None:
         """Return the conversion of odometry to the frame of the option; None without it."""
         if "frame" not in self.options:
             return None

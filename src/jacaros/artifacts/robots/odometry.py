@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from weakref import WeakSet
 
 from jacaros.artifacts.env.artifact import Out, operation
-from jacaros.artifacts.kit.faults import Faults, Header
+from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
@@ -17,7 +17,6 @@ from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import SENSOR_DATA
-from jacaros.runtime.clock import Clock
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
@@ -70,18 +69,22 @@ def not_finite(sample: Sample) -> tuple[str, float] | None:
     return next(((name, number) for name, number in fields if not math.isfinite(number)), None)
 
 
+Placed = Callable[[Odometry], Odometry | None]
+"""Converts odometry to another frame; returns None while the transform is unknown."""
+
+
 class Odometer:
     """The newest odometry of one robot; bad messages are counted and not used.
 
     Args:
-        faults: counts bad messages.
-        clock: measures how late messages are.
+        artifact: subscribes to the topic, and reports bad messages.
+        topic: the robot's topic.
         on_reading: called with every good message.
         frame: see `Header`.
-        placed: converts odometry to the driving frame, None while that is unknown; see
-            `jacaros.artifacts.robots.odometry`.
+        placed: converts odometry to the driving frame, None while that is unknown; see `driving_frame`.
 
     Attributes:
+        faults: bad messages.
         header: checks frames and stamps.
         newest: None until the first message.
         count: number of good messages.
@@ -93,32 +96,26 @@ class Odometer:
 
     def __init__(
         self,
-        faults: Faults,
-        clock: Clock,
-        on_reading: Callable[[Odometry], None] | None = None,
+        artifact: RosArtifact,
+        topic: str,
+        on_reading: Callable[[Odometry], None],
         frame: str = "",
-        placed: Callable[[Odometry], Odometry | None] | None = None,
+        placed: Placed | None = None,
     ) -> None:
         self.newest: Odometry | None = None
         self.count = 0
-        self.trusted = True
-        self.lacking = NO_ODOMETRY
-        self._placed = placed
-        self._faults = faults
-        self.header = Header(faults, clock, frame)
-        self._on_reading = on_reading
-
-    @property
-    def faults(self) -> int:
-        """Number of bad messages."""
-        return self._faults.total
+        self.trusted, self.lacking = True, NO_ODOMETRY
+        self.faults = artifact.faults_of(topic)
+        self.header = Header(self.faults, artifact.clock, frame)
+        self._on_reading, self._placed = on_reading, placed
+        artifact.subscription(topic, ODOMETRY, self.take, SENSOR_DATA)
 
     def take(self, sample: Sample) -> None:
         """Handle a message; the callback of the subscription."""
         wrong = not_finite(sample)
         if wrong is not None:
             self.trusted, self.lacking = False, NO_ODOMETRY
-            self._faults.not_finite(*wrong)
+            self.faults.not_finite(*wrong)
             return
         if not self.header.accepts(sample):
             return
@@ -130,8 +127,7 @@ class Odometer:
         self.newest = odometry
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
-        if self._on_reading is not None:
-            self._on_reading(odometry)
+        self._on_reading(odometry)
 
     def age(self, now: float) -> float | None:
         """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
@@ -168,9 +164,7 @@ class ArtOdometry(RosArtifact):
         policy = ReadingPolicy.from_options(self.options, self.on_demand)
         self._position = self.reading("odom", policy, 0, 0, 0)
         self._pose = self.reading("pose", policy, 0, 0, 0)
-        topic = self.option("topic", "odom")
-        odometer = Odometer(self.faults_of(topic), self.clock, self._take, self.option("frame", ""))
-        self.subscription(topic, ODOMETRY, odometer.take, SENSOR_DATA)
+        Odometer(self, self.option("topic", "odom"), self._take, self.option("frame", ""))
 
     def _take(self, odometry: Odometry) -> None:
         position, pose = (self._position, odometry.position), (self._pose, pose_values(odometry))
@@ -185,16 +179,12 @@ class ArtOdometry(RosArtifact):
     @operation(name="getCurrentOdom")
     async def give_current_odom(self, x: Out, y: Out, z: Out) -> None:
         """Give the newest position to the caller."""
-        await self._give(self._position, x, y, z)
+        await self.give_newest(self._position, NO_ODOMETRY, x, y, z)
 
     @operation(name="getCurrentPose")
     async def give_current_pose(self, x: Out, y: Out, heading: Out) -> None:
         """Give the newest pose to the caller: metres, metres, degrees."""
-        await self._give(self._pose, x, y, heading)
-
-    async def _give(self, reading: Reading, *outs: Out) -> None:
-        for out, value in zip(outs, await self.newest(reading, NO_ODOMETRY), strict=True):
-            out.set(value)
+        await self.give_newest(self._pose, NO_ODOMETRY, x, y, heading)
 
 
 class ArtOdometryOnDemand(ArtOdometry):
@@ -215,7 +205,7 @@ OLDEST_TRANSFORM = 2.0
 """Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
 
 
-def driving_frame(ros: Backend, name: str) -> Callable[[Odometry], Odometry | None]:
+def driving_frame(ros: Backend, name: str) -> Placed:
     """Return the conversion of odometry to another frame (REP 105), by the newest transform; None while it is unknown.
 
     Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in

@@ -71,8 +71,7 @@ class ArtBaseScan(RosArtifact):
     @operation(name="getCurrentBaseScan")
     async def give_current_base_scan(self, a: Out, b: Out, c: Out, d: Out, e: Out) -> None:
         """Give the newest five ranges to the caller."""
-        for out, value in zip((a, b, c, d, e), await self.newest(self._ranges[0], "no_scan"), strict=True):
-            out.set(value)
+        await self.give_newest(self._ranges[0], "no_scan", a, b, c, d, e)
 
 
 class ArtScan(ArtBaseScan):

@@ -127,10 +127,7 @@ class ArtCmdVel(WheeledArtifact):
     async def get_current_pose(self, x: Out, y: Out, heading: Out) -> None:
         """Give the pose in odometry: metres, metres, degrees; fails with ``no_odometry(5)`` if none arrives within 5
         s."""
-        for out, value in zip(
-            (x, y, heading), await self.newest(self.newest_pose, self.odometer.lacking), strict=True
-        ):
-            out.set(value)
+        await self.give_newest(self.newest_pose, self.odometer.lacking, x, y, heading)
 
     def _finite(self, *numbers: float) -> None:
         for number in numbers:
