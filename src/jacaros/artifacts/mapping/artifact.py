@@ -30,6 +30,7 @@ from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater, find_types
 from jacaros.artifacts.resources.arbiter import WHEELS
+from jacaros.files.yaml import Problem
 from jacaros.ros.guarded import VELOCITIES
 
 
@@ -49,10 +50,7 @@ class MappedArtifact(Host):
         super().open()
         for folder in self.part.interfaces:
             self.ros.add_interfaces(folder)
-        problems = type_problems(self.part, self.ros)
-        if problems:
-            error = MappingError(self.mapping.file, self.mapping.text, problems)
-            self.fail(str(error), "wrong_mapping", self.mapping.file)
+        self._require_none(type_problems(self.part, self.ros))
         if self.part.connected is not False and "watch_connection" not in self.options:
             self.options = {**self.options, "watch_connection": self.part.connected}
         self.own_parameters = self._declare_parameters()
@@ -84,11 +82,14 @@ class MappedArtifact(Host):
         parts = [part for part in self.part.parameters if part.declaration is not None]
         own = [self.kept(OwnParameter(self, part)) for part in parts]
         problems = [problem for each in own if (problem := each.declare()) is not None]
+        self._require_none(problems)
+        return own
+
+    def _require_none(self, problems: list[Problem]) -> None:
         if problems:
             self.dispose()
             error = MappingError(self.mapping.file, self.mapping.text, problems)
             self.fail(str(error), "wrong_mapping", self.mapping.file)
-        return own
 
 
 class TunedArtifact(MappedArtifact):

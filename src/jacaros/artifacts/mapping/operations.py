@@ -397,6 +397,7 @@ def _parameters(node: Node) -> tuple[str, ...]:
 
 
 _TARGET = _into("target", ros_name)
+_NODE = _into("node", lambda node: ros_name(node).text)
 _TIMEOUT = _into("timeout", positive)
 _OUTPUTS = _into("outputs", _outputs)
 KEYS: dict[str, dict[str, Reader]] = {
@@ -433,13 +434,13 @@ KEYS: dict[str, dict[str, Reader]] = {
     },
     "set_parameter": {
         "set_parameter": _of_node,
-        "node": _into("node", lambda node: ros_name(node).text),
+        "node": _NODE,
         "value": _value,
         "timeout": _TIMEOUT,
     },
     "get_parameter": {
         "get_parameter": _of_node,
-        "node": _into("node", lambda node: ros_name(node).text),
+        "node": _NODE,
         "outputs": _output,
         "timeout": _TIMEOUT,
     },

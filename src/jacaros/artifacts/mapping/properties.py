@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from jacaros.artifacts.mapping.fields import (
-    ANGLES,
     START,
     UNITS,
     UNNAMED,
@@ -293,8 +292,12 @@ def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]
 
 # Frames.
 
-PLACES = ("x", "y", "z", "roll", "pitch", "yaw", "stamp")
-"""The parts of a transform that can be shown."""
+TRANSFORM = {
+    **dict.fromkeys(("x", "y", "z"), "length"),
+    **dict.fromkeys(("roll", "pitch", "yaw"), "angle"),
+    "stamp": "time",
+}
+"""The parts of a transform that can be shown, and their kinds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,14 +342,10 @@ def read_frame(name: Node, node: Node) -> FramePart:
     return replace(part, rate=policy.rate or part.rate, oldest=policy.expire, policy=rest)
 
 
-TRANSFORM = {**dict.fromkeys(("x", "y", "z"), "length"), **dict.fromkeys(ANGLES, "angle"), "stamp": "time"}
-"""Kinds of the parts of a transform."""
-
-
 def _of_transform(field: FieldPart) -> Iterator[Problem]:
     place, conversion = field.path.text, field.conversion
-    if place not in PLACES:
-        yield field.place.problem(f"a transform has no `{place}`", f"it has {', '.join(PLACES)}")
+    if place not in TRANSFORM:
+        yield field.place.problem(f"a transform has no `{place}`", f"it has {', '.join(TRANSFORM)}")
     elif conversion.kind or conversion.names or field.shares is not None:
         text = f"{place} of a transform is a number"
         yield field.place.problem(text, "it can only have a unit, scale, offset and round")

@@ -5,6 +5,8 @@ For an array there is one property per element: new elements are defined, change
 
 import dataclasses
 import itertools
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from jacaros.artifacts.env.values import Structure
@@ -113,6 +115,10 @@ async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
         await host.sleep(LOOK)
 
 
+Show = Callable[[list[Row], Cause | None], None]
+"""Shows the rows of a message."""
+
+
 class Updater:
     """Update a property, or send signals, from messages.
 
@@ -126,35 +132,32 @@ class Updater:
         self._host = host
         self._extract: Extract | None = None
         self._reading: Reading | None = None
-        self._elements: Elements | None = None
         self._faults: Faults | None = None
-        self._sent: dict[object, tuple[object, ...]] = {}
-        self._held: tuple[list[Row], Cause | None] | None = None
-        self._pause: Timer | None = None
         self._taps = host.taps.get(part.name, ())
         self._latched = False
-        host.at_dispose(self._end_pause)
-        if part.each is not None and not part.signal:
-            self._elements = Elements(host, part)
-        elif not part.signal:
-            self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
-        self._view = self._range_of_view()
         self._frame = host.frame(part.frame.text) if part.frame is not None else None
+        if part.signal:
+            show = Signals(host, part).take
+        elif part.each is not None:
+            show = Elements(host, part).take
+        else:
+            self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
+            show = partial(self._show, self._reading)
+        self._take_rows = self._in_view(show)
 
-    def _range_of_view(self) -> RangeOfView | None:
+    def _in_view(self, show: Show) -> Show:
+        """Return what takes the rows of a message, and shows those in the range of view."""
         view = self.part.view
         if view is None or view.distance is not None:
-            return None
-
-        def show(seen: list[tuple[object, ...]], cause: Cause | None) -> None:
-            self._show([row for *_, row in seen if isinstance(row, Row)], cause)
-
-        made = RangeOfView(view.metres, show)
+            return show
+        seen = RangeOfView(
+            view.metres, lambda rows, cause: show([row for *_, row in rows if isinstance(row, Row)], cause)
+        )
         if view.origin is None:
-            made.stand(0.0, 0.0)
+            seen.stand(0.0, 0.0)
         else:
-            self._host.follow_property(view.origin.text, lambda values: _stand(made, values))
-        return made
+            self._host.follow_property(view.origin.text, partial(_stand, seen))
+        return lambda rows, cause: seen.take([(*row.place, row) for row in rows], cause)
 
     @property
     def is_state(self) -> bool:
@@ -173,17 +176,15 @@ class Updater:
     def take(self, sample: Sample, latched: bool) -> None:
         """Handle a message; *latched*: its stamp may be old."""
         self._latched = latched
-        if self._frame is None or self._is_in_frame(sample, self._frame):
-            self.take_message(sample.message, sample.cause, sample.topic)
-
-    def _is_in_frame(self, sample: Sample, wanted: str) -> bool:
-        message: Any = sample.message
-        given = message.header.frame_id.strip("/")
-        if given == wanted:
-            return True
-        text = f"expected frame {wanted}, found {given or 'none'}"
-        self._refuse(Unshowable(given, text, "if that is its frame, write it", "wrong_frame"), sample.topic)
-        return False
+        if self._frame is not None:
+            message: Any = sample.message
+            given = message.header.frame_id.strip("/")
+            if given != self._frame:
+                text = f"expected frame {self._frame}, found {given or 'none'}"
+                wrong = Unshowable(given, text, "if that is its frame, write it", "wrong_frame")
+                self._refuse(wrong, sample.topic)
+                return
+        self.take_message(sample.message, sample.cause, sample.topic)
 
     def take_message(self, message: object, cause: Cause | None, topic: str) -> None:
         """Handle a message, or the feedback of an action."""
@@ -194,54 +195,18 @@ class Updater:
             self._refuse(error, topic)
             return
         if self._taps:
-            self._tell_taps(message, rows, cause)
-        if self._view is not None:
-            self._view.take([(*row.place, row) for row in rows], cause)
-        else:
-            self._show(rows, cause)
+            stamp = stamp_of(message, self._latched)
+            for tap in self._taps:
+                for row in rows:
+                    tap(stamp, row.values, cause)
+        self._take_rows(rows, cause)
 
-    def _tell_taps(self, message: object, rows: list[Row], cause: Cause | None) -> None:
-        stamp = stamp_of(message, self._latched)
-        for tap in self._taps:
-            for row in rows:
-                tap(stamp, row.values, cause)
-
-    def _show(self, rows: list[Row], cause: Cause | None) -> None:
-        if self.part.signal:
-            self._signal(rows, cause)
-        elif self._elements is not None:
-            self._elements.take(rows, cause)
-        elif self._reading is None:
-            return
-        elif rows:
+    def _show(self, reading: Reading, rows: list[Row], cause: Cause | None) -> None:
+        if rows:
             self._host.annotate(self.part.name, rows[0].annotations)
-            self._reading.take(rows[0].values, cause)
+            reading.take(rows[0].values, cause)
         else:
-            self._reading.withdraw()
-
-    def _signal(self, rows: list[Row], cause: Cause | None) -> None:
-        if self._pause is not None:
-            self._held = (rows, cause)  # keep the newest
-            return
-        if self.part.when_changed:
-            before, self._sent = self._sent, {row.key: row.values for row in rows}
-            rows = [row for row in rows if before.get(row.key) != row.values]
-        if not rows:
-            return
-        if (rate := self.part.policy.rate) is not None:
-            self._pause = self._host.clock.call_later(1.0 / rate, self._go_on)
-        self._host.start(self._host.send_signals, self.part.name, [row.values for row in rows], cause=cause)
-
-    def _go_on(self) -> None:
-        """Continue after the pause that follows a signal."""
-        self._pause = None
-        if self._held is not None:
-            held, self._held = self._held, None
-            self._signal(*held)
-
-    def _end_pause(self) -> None:
-        if self._pause is not None:
-            self._pause.cancel()
+            reading.withdraw()
 
     def withdraw(self) -> None:
         """Remove the property."""
@@ -251,15 +216,10 @@ class Updater:
     def _refuse(self, error: Unshowable, topic: str) -> None:
         """Report a message that was not shown: by one log line with the position, and by a signal to agents."""
         part, host = self.part, self._host
-        host.report_once(
-            (part.name, error.path), part.place, f"`{part.name}` is not shown: {error}", error.help
-        )
+        text = f"`{part.name}` is not shown: {error}"
+        host.report_once((part.name, error.path), part.place, text, error.help)
         if self._faults is None:
-
-            def report(why: Structure, text: str) -> None:
-                host.start(host.report_bad_message, topic, why)
-
-            self._faults = Faults(topic, report)
+            self._faults = Faults(topic, lambda why, _: host.start(host.report_bad_message, topic, why))
         self._faults.add(Structure(error.functor, (error.path,)), str(error))
 
 
@@ -268,6 +228,45 @@ def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
     x, y = (*values, 0, 0)[:2]
     if isinstance(x, int | float) and isinstance(y, int | float):
         view.stand(float(x), float(y))
+
+
+class Signals:
+    """The signals of a topic: all, those that differ from the last ones, or at most some each second.
+
+    Args:
+        host: the artifact.
+        part: its declaration.
+    """
+
+    def __init__(self, host: Host, part: TopicPart) -> None:
+        self._host, self._part = host, part
+        self._sent: dict[object, tuple[object, ...]] = {}
+        self._held: tuple[list[Row], Cause | None] | None = None
+        self._pause: Timer | None = None
+        host.at_dispose(self._close)
+
+    def take(self, rows: list[Row], cause: Cause | None) -> None:
+        """Handle a message; during the pause after a signal the newest one is held back."""
+        if self._pause is not None:
+            self._held = (rows, cause)
+            return
+        if self._part.when_changed:
+            before, self._sent = self._sent, {row.key: row.values for row in rows}
+            rows = [row for row in rows if before.get(row.key) != row.values]
+        if not rows:
+            return
+        if (rate := self._part.policy.rate) is not None:
+            self._pause = self._host.clock.call_later(1.0 / rate, self._go_on)
+        self._host.start(self._host.send_signals, self._part.name, [row.values for row in rows], cause=cause)
+
+    def _go_on(self) -> None:
+        held, self._pause, self._held = self._held, None, None
+        if held is not None:
+            self.take(*held)
+
+    def _close(self) -> None:
+        if self._pause is not None:
+            self._pause.cancel()
 
 
 class Elements:

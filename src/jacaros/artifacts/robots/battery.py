@@ -98,17 +98,14 @@ class ArtSimBattery(RosArtifact):
 
     def _show(self, level: int) -> None:
         """Show a charge; update the diagnosis only if it changes."""
+        words = diagnosis(level, *self._levels)
         if self._level == UNKNOWN:
             self.define_property("battery", level)
-            self.define_property("diagnostics", self._diagnosis(level))
-        elif level != self._level:
-            self.update_property("battery", level)
-            if self._diagnosis(level) != self.value("diagnostics"):
-                self.update_property("diagnostics", self._diagnosis(level))
+            self.define_property("diagnostics", words)
+        else:
+            self.update_property("battery", level, if_new=True)
+            self.update_property("diagnostics", words, if_new=True)
         self._level = level
-
-    def _diagnosis(self, level: int) -> str:
-        return diagnosis(level, *self._levels)
 
     # The timer.
 

@@ -507,9 +507,7 @@ class WheeledArtifact(RosArtifact):
             self._motions[motion] = state
         states = self._motions.values()
         shown = next((each for each in STATES if each in states), "stopped")
-        name = self.robot_property("moving")
-        if shown != self.value(name):
-            self.update_property(name, Atom(shown))
+        self.update_property(self.robot_property("moving"), Atom(shown), if_new=True)
 
     def _show_quality(self) -> None:
         """Show what was measured, and keep it."""
