@@ -116,10 +116,9 @@ class Listener:
     def _fault(self, error: Exception) -> None:
         kind = f"{type(error).__name__} {_line(error)}"
         times = self._faults[kind] = self._faults.get(kind, 0) + 1
-        if times == 1:
-            self._complain(f"the callback of topic {self._topic} failed:", error)
-        elif is_worth_a_line(times):
-            self._complain(f"the callback of topic {self._topic} failed ({times} times so far):", error)
+        if is_worth_a_line(times):
+            again = f" ({times} times so far)" if times > 1 else ""
+            self._complain(f"the callback of topic {self._topic} failed{again}:", error)
 
 
 def _line(error: Exception) -> int:
