@@ -2,13 +2,14 @@
 
 import itertools
 import math
+from functools import partial
 from typing import Any, ClassVar
 
 import pytest
 from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import Structure, operation
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, RangeOfView, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.sensors import ArtBaseScan
@@ -26,8 +27,8 @@ class Slow:
         self.clock = VirtualClock()
         self.behind = False
         self.log: list[tuple[float, Values | str]] = []
-        outlet = Outlet(lambda: self.note("withdrawn"), self.refuse, lambda: self.behind)
-        self.reading = Reading(policy, self.clock, self.show, outlet)
+        withdrawn = partial(self.note, "withdrawn")
+        self.reading = Reading(policy, self.clock, self.show, "", withdrawn, self.refuse, lambda: self.behind)
 
     def note(self, what: Values | str) -> None:
         self.log.append((round(self.clock.elapsed, 6), what))

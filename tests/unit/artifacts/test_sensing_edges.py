@@ -9,7 +9,7 @@ from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, Outlet, RangeOfView, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, ReadingPolicy, Values
 from jacaros.artifacts.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.artifacts.map.mapper import Localisation
 from jacaros.artifacts.mapping.decoding import converted, extractor
@@ -38,7 +38,7 @@ def test_values_that_are_confirmed_in_time_do_not_expire() -> None:
             ReadingPolicy(expire=1.0),
             clock,
             lambda values, cause: delivered.append(clock.elapsed),
-            Outlet(withdraw=lambda: withdrawn.append(round(clock.elapsed, 6))),
+            on_withdraw=lambda: withdrawn.append(round(clock.elapsed, 6)),
         )
         for _ in range(8):
             reading.take((1.0,))
@@ -61,7 +61,7 @@ def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longe
             ReadingPolicy(latest_only=True),
             clock,
             lambda values, cause: delivered.append((round(clock.elapsed, 1), values)),
-            Outlet(behind=lambda: True),
+            behind=lambda: True,
         )
         for count in range(30):
             reading.take((count,))

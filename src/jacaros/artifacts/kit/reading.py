@@ -50,23 +50,8 @@ LONGEST_WAIT = 1.0
 so."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outlet:
-    """Further callbacks of a receiver of values.
-
-    Attributes:
-        withdraw: called when the values delivered last are out of date.
-        refuse: called with a number that is not finite; the message is not used.
-        behind: returns whether the values delivered last are still unprocessed.
-    """
-
-    withdraw: Callable[[], None] = lambda: None
-    refuse: Callable[[float], None] = lambda number: None
-    behind: Callable[[], bool] = lambda: False
-
-
-ALOOF = Outlet()
-"""Ignores withdrawals and refusals, and never lags behind."""
+def _nothing(*_: object) -> None:
+    """Ignore withdrawals and refusals."""
 
 
 @dataclass(eq=False)
@@ -80,15 +65,19 @@ class Reading:
         policy: when to deliver values.
         clock: measures rate limit and expiry.
         deliver: called with the values and their cause; None for a reading that is only queried.
-        outlet: further callbacks.
         name: name of the property that shows the values, if any.
+        on_withdraw: called when the values delivered last are out of date.
+        on_refuse: called with a number that is not finite; the message is not used.
+        behind: returns whether the values delivered last are still unprocessed.
     """
 
     policy: ReadingPolicy
     clock: Clock
     deliver: Callable[[Values, Cause | None], None] | None = None
-    outlet: Outlet = ALOOF
     name: str = ""
+    on_withdraw: Callable[[], None] = _nothing
+    on_refuse: Callable[[float], None] = _nothing
+    behind: Callable[[], bool] = lambda: False
 
     def __post_init__(self) -> None:
         self.newest: Values | None = None
@@ -103,7 +92,7 @@ class Reading:
     def take(self, values: Values, cause: Cause | None = None) -> None:
         """Take the values of a message, and deliver them now, later or never."""
         if self.policy.finite and (why := not_finite(values)) is not None:
-            self.outlet.refuse(why)
+            self.on_refuse(why)
         elif self.offer(values, cause):
             self._deliver_newest()
 
@@ -146,7 +135,7 @@ class Reading:
 
     def close(self) -> None:
         """Stop delivering."""
-        self.deliver, self.outlet = None, ALOOF
+        self.deliver, self.on_withdraw, self.on_refuse = None, _nothing, _nothing
         self._queue.close()
         for timer in (self._pause, self._expiry):
             if timer is not None:
@@ -167,7 +156,7 @@ class Reading:
             return False
         passes = self._delivered is None or self.policy.differ(self._delivered, self.newest)
         if passes:
-            if self.policy.latest_only and self.outlet.behind() and self._queue.wait():
+            if self.policy.latest_only and self.behind() and self._queue.wait():
                 return False
             self._delivered = self.newest
             if self.policy.rate is not None:
@@ -199,7 +188,7 @@ class Reading:
         """Withdraw the values of the newest message, if any; the next values are delivered in any case."""
         if self.newest is not None:
             self.newest = self._delivered = self._cause = None
-            self.outlet.withdraw()
+            self.on_withdraw()
 
 
 class Queue:

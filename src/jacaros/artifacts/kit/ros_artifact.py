@@ -22,7 +22,7 @@ from jacaros.artifacts.kit.connection import (
 )
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
-from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.services import ServedOperation, failure_reason, refusal, succeeded
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
 from jacaros.ros.backend import (
@@ -432,10 +432,8 @@ class RosArtifact(Artifact):
             self._tell_readings([(name, values)], cause)
 
         behind = partial(self._steps.publication.has_untaken, name)
-        outlet = Outlet(
-            partial(self.start, self.withdraw_reading, name), partial(faults.not_finite, name), behind
-        )
-        return self.kept(Reading(policy, self.clock, deliver, outlet, name))
+        withdraw, refuse = partial(self.start, self.withdraw_reading, name), partial(faults.not_finite, name)
+        return self.kept(Reading(policy, self.clock, deliver, name, withdraw, refuse, behind))
 
     def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
         """Pass the values of one message, whose numbers are known to be finite, to several readings; all updates are

@@ -11,7 +11,7 @@ from typing import Any
 
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
-from jacaros.artifacts.kit.reading import Outlet, RangeOfView, Reading
+from jacaros.artifacts.kit.reading import RangeOfView, Reading
 from jacaros.artifacts.mapping.decoding import Extract, Row, Unshowable, extractor, perceived
 from jacaros.artifacts.mapping.deriving import stamp_of
 from jacaros.artifacts.mapping.host import LOOK, Host, type_in
@@ -286,8 +286,7 @@ class Elements:
         self._versions = itertools.count()
         self._coming = False
         policy = dataclasses.replace(part.policy, dead_band=0.0, expire=None)
-        outlet = Outlet(behind=lambda: self._coming or host.has_untaken(part.name))
-        self._reading = Reading(policy, host.clock, self._deliver, outlet)
+        self._reading = Reading(policy, host.clock, self._deliver, behind=self._is_behind)
         host.at_dispose(self.close)
 
     def take(self, rows: list[Row], cause: Cause | None) -> None:
@@ -312,6 +311,9 @@ class Elements:
         if new != self._wanted:
             self._wanted = new
             self._reading.take((next(self._versions),), cause)
+
+    def _is_behind(self) -> bool:
+        return self._coming or self._host.has_untaken(self._part.name)
 
     def _deliver(self, values: tuple[object, ...], cause: Cause | None) -> None:
         self._coming = True

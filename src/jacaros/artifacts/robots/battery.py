@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
-from jacaros.artifacts.kit.reading import Outlet, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant
@@ -83,9 +83,8 @@ class ArtSimBattery(RosArtifact):
         self._full_since = math.inf
         expire: float | None = self.option("expire", None)
         policy = ReadingPolicy(on_demand=True, expire=expire)
-        self._reported = self.kept(
-            Reading(policy, self.clock, None, Outlet(withdraw=partial(self.start, self.forget_battery)))
-        )
+        forget = partial(self.start, self.forget_battery)
+        self._reported = self.kept(Reading(policy, self.clock, on_withdraw=forget))
         is_robots = bool(self.robot) or "topic" in self.options or "namespace" in self.options
         self.follows_robot = self.option("source", "robot" if is_robots else "timer") == "robot"
         if self.follows_robot:
