@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from jacaros.agents.checks.checker import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
-from jacaros.agents.checks.plans import needs_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import ByKind

@@ -6,7 +6,7 @@ from enum import StrEnum
 from pathlib import Path as FilePath
 from typing import Literal, NamedTuple
 
-from jacaros.artifacts.streams.declarations import ReadingPolicy, Spec
+from jacaros.artifacts.streams import ReadingPolicy, Spec
 from jacaros.files.yaml import Problem, YamlFileError
 from jacaros.ros.parameter import Declaration
 from jacaros.ros.qos import QoS

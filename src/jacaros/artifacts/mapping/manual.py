@@ -39,7 +39,7 @@ from jacaros.artifacts.mapping.paths import follow
 from jacaros.artifacts.mapping.read_fields import ANGLES, UNITS, units_of
 from jacaros.artifacts.mapping.read_properties import TRANSFORM
 from jacaros.artifacts.mapping.rows import fields_of
-from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
+from jacaros.artifacts.streams import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType

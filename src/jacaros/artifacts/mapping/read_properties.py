@@ -35,7 +35,7 @@ from jacaros.artifacts.mapping.read_fields import (
     type_written,
     units_of,
 )
-from jacaros.artifacts.streams.declarations import (
+from jacaros.artifacts.streams import (
     LONGEST,
     OPERATORS,
     PARTNERS_WAIT,

@@ -2,7 +2,7 @@
 
 CArtAgO's rules decide which artifact serves an operation. A `Direction` selects it: an artifact by id, or by its name in
 the given workspace. With a namespace, the artifacts focused in that namespace come first. Otherwise the workspaces are
-searched: the current one, home, then the others (see `jacaros.artifacts.env.creation` for several candidates in one).
+searched: the current one, home, then the others (see `jacaros.artifacts.env.workspace` for several candidates in one).
 """
 
 import asyncio
@@ -11,7 +11,6 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-from jacaros.artifacts.env.creation import artifact_named, chosen_artifact
 from jacaros.artifacts.env.environment import DEFAULT_TYPES, Environment
 from jacaros.artifacts.env.errors import (
     ArtifactId,
@@ -24,6 +23,7 @@ from jacaros.artifacts.env.operation import OperationOutcome
 from jacaros.artifacts.env.ports import ENDED, OnMade, UnderWay, Waiting, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, Observation, fits
 from jacaros.artifacts.env.values import Structure, plain
+from jacaros.artifacts.env.workspace import artifact_named, chosen_artifact
 from jacaros.artifacts.presence.joined import Filter, Focused, JoinedWorkspaces
 from jacaros.files.texts import aside, close_matches
 from jacaros.runtime.clock import Clock

@@ -16,7 +16,7 @@ from jacaros.agents.mind.actions.internal_action import (
     members,
     whole,
 )
-from jacaros.agents.mind.actions.strings import replace_all
+from jacaros.agents.mind.actions.terms import replace_all
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.agents.terms.order import compare, ordered_by_python, sorted_set, sorted_terms

@@ -45,8 +45,7 @@ from jacaros.agents.mind.state.triggers import (
     positive,
     resolve_all,
 )
-from jacaros.agents.terms.arithmetic import calculated
-from jacaros.agents.terms.operators import OPERATORS, qualify
+from jacaros.agents.terms.operators import OPERATORS, calculated, qualify
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.substitution import ATOMIC, equal, free_variables, related, rename, resolve
 from jacaros.agents.terms.unifier import Trail, undo, unify, unify_annotations

@@ -7,8 +7,7 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import Names, lower
 from jacaros.agents.language.nodes import names_in
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.explaining import lost_goals
-from jacaros.agents.mind.rules import forks, meta_events, needs
+from jacaros.agents.mind.rules import failure_reason, forks, meta_events, needs
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.deadlines import begin_guarded
 from jacaros.agents.mind.rules.failure import has_room, too_deep, unplanned
@@ -288,7 +287,7 @@ def go_without(
 def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
     """Log why no plan was selected for an event that has relevant ones, if the agent logs details."""
     if agent.options.verbose > 1 and agent.library.relevant(goal[0]):
-        agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())
+        agent.architecture.log("debug", failure_reason.inapplicable(agent, goal, annotations).text())
 
 
 # Run plans and rules as the language defines them, without code made for speed.

@@ -24,7 +24,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Generic, TypeVar
 
-from jacaros.agents.mind.rules.plan_terms import bindings_of, plan_term
+from jacaros.agents.mind.rules.body_steps import bindings_of, plan_term
 from jacaros.agents.mind.rules.proc_msg import RECEIVED
 from jacaros.agents.mind.rules.query import solve_formula
 from jacaros.agents.mind.rules.searching import run

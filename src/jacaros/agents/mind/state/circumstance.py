@@ -170,7 +170,7 @@ class Observers:
     Attributes:
         goal: called with each goal that changes, or None, see `jacaros.agents.mind.rules.meta_events.observe_goals`.
         lost: called with the description of each lost goal (first line, further lines, place), or None.
-        step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.sel_ev.observe_steps`.
+        step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.cycle.observe_steps`.
         mind: observes plans, beliefs and messages, or None; see `jacaros.agents.mind.rules.meta_events.observe_mind`.
         hear_beliefs: whether one of the last two is set.
     """
