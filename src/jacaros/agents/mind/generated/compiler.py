@@ -8,9 +8,15 @@ from typing import Any, Protocol, cast
 from jacaros.agents.language import nodes
 from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.generated.building import functor_of_literal
-from jacaros.agents.mind.generated.selection import given_positions
-from jacaros.agents.mind.generated.unit import Written, write_body, write_rule, write_search, write_select
+from jacaros.agents.mind.generated.matching import functor_of_literal
+from jacaros.agents.mind.generated.selection import (
+    Written,
+    given_positions,
+    write_body,
+    write_rule,
+    write_search,
+    write_select,
+)
 from jacaros.agents.mind.rules.add_im import Interpreter, Selection
 from jacaros.agents.mind.rules.searching import run, solve
 from jacaros.agents.mind.state.circumstance import Circumstance
