@@ -24,7 +24,7 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     NextStep,
 )
-from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Every, Plan, Rule, Select
+from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Engine, Every, Plan, Rule, Select
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,
@@ -293,7 +293,7 @@ def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotati
 # Run plans and rules as the language defines them, without code made for speed.
 
 
-class Interpreter:
+class Interpreter(Engine):
     """Runs plans and rules, see `jacaros.agents.mind.state.plan.Engine`.
 
     Args:
@@ -302,14 +302,6 @@ class Interpreter:
 
     def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         self.actions = actions
-
-    def begin(self, agent: Circumstance) -> None:
-        """Do nothing: nothing needs preparation."""
-
-    def compile_ahead(self, program: Any) -> bool:
-        """False: nothing is compiled."""
-        del program
-        return False
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """Return the selection among plans for one kind of event."""
@@ -332,8 +324,3 @@ class Interpreter:
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """Return the answers of a rule."""
         return interpret_rule(agent, rule.node, arguments, trail)
-
-    def searches(self, predicate: Any) -> tuple[Any, Any] | None:
-        """None: rules are called one by one."""
-        del predicate
-        return None
