@@ -127,71 +127,46 @@ def get_src_info(ctx: Context, term: Term, result: Term) -> bool:
     return ctx.unify(annotated(inner, place), result)
 
 
-@internal_action(".string", arity=1, pure=True)
-def is_string(_ctx: Context, term: Term) -> bool:
-    """``.string(X)``: *X* is a string."""
-    return term.__class__ is String
-
-
-@internal_action(".list", arity=1, pure=True)
-def is_a_list(_ctx: Context, term: Term) -> bool:
-    """``.list(X)``: *X* is a list, possibly empty."""
-    return is_list(term)
-
-
-@internal_action(".number", arity=1, pure=True)
-def is_number(_ctx: Context, term: Term) -> bool:
-    """``.number(X)``: *X* is a number, or an expression with unbound variables."""
-    return term.__class__ in NUMBERS or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
-
-
-@internal_action(".atom", arity=1, pure=True)
-def is_atom(_ctx: Context, term: Term) -> bool:
-    """``.atom(X)``: *X* is an atom, neither negated nor annotated."""
+def _is_atom(term: Term) -> bool:
     return isinstance(term, Functor) and term.kind == PLAIN and not term.negated and term is not EMPTY
 
 
-@internal_action(".literal", arity=1, pure=True)
-def is_literal(_ctx: Context, term: Term) -> bool:
-    """``.literal(X)``: *X* is an atom or structure, possibly negated or annotated, but not a list."""
+def _kind_of(term: Term) -> int | None:
+    """Return the kind of the functor of an atom or structure; None for other terms."""
     symbol = functor_of(term)
-    return symbol is not None and symbol.kind not in (ARITHMETIC, FUNCTION)
+    return None if symbol is None else symbol.kind
 
 
-@internal_action(".structure", arity=1, pure=True)
-def is_structure(ctx: Context, term: Term) -> bool:
-    """``.structure(X)``: *X* is a list, or a literal other than a plain atom (as Jason implements it)."""
-    return is_list(term) or (is_literal(ctx, term) and not is_atom(ctx, term))
-
-
-@internal_action(".ground", arity=1, pure=True)
-def has_no_variables(_ctx: Context, term: Term) -> bool:
-    """``.ground(X)``: *X* has no unbound variables."""
-    return is_ground(term)
-
-
-@internal_action(".internal_action", arity=1, pure=True)
-def is_internal_action(_ctx: Context, term: Term) -> bool:
-    """``.internal_action(X)``: *X* is a call of an internal action, such as ``.print(a)``."""
-    symbol = functor_of(term)
-    return symbol is not None and symbol.kind == ACTION
-
-
-_TESTS: dict[str, Callable[[Context, Term], bool]] = {
-    "number": is_number,
-    "atom": is_atom,
-    "literal": is_literal,
-    "string": is_string,
-    "list": is_a_list,
-    "set": lambda _, term: isinstance(term, SetValue),
-    "map": lambda _, term: isinstance(term, MapValue),
-    "structure": is_structure,
-    "rule": lambda _, term: term.__class__ is tuple and term[0] is RULE,
-    "plan": lambda _, term: is_body(term),
-    "queue": lambda _, term: isinstance(term, QueueValue),
-    "ground": has_no_variables,
-    "free": lambda _, term: term.__class__ is Var,
+_TYPES: dict[str, Callable[[Term], bool]] = {
+    # An expression with unbound variables is a number, too.
+    "number": lambda term: (
+        term.__class__ in NUMBERS or (term.__class__ is tuple and term[0].kind in (ARITHMETIC, FUNCTION))
+    ),
+    "atom": _is_atom,
+    "literal": lambda term: _kind_of(term) not in (None, ARITHMETIC, FUNCTION),
+    "string": lambda term: term.__class__ is String,
+    "list": is_list,
+    "set": lambda term: isinstance(term, SetValue),
+    "map": lambda term: isinstance(term, MapValue),
+    # A list, or a literal other than a plain atom, as Jason implements it.
+    "structure": lambda term: is_list(term) or (_TYPES["literal"](term) and not _is_atom(term)),
+    "rule": lambda term: term.__class__ is tuple and term[0] is RULE,
+    "plan": is_body,
+    "queue": lambda term: isinstance(term, QueueValue),
+    "ground": is_ground,
+    "free": lambda term: term.__class__ is Var,
 }
+"""The types of terms, in the order of the answers of `.type`."""
+
+
+def _test(name: str, holds: Callable[[Term], bool]) -> None:
+    """Declare an internal action that tests its argument."""
+    internal_action(name, arity=1, pure=True)(lambda _, term: holds(term))
+
+
+for _name in ("string", "list", "number", "atom", "literal", "structure", "ground"):
+    _test(f".{_name}", _TYPES[_name])
+_test(".internal_action", lambda term: _kind_of(term) == ACTION)
 
 
 @internal_action(".type", arity=2, backtracks=True, pure=True)
@@ -201,8 +176,8 @@ def type_(ctx: Context, term: Term, kind: Term) -> Iterator[None]:
     Types are ``number atom literal string list set map structure rule plan queue ground free``, in this order (``plan``
     is a plan body; ``free`` an unbound variable).
     """
-    for name, test in _TESTS.items():
-        if test(ctx, term) and ctx.unify(kind, atom(name)):
+    for name, test in _TYPES.items():
+        if test(term) and ctx.unify(kind, atom(name)):
             yield
 
 
