@@ -28,7 +28,6 @@ PACKAGES = (
     "artifacts.env",
     "artifacts.kernel",
     "artifacts.presence",
-    "artifacts.resources",
     "artifacts.streams",
 )
 WEAK = {

@@ -6,9 +6,16 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Final
 
-from jacaros.agents.body.percepts import PerceptWriter
 from jacaros.agents.body.presence import AgentPresence, Needs
-from jacaros.agents.body.values import Outputs, References, symbol_name, to_term, to_value, unquoted
+from jacaros.agents.body.values import (
+    Outputs,
+    PerceptWriter,
+    References,
+    symbol_name,
+    to_term,
+    to_value,
+    unquoted,
+)
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import NEEDS, Act, Completion
 from jacaros.agents.terms.text import display, text
@@ -31,8 +38,14 @@ from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, UnknownArt
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import ENDED, OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.presence.joined import Filter, filter_of
-from jacaros.artifacts.presence.presence import ANYWHERE, Activity, Direction, UnknownOperation
+from jacaros.artifacts.presence.presence import (
+    ANYWHERE,
+    Activity,
+    Direction,
+    Filter,
+    UnknownOperation,
+    filter_of,
+)
 from jacaros.files.texts import aside
 from jacaros.runtime.clock import Clock
 

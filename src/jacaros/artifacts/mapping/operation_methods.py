@@ -4,9 +4,9 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.mapping.declared import ArtifactPart, OperationKind, OperationPart
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.ros.guarded import VELOCITIES
 
 Words = Callable[[ArtifactPart, OperationPart], dict[str, str]]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out
 from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.artifacts.env.values import Atom, Structure
@@ -13,7 +14,6 @@ from jacaros.artifacts.mapping.declared import OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.encoding import Fill, WrongValue, builder, fitting
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.type_search import ask_type
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import Publisher

@@ -21,7 +21,7 @@ from jacaros.artifacts.presence.presence import (
     Direction,
     Observed,
     ObservedProperty,
-    Observer,
+    OperationObserver,
     Presence,
     PropertyChange,
     ReceivedSignal,
@@ -192,7 +192,7 @@ class Session:
         self._closed = False
         self.presence = Presence(environment, name, home, self._observed)
         self._under_way: dict[SessionOperation, None] = {}
-        self.observer: Observer | None = None
+        self.observer: OperationObserver | None = None
 
     @property
     def clock(self) -> Clock:

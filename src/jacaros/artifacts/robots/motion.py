@@ -6,10 +6,10 @@ Every end publishes zero velocity: success, failure, drop, suspension, loss of o
 import math
 from dataclasses import dataclass
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import Matching
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity, distance
 from jacaros.artifacts.robots.drive_model import DriveModel

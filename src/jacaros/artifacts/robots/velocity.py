@@ -9,12 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.control import STANDSTILL, Limits, Velocity
 from jacaros.artifacts.robots.drift import LOCALISED, Drift
 from jacaros.artifacts.robots.drive_model import DriveModel
