@@ -374,8 +374,8 @@ class BeliefTables(dict[Functor, Table]):
         room: number of beliefs that can be added without a look at the limit: deleted ones are counted when it is used up.
         budget: how much the present question may search; None between questions.
         engine: runs the rules.
-        held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
-            of annotations and entries if several do (decision 22).
+        held_percepts: for each perceived literal the annotations of the property that shows it, or a list with the
+            entries and annotations if several do (decision 22).
         namespace_properties: properties that programs give to namespaces.
     """
 
