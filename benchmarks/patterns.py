@@ -80,8 +80,7 @@ def made(seconds: float) -> list[Sample]:
 
 def patterns(samples: list[Sample]) -> Go:
     """The operators alone."""
-    from jacaros.artifacts.streams.declarations import Spec
-    from jacaros.artifacts.streams.pattern import Pattern
+    from jacaros.artifacts.streams import Pattern, Spec
 
     outputs = 0
 

@@ -24,7 +24,6 @@ PARTS = (
 )
 APART = (
     "agents/mind/actions",
-    "agents/mind/explaining",
     "agents/mind/compiled",
     "agents/mind/generated",
     "agents/mind/rules",

@@ -16,7 +16,8 @@ from jacaros.cli.main import main
 from jacaros.mas.agent_host import AgentHost
 from jacaros.ros.drivers.ros1.connections import InletTransport
 from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
-from jacaros.ros.drivers.ros1.topics import Ros1Publisher, TopicMultiplexer
+from jacaros.ros.drivers.ros1.topics import Ros1Publisher
+from jacaros.ros.topics import TopicMultiplexer
 
 STOPS: tuple[tuple[type, str, str], ...] = (
     (Inlet, "_read", ""),

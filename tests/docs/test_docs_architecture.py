@@ -14,7 +14,7 @@ def _table(package: str) -> str:
     return PAGE.split(f"\n`agents/mind/{package}`: ")[1].split("\n`agents/mind/")[0].split("\n## ")[0]
 
 
-@pytest.mark.parametrize("package", ["state", "rules", "generated", "explaining"])
+@pytest.mark.parametrize("package", ["state", "rules", "generated"])
 def test_the_page_has_a_line_for_each_file_of_the_mind_and_no_other(package: str) -> None:
     files = {path.name for path in (MIND / package).glob("*.py")} - {"__init__.py"}
     named = {line.split("`")[1] for line in _table(package).splitlines() if line.startswith("| `")}

@@ -8,8 +8,8 @@ from types import FrameType
 
 import pytest
 
-from jacaros.agents.language.goal_patterns import PATTERNS
-from jacaros.artifacts.streams.declarations import OPERATORS
+from jacaros.agents.language.directives import PATTERNS
+from jacaros.artifacts.streams import OPERATORS
 from jacaros.testing import AgentHarness
 
 ROOT = Path(__file__).parents[2]

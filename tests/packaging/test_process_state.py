@@ -28,7 +28,6 @@ PACKAGES = (
     "artifacts.env",
     "artifacts.kernel",
     "artifacts.presence",
-    "artifacts.resources",
     "artifacts.streams",
 )
 WEAK = {
@@ -41,12 +40,12 @@ NUMBERS = {
     "agents.terms.values._reference_numbers": "names of opaque objects (cobj_N)",
 }
 VARIABLES = {
-    "agents.terms.arithmetic.RUNNING": "the agent whose turn it is, for each thread and task",
+    "agents.terms.operators.RUNNING": "the agent whose turn it is, for each thread and task",
     "artifacts.kernel.steps.CURRENT": "what led to the operation that runs, for each task of a run that is watched",
 }
 CACHES = {
     "agents.checks.goals._goals_of_tests": "of a file of the package",
-    "agents.mind.actions.strings._compile": "of a text",
+    "agents.mind.actions.terms._compile": "of a text",
     "agents.mind.rules.proc_msg._achieved": "of a name",
     "agents.mind.rules.proc_msg._only_from": "of a name",
     "agents.body.body.keys": "of nothing",
@@ -61,7 +60,7 @@ def attributes() -> Iterator[tuple[str, Any]]:
     """Yield what the modules of the mind and around it, and their classes, hold, by its full name."""
     for package in PACKAGES:
         found = importlib.import_module(f"jacaros.{package}")
-        for each in pkgutil.walk_packages(found.__path__, f"{found.__name__}."):
+        for each in pkgutil.walk_packages(getattr(found, "__path__", ()), f"{found.__name__}."):
             importlib.import_module(each.name)
     for name, module in sorted(sys.modules.items()):
         if not name.removeprefix("jacaros.").startswith(PACKAGES):

@@ -4,79 +4,47 @@ import importlib
 import importlib.util
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 
 from jacaros.artifacts import Artifact, InvalidArtifact, UnknownArtifactType
-from jacaros.artifacts.env.environment import Blackboard, Console
-from jacaros.artifacts.robots.battery import ArtSimBattery
-from jacaros.artifacts.robots.connection_artifact import ArtRos
-from jacaros.artifacts.robots.odometry import ArtOdometry, ArtOdometryOnDemand
-from jacaros.artifacts.robots.sensors import ArtBaseScan, ArtBumper, ArtCliff, ArtScan
-from jacaros.artifacts.robots.velocity import (
-    ArtCmdVel,
-    ArtCmdVelAndOdometry,
-    ArtCmdVelMux,
-    ArtCmdVelMuxAndOdometry,
-    ArtVelocity,
-)
-from jacaros.artifacts.thesis import ArtCleaning, ArtPerception, ArtTutorial
-from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.files.texts import shown_from
 
-LATE = {
-    "ArtMap": "jacaros.artifacts.map.robot_map",
-    "ArtSlamData": "jacaros.artifacts.map.slam_data",
+_MODULES = {
+    "jacaros.artifacts.env.environment": "Blackboard Console",
+    "jacaros.artifacts.tools": "Barrier Clock Latch",
+    "jacaros.artifacts.map.robot_map": "ArtMap",
+    "jacaros.artifacts.map.slam_data": "ArtSlamData",
+    "jacaros.artifacts.robots.battery": "ArtSimBattery",
+    "jacaros.artifacts.robots.connection_artifact": "ArtRos",
+    "jacaros.artifacts.robots.odometry": "ArtOdometry ArtOdometryOnDemand",
+    "jacaros.artifacts.robots.sensors": "ArtBaseScan ArtBumper ArtCliff ArtScan",
+    "jacaros.artifacts.robots.velocity": "ArtCmdVel ArtCmdVelAndOdometry ArtCmdVelMux ArtCmdVelMuxAndOdometry ArtVelocity",
+    "jacaros.artifacts.thesis": "ArtCleaning ArtPerception ArtTutorial",
 }
-"""Artifacts whose modules are imported on first use: a run without a map does not load the map's code."""
+"""The built-in artifacts by their modules, which are imported on first use."""
 
 
 class _BuiltIn(Mapping[str, type[Artifact]]):
-    """The built-in artifacts by their bare names."""
-
-    def __init__(self, *classes: type[Artifact]) -> None:
-        self._classes = {cls.__name__: cls for cls in classes}
+    def __init__(self) -> None:
+        self._modules = {name: module for module, names in sorted(_MODULES.items()) for name in names.split()}
 
     def __getitem__(self, name: str) -> type[Artifact]:
-        if name not in self._classes:
-            self._classes[name] = getattr(importlib.import_module(LATE[name]), name)
-        return self._classes[name]
+        found: type[Artifact] = getattr(importlib.import_module(self._modules[name]), name)
+        return found
 
     def __contains__(self, name: object) -> bool:
-        return name in self._classes or name in LATE
+        return name in self._modules
 
     def __iter__(self) -> Iterator[str]:
-        return iter(sorted({*self._classes, *LATE}))
+        return iter(sorted(self._modules))
 
     def __len__(self) -> int:
-        return len({*self._classes, *LATE})
+        return len(self._modules)
 
 
-BUILT_IN: Mapping[str, type[Artifact]] = _BuiltIn(
-    ArtBaseScan,
-    ArtBumper,
-    ArtCleaning,
-    ArtCliff,
-    ArtCmdVel,
-    ArtCmdVelAndOdometry,
-    ArtCmdVelMux,
-    ArtCmdVelMuxAndOdometry,
-    ArtOdometry,
-    ArtOdometryOnDemand,
-    ArtPerception,
-    ArtRos,
-    ArtScan,
-    ArtSimBattery,
-    ArtTutorial,
-    ArtVelocity,
-    Barrier,
-    Blackboard,
-    Clock,
-    Console,
-    Latch,
-)
+BUILT_IN: Mapping[str, type[Artifact]] = _BuiltIn()
 """The built-in artifacts by their bare names."""
-
 ARTIFACTS = "artifacts"
 """Name of the module with a project's own artifacts."""
 
@@ -86,16 +54,14 @@ ALIASES = ("jason.architecture.", "jacaros.")
 MAPPING_ENDINGS = (".yaml", ".yml")
 """Suffixes of mapping files."""
 
-TOOLS: Mapping[str, type[Artifact]] = MappingProxyType(
-    {
-        "cartago.tools.Barrier": Barrier,
-        "cartago.tools.Clock": Clock,
-        "cartago.tools.Console": Console,
-        "cartago.tools.Latch": Latch,
-        "cartago.tools.TupleSpace": Blackboard,
-    }
-)
-"""The tool artifacts of CArtAgO, by their names there."""
+TOOLS = {
+    "cartago.tools.Barrier": "Barrier",
+    "cartago.tools.Clock": "Clock",
+    "cartago.tools.Console": "Console",
+    "cartago.tools.Latch": "Latch",
+    "cartago.tools.TupleSpace": "Blackboard",
+}
+"""Names of the tool artifacts of CArtAgO, by their names there."""
 
 
 def type_finder(project: ProjectModules | Path | str | None) -> Callable[[str], type[Artifact]]:
@@ -154,7 +120,7 @@ def find_type(
     """
     found = (
         _mapped(name, (Path(),))
-        or TOOLS.get(name)
+        or BUILT_IN.get(TOOLS.get(name, ""))
         or (_by_path(name) if by_path else None)
         or _of_modules(name.rpartition(".")[2], search_modules)
         or built_in.get(name)

@@ -7,8 +7,9 @@ from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import positive, text, yes_or_no
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.ros.backend import Client, Publisher, Sample
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")

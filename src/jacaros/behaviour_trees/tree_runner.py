@@ -10,7 +10,7 @@ from py_trees.common import Status
 from py_trees.trees import BehaviourTree
 
 from jacaros.artifacts import Session
-from jacaros.artifacts.presence.presence import Observer
+from jacaros.artifacts.presence.presence import OperationObserver
 from jacaros.behaviour_trees.act import Act
 from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
 from jacaros.behaviour_trees.timing import follow
@@ -177,7 +177,7 @@ class TreeRunner:
             for news in told:
                 report(*news)
 
-    def _report(self, report: Observer) -> None:
+    def _report(self, report: OperationObserver) -> None:
         """Report which behaviours run now, and how those ended that ran before."""
         before, self._reported = self._reported, {}
         for behaviour in reversed(list(self.tree.root.iterate())):  # parents come before their children

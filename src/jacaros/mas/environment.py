@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.agents.body.body import AgentBody
-from jacaros.agents.body.percepts import PerceptWriter
-from jacaros.agents.body.values import References
+from jacaros.agents.body.values import PerceptWriter, References
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.mind.mind import Mind
 from jacaros.artifacts.env.environment import Environment

@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from jacaros.agents.checks.checker import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
-from jacaros.agents.checks.plans import needs_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import ByKind
-from jacaros.artifacts.resources.arbiter import local_name, read_uses
+from jacaros.artifacts.env.arbiter import local_name, read_uses
 from jacaros.files.texts import close_matches, did_you_mean
 
 if TYPE_CHECKING:

@@ -9,8 +9,7 @@ import importlib
 from collections.abc import Iterable
 from typing import Any
 
-from jacaros.agents.body.body import AgentBody
-from jacaros.agents.body.call import name_of
+from jacaros.agents.body.body import AgentBody, name_of
 from jacaros.agents.body.values import UNKEPT, to_term, to_value
 from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, Registry
 from jacaros.agents.mind.rules.context import Context

@@ -13,8 +13,8 @@ from typing import Final
 
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, WrongArguments, members
-from jacaros.agents.mind.explaining.failure_reason import place_of_call
 from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.rules.failure_reason import place_of_call
 from jacaros.agents.mind.state.intention import GOAL, PLAN
 from jacaros.agents.terms.substitution import equal
 from jacaros.agents.terms.text import display, text

@@ -13,9 +13,8 @@ from typing import Any, NoReturn
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.language.lowering import lower_value
-from jacaros.agents.mind.explaining.failure_reason import FailureReason
-from jacaros.agents.mind.explaining.lost_goals import details
 from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.failure_reason import FailureReason, details
 from jacaros.agents.mind.rules.goals import WatchedGoal
 from jacaros.agents.mind.state.intention import PLAN, STEP, Intention
 from jacaros.agents.mind.state.pending import is_action

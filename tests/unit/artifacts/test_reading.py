@@ -6,7 +6,8 @@ import pytest
 
 from jacaros.artifacts import Atom, Structure
 from jacaros.artifacts.kit.options import WrongOption, read_arguments
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, Values
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -9,10 +9,11 @@ import pytest
 from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import Structure, operation
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.odometry import ArtOdometry
 from jacaros.artifacts.robots.sensors import ArtBaseScan
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.artifacts.thesis import ArtTutorial
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.trace import Cause

@@ -9,13 +9,14 @@ from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.kit.faults import Faults, Stamps
-from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import LONGEST_WAIT, RangeOfView, Reading, Values
 from jacaros.artifacts.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.artifacts.map.mapper import Localisation
 from jacaros.artifacts.mapping.decoding import converted, extractor
 from jacaros.artifacts.mapping.fields import Conversion, Line, conversion
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.mapping.interfaces import stored_interfaces
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import Pose
 from jacaros.runtime.clock import VirtualClock, run
 

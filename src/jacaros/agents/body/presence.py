@@ -5,21 +5,19 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import NoReturn
 
-from jacaros.agents.body.percepts import ADD, REMOVE, PerceptWriter
-from jacaros.agents.body.values import atom_of
+from jacaros.agents.body.values import ADD, REMOVE, PerceptWriter, atom_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Act, Percept
 from jacaros.agents.terms.values import String, Term, functor_of, list_items
+from jacaros.artifacts.env.arbiter import POLICIES, Arbiter, Claim, Policy, local_name, read_uses
 from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation, operation
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.ports import Workspace
 from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.presence.joined import Focused, JoinedWorkspaces
-from jacaros.artifacts.presence.presence import Presence
-from jacaros.artifacts.resources.arbiter import POLICIES, Arbiter, Claim, Policy, local_name, read_uses
+from jacaros.artifacts.presence.presence import Focused, JoinedWorkspaces, Presence
 from jacaros.files.texts import aside
 
 # The focused artifacts of an agent, whose properties and signals it perceives.

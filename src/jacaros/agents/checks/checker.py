@@ -4,15 +4,27 @@
 >>> program, _ = load_program("robot.asl", "!start. +!start <- !leave.")
 >>> [each.message for each in check(program, KnownActions({}))]
 ['no plan for `!leave/0`']
+>>> program, _ = load_program("robot.asl", "+!go. +!go : near.")
+>>> [each.message for each in never_selected(program, ByKind(program.plans), KnownActions({}))]
+['unreachable plan: the plan at line 1 already handles all of these events']
 """
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Final
 
+from jacaros.agents.checks.formulas import (
+    annotations_of,
+    contradiction,
+    is_true,
+    labelled,
+    singletons,
+    singletons_of_facts,
+    vain_comparisons,
+)
 from jacaros.agents.checks.formulas import clauses as clauses_of
-from jacaros.agents.checks.formulas import singletons, singletons_of_facts, vain_comparisons
 from jacaros.agents.checks.goals import (
     KnownActions,
     acting_conditions,
@@ -22,18 +34,12 @@ from jacaros.agents.checks.goals import (
     unknown_performatives,
     wrong_arguments,
 )
-from jacaros.agents.checks.plans import (
-    contexts_never_true,
-    narrow_handlers,
-    never_selected,
-    wrong_labels,
-    wrong_needs,
-    wrong_supervision,
-)
 from jacaros.agents.language import nodes
+from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
-from jacaros.agents.language.nodes import ByKind
+from jacaros.agents.language.nodes import ByKind, is_ground
+from jacaros.files.texts import did_you_mean, suggestion
 
 # Comments that switch warnings off.
 #
@@ -184,3 +190,312 @@ def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
         return False
     at = bisect_left(lines, span.line)
     return at < len(lines) and lines[at] <= span.end_line
+
+
+# Check for plans that can never be selected, and for handlers that drop more than you may expect.
+
+_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
+
+
+def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
+    """Warn of plans that an earlier plan makes unreachable.
+
+    Programs that change their plans or select among them by their own rules are skipped.
+    """
+    changed = (nodes.PlanTerm, nodes.Variable)
+    if not (
+        any(known.of(call).changes_plans for call in found.of(nodes.InternalAction))
+        or any(isinstance(change.operand, changed) for change in found.of(nodes.BeliefChange))
+        or any(rule.head.functor == "select__option" for rule in found.of(nodes.Rule))
+    ):
+        yield from _shadowed(program.plans)
+
+
+def _shadowed(plans: Sequence[nodes.Plan]) -> Iterator[Diagnostic]:
+    taken = _Taken()
+    for plan in plans:
+        yield from _shadowed(plan.subplans)
+        literal = plan.trigger.literal
+        if isinstance(literal, nodes.Variable):
+            continue
+        before = taken.covering(plan.trigger, literal)
+        if before is not None:
+            if _is_made(plan):
+                continue
+            where = _where(before, plan)
+            yield problem(
+                "plan-never-selected",
+                f"unreachable plan: the plan{where} already handles all of these events",
+                plan.trigger.span,
+                "give that plan a context, or move it after this one",
+            )
+        elif is_true(plan.context):
+            taken.add(plan, literal)
+
+
+class _Taken:
+    """The plans that are always selected, indexed by the arguments that their triggers fix.
+
+    A program may have thousands of plans for one event.
+    """
+
+    def __init__(self) -> None:
+        self._number = 0
+        # For each kind of event: the fixed arguments, and by their values the first such plan with its
+        # number.
+        self._plans: dict[object, dict[tuple[int, ...], dict[object, tuple[int, nodes.Plan]]]] = {}
+
+    def add(self, plan: nodes.Plan, literal: nodes.Literal) -> None:
+        """Add a plan, unless its trigger matches fewer events than its fixed arguments show."""
+        annotations = literal.annotations
+        if annotations is not None and not is_ground(annotations):
+            return
+        fixed: list[int] = []
+        met: set[str] = set()
+        for place, argument in enumerate(literal.arguments):
+            if isinstance(argument, nodes.Variable):
+                if argument.annotations is not None or argument.negated or argument.name in met:
+                    return
+                met.add(argument.name)
+            elif is_ground(argument):
+                fixed.append(place)
+            else:
+                return
+        self._number += 1
+        of_event = self._plans.setdefault(_event(plan.trigger, literal, annotations), {})
+        by_values = of_event.setdefault(tuple(fixed), {})
+        by_values.setdefault(_values(literal, fixed), (self._number, plan))
+
+    def covering(self, trigger: nodes.Trigger, literal: nodes.Literal) -> nodes.Plan | None:
+        """Return the first plan that handles every event that a trigger with this literal matches."""
+        found: list[tuple[int, nodes.Plan]] = []
+        for annotations in dict.fromkeys((None, literal.annotations)):
+            for fixed, plans in self._plans.get(_event(trigger, literal, annotations), {}).items():
+                plan = plans.get(_values(literal, fixed))
+                if plan is not None:
+                    found.append(plan)
+        return min(found, key=lambda each: each[0])[1] if found else None
+
+
+def _event(trigger: nodes.Trigger, literal: nodes.Literal, annotations: nodes.Annotations | None) -> object:
+    kind = (trigger.operator, trigger.kind, literal.functor, len(literal.arguments))
+    return (*kind, literal.negated, literal.namespace, annotations)
+
+
+def _values(literal: nodes.Literal, places: Sequence[int]) -> object:
+    return tuple([literal.arguments[place] for place in places])
+
+
+def _is_made(plan: nodes.Plan) -> bool:
+    """Return whether a directive made the plan: such plans have the place of the directive."""
+    span = plan.span
+    return span is not None and span.file.lines[span.line - 1][span.column - 1 :].startswith("{")
+
+
+def _where(before: nodes.Plan, plan: nodes.Plan) -> str:
+    if before.span is None or plan.span is None:
+        return ""
+    file = "" if before.span.file is plan.span.file else f" of {before.span.file.name}"
+    return f" at line {before.span.line}{file}"
+
+
+def contexts_never_true(found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of plans whose context contradicts itself."""
+    for plan in found.of(nodes.Plan):
+        why = None if plan.context is None else contradiction(plan.context)
+        if plan.context is not None and why is not None:
+            span = plan.context.span or plan.trigger.span
+            yield problem("context-never-true", f"unreachable plan: {why}", span)
+
+
+def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
+    """Note goals whose ``-!`` plans all have contexts: if none holds, the whole intention is dropped."""
+    handlers: dict[object, list[nodes.Plan]] = {}
+    for plan in program.plans:
+        trigger = plan.trigger
+        if trigger.operator != "-" or not trigger.kind:
+            continue
+        if isinstance(trigger.literal, nodes.Variable):
+            if is_true(plan.context):
+                return
+            continue
+        literal = trigger.literal
+        key = (trigger.kind, literal.namespace, literal.negated, literal.functor, len(literal.arguments))
+        handlers.setdefault(key, []).append(plan)
+    for plans in handlers.values():
+        if not any(is_true(plan.context) for plan in plans):
+            trigger = plans[-1].trigger
+            yield problem(
+                "narrow-handler",
+                "if no context of these failure plans holds, the whole intention is dropped",
+                trigger.span,
+                "add a failure plan without a context; the failure is not passed to the goals further out",
+            )
+
+
+def wrong_labels(found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of misspelt annotations of labels, and of an ``urgency`` that is not a non-negative integer."""
+    for item in chain.from_iterable(map(labelled, found.of(nodes.Plan))):
+        meant = [word for word in _LABEL_WORDS if is_slip_of(item.functor, word)]
+        if meant:
+            message = f"label annotation `{item.functor}` has no meaning"
+            yield problem("misspelt-annotation", message, item.span, did_you_mean(meant[:1]))
+        elif item.functor == "urgency" and not _is_urgency(item):
+            yield problem(
+                "wrong-urgency",
+                "urgency must be a non-negative integer; this one has no effect",
+                item.span,
+                "write a number, such as `urgency(10)`; the greatest goes first",
+            )
+
+
+def _is_urgency(item: nodes.Literal) -> bool:
+    if len(item.arguments) != 1:
+        return False
+    argument = item.arguments[0]
+    if isinstance(argument, nodes.Number):
+        return argument.value >= 0 and float(argument.value).is_integer()
+    # Its value is known only at run time.
+    return isinstance(argument, nodes.Arithmetic)
+
+
+# Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions.
+
+
+_Check = Callable[[tuple[nodes.Term, ...]], bool]
+_HELP: Final = {
+    "within": "write a number of milliseconds, such as `within(5000)`",
+    "hard_deadline": "write a number of milliseconds, such as `hard_deadline(5000)`",
+    "every": "write a number of milliseconds, such as `every(1000)`",
+    "retry": "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`",
+    "while": "write one condition, such as `while(battery(B) & B > 20)`",
+    "cleanup": "write one goal, such as `cleanup(park)`",
+}
+
+
+def _number(term: nodes.Term, least: float) -> bool:
+    """Return whether a term may be a number, at least *least*; computed values are known only at run time."""
+    if isinstance(term, nodes.Number):
+        return term.value >= least
+    return isinstance(term, nodes.Variable | nodes.Arithmetic | nodes.FunctionCall)
+
+
+def _is_time(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is one positive number of milliseconds."""
+    return len(arguments) == 1 and _number(arguments[0], 1e-9)
+
+
+def _is_retry(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is a number of retries, and optionally a delay."""
+    if not 1 <= len(arguments) <= 2 or not _number(arguments[0], 1):
+        return False
+    count = arguments[0]
+    whole = not isinstance(count, nodes.Number) or float(count.value).is_integer()
+    return whole and (len(arguments) == 1 or _number(arguments[1], 0))
+
+
+def _is_goal(arguments: tuple[nodes.Term, ...]) -> bool:
+    return len(arguments) == 1 and isinstance(arguments[0], nodes.Literal | nodes.Variable)
+
+
+_CHECKS: Final[dict[str, _Check]] = {
+    **dict.fromkeys(("within", "hard_deadline", "every"), _is_time),
+    "retry": _is_retry,
+    "while": lambda arguments: len(arguments) == 1,
+    "cleanup": _is_goal,
+}
+_OF_GOALS: Final = ("within", "hard_deadline", "every", "retry")
+_OF_LABELS: Final = ("within", "while", "cleanup")
+_MISPLACED: Final = {
+    "goals": (("while",), "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
+    "test goals": (("within", "every", "retry"), "write it at a goal that asks: `!ask[within(5000)]`"),
+    "plans": (("every", "retry", "hard_deadline"), "write it at the goal: `!g[{}]`"),
+}
+"""Annotations that have no effect on these, and where they belong."""
+
+
+def wrong_supervision(goals: Sequence[nodes.Literal], found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of supervising annotations of goals and labels that have no effect."""
+    for goal in (*goals, *(step.goal for step in found.of(nodes.Achieve))):
+        yield from _wrong_of(annotations_of(goal), _OF_GOALS, "goals")
+    for test in found.of(nodes.Test):
+        yield from _wrong_of(annotations_of(test.formula), (), "test goals")
+    for plan in found.of(nodes.Plan):
+        yield from _wrong_of(labelled(plan), _OF_LABELS, "plans")
+
+
+def _wrong_of(items: Sequence[nodes.Literal], valid: Sequence[str], where: str) -> Iterator[Diagnostic]:
+    misplaced, help = _MISPLACED[where]
+    for item in items:
+        word = item.functor
+        if word in valid and not _CHECKS[word](item.arguments):
+            yield problem("wrong-supervision", f"invalid `{word}`", item.span, _HELP[word])
+        elif word in valid and word == "while":
+            yield from _never_true(item)
+        elif word in misplaced and item.arguments:
+            message = f"`{word}` has no effect on {where}"
+            yield problem("wrong-supervision", message, item.span, help.format(_example(word)))
+
+
+def _never_true(item: nodes.Literal) -> Iterator[Diagnostic]:
+    why = contradiction(item.arguments[0])
+    if why is not None:
+        yield problem("context-never-true", f"this plan always fails: {why}", item.span)
+
+
+def _example(word: str) -> str:
+    return _HELP[word].rpartition("such as ")[2].partition(" or ")[0].strip("`")
+
+
+# Check annotations ``needs(..)`` of labels and goals: needs that can never be met, and unknown policies.
+
+
+_POLICIES = ("wait", "refuse")
+_NAME = re.compile(r"[A-Za-z_/][A-Za-z0-9_/]*")
+
+
+def wrong_needs(found: ByKind) -> Iterator[Diagnostic]:
+    """Warn of needs that no run can meet."""
+    for items in _annotated(found):
+        needs = [item for item in items if item.functor == "needs"]
+        for need in needs:
+            if None in map(_resource, need.arguments):
+                help = "write names, such as `wheels`"
+                yield problem("wrong-needs", "expected a resource", need.span, help)
+        if needs:
+            yield from _wrong_policies(items)
+
+
+def needs_of(found: ByKind) -> Iterator[tuple[str, nodes.Literal]]:
+    """Yield the names of resources that plans and goals need, each with its annotation."""
+    for item in chain.from_iterable(_annotated(found)):
+        for argument in item.arguments if item.functor == "needs" else ():
+            name = _resource(argument)
+            if name is not None:
+                yield name, item
+
+
+def _annotated(found: ByKind) -> Iterator[list[nodes.Literal]]:
+    """Yield the annotations of labels and of goals."""
+    yield from map(labelled, found.of(nodes.Plan))
+    yield from (annotations_of(goal.goal) for goal in found.of(nodes.Achieve))
+
+
+def _resource(argument: nodes.Node) -> str | None:
+    """Return the name of a resource; None if the argument is not one."""
+    if isinstance(argument, nodes.String):
+        return argument.value if _NAME.fullmatch(argument.value) else None
+    if isinstance(argument, nodes.Literal) and not argument.negated and not argument.arguments:
+        return argument.functor
+    return None
+
+
+def _wrong_policies(items: Sequence[nodes.Literal]) -> Iterator[Diagnostic]:
+    for item in items:
+        if item.functor != "policy":
+            continue
+        given = item.arguments[0] if len(item.arguments) == 1 else None
+        name = given.functor if isinstance(given, nodes.Literal) and not given.arguments else ""
+        if name not in _POLICIES:
+            help = suggestion(name, _POLICIES, f"write {', '.join(_POLICIES)}")
+            yield problem("wrong-needs", f"unknown policy `{name}`", item.span, help)

@@ -1,26 +1,334 @@
-"""Directives: files that programs include, namespaces, patterns and declarations, and libraries of other systems.
+r"""Directives: files that programs include, namespaces, patterns and declarations, and libraries of other systems.
 
 Their contents are built in here (joining and focusing, answers to messages), have a counterpart in our own library
 (questions about workspaces), or are not supported (organisations).
 
 >>> is_library("$jacamo/templates/common-cartago.asl"), is_library("robot.asl")
 (True, False)
+
+Of the goal patterns, a declarative goal is achieved when its belief holds.
+
+>>> from jacaros.agents.language.lowering import format_plan
+>>> from jacaros.agents.language.loader import load_program
+>>> program, _ = load_program("robot.asl", "{ begin bdg(at_home) } +!at_home <- drive. { end }")
+>>> print(*map(format_plan, program.plans), sep="\n")
++!at_home : at_home.
++!at_home <- drive; ?at_home.
++at_home <- .succeed_goal(at_home).
+-!at_home <- !at_home.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.cursor import Names, SyntaxPanic
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
-from jacaros.agents.language.goal_patterns import PATTERNS, PatternCall, apply_pattern
-from jacaros.agents.language.nodes import rebuilt
+from jacaros.agents.language.lowering import fresh_names, lower
+from jacaros.agents.language.nodes import is_ground, rebuilt
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.program_parser import ProgramParser, WrongDirective
 from jacaros.agents.language.term_parser import Namespaces
+from jacaros.agents.terms.unifier import Trail, unify
 from jacaros.files.texts import suggestion
+
+# Shared parts of goal patterns: their arguments, and the plans they add.
+#
+# A pattern is a function from the clauses of its block to the clauses that replace them. Where patterns are known to
+# misbehave in Jason, ours follow the intent of the pattern; each such function says so.
+
+
+TRUE = nodes.Literal("true")
+
+
+@dataclass(frozen=True)
+class PatternCall:
+    """One use of a pattern.
+
+    ``arguments`` belong to the namespace of the block. Their unnamed variables have names, so that one argument may be
+    put into several places of one plan. ``number`` differs for each use in a program; ``parse`` parses an argument given
+    as text (a trigger or a condition, as its last argument says).
+    """
+
+    name: str
+    arguments: tuple[nodes.Term, ...]
+    span: Span | None
+    number: int
+    parse: Callable[[str, Callable[[PlanParser], Any], str], Any]
+
+    def literal(self, index: int, what: str) -> nodes.Literal:
+        """Return the argument *index*, which has to be a literal."""
+        if index >= len(self.arguments):
+            raise WrongDirective(f"`{self.name}` expects {what} as argument {index + 1}")
+        argument = self.arguments[index]
+        if not isinstance(argument, nodes.Literal):
+            raise WrongDirective(f"argument {index + 1} of `{self.name}` ({what}) is not a literal")
+        return argument
+
+    def at_most(self, count: int) -> None:
+        """Reject more than *count* arguments."""
+        if len(self.arguments) > count:
+            raise WrongDirective(
+                f"`{self.name}` expects at most {count} argument{'s' if count > 1 else ''}, found {len(self.arguments)}"
+            )
+
+    def plans(self, text: str, **parts: nodes.Node) -> list[nodes.Plan]:
+        """Return the plans written in *text*, with *parts* in place of its variables; ``Goal`` is the first argument.
+
+        They have the place of the directive. A part that is ``true`` is left out of a context. A label is the end of the
+        name that the plan gets.
+        """
+        if "Goal" not in parts:
+            parts["Goal"] = self.literal(0, "the goal")
+        return [rebuilt(plan, lambda node: self._filled(node, parts)) for plan in _template(text)]
+
+    def _filled(self, node: nodes.Node, parts: dict[str, nodes.Node]) -> nodes.Node:
+        """Return the part that a variable of a template stands for; other nodes get the place of the directive."""
+        match node:
+            case nodes.Variable(name, annotations) if name in parts:
+                part = parts[name]
+                return nodes.replace(part, annotations=annotations) if annotations else part
+            case nodes.And(left, right) if right == TRUE:
+                return left
+            case nodes.Trigger(literal=nodes.Trigger() as given):
+                return given
+            case nodes.Trigger(literal=literal):
+                return nodes.replace(node, span=literal.span)
+            case nodes.Plan(label, context=context):
+                if isinstance(label, nodes.Literal):
+                    label = nodes.replace(label, functor=f"p__{self.name}{self.number}_{label.functor}")
+                context = None if context == TRUE else context
+                return nodes.replace(node, label=label, context=context, span=self.span)
+        return nodes.replace(node, span=self.span)
+
+
+def _template(text: str) -> tuple[nodes.Plan, ...]:
+    parser = PlanParser(SourceFile("a goal pattern", text), Names(count(1), count(1), count(1)), [])
+    plans = []
+    while parser.token.kind != "end":
+        plans.append(parser.plan())
+        parser.advance()
+    assert not parser.diagnostics, parser.diagnostics
+    return tuple(plans)
+
+
+def is_about(plan: nodes.Plan, goal: nodes.Literal) -> bool:
+    """Return whether *plan* achieves *goal* or handles its failure: both literals may unify."""
+    literal = plan.trigger.literal
+    return plan.trigger.kind == "!" and isinstance(literal, nodes.Literal) and _may_unify(literal, goal)
+
+
+def achieves(plan: nodes.Plan, goal: nodes.Literal) -> bool:
+    """Return whether *plan* is one for ``+!goal``."""
+    return plan.trigger.operator == "+" and is_about(plan, goal)
+
+
+def _may_unify(left: nodes.Literal, right: nodes.Literal) -> bool:
+    """Return whether two literals unify, whatever their annotations."""
+    one, other = (lower(nodes.replace(each, annotations=None), fresh_names()) for each in (left, right))
+    return unify(one, other, Trail())
+
+
+def declarative(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``dg(g)``: the goal is achieved when, and only when, *g* is believed.
+
+    Adds ``+!g : g``, a test ``?g`` at the end of each plan for g (its ``-!g`` plans among them), and ``+g <-
+    .succeed_goal(g)``. Jason also treats a goal that is already intended as achieved, which ends the retry of ``bdg``
+    and ``bc`` immediately; ours does not.
+    """
+    call.at_most(1)
+    goal = call.literal(0, "the goal")
+    plans = [_tested(plan, call) if is_about(plan, goal) else plan for plan in section.plans]
+    believed, succeed = call.plans("+!Goal : Goal. +Goal <- .succeed_goal(Goal).")
+    return replace(section, plans=[believed, *plans, succeed])
+
+
+def exclusive(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``ebdg(g)``: a backtracking declarative goal that tries each plan at most once.
+
+    Plans that were tried are recorded in beliefs ``p__tried(Plan, g)``, which are removed when the goal ends. When no
+    plan is left, the goal fails (Jason retries it forever).
+    """
+    goal = call.literal(0, "the goal")
+    plans: list[nodes.Plan] = []
+    for plan in section.plans:
+        plans.append(_tried_once(plan, len(plans), call) if achieves(plan, goal) else plan)
+    inner = declarative(call, replace(section, plans=plans))
+    failing, retry = call.plans(
+        """-!Goal[error(no_applicable)]
+             <- .abolish(p__tried(Any, Goal));
+                .fail(error(no_applicable), error_msg("all plans for the goal have been tried")).
+           -!Goal <- !Goal.""",
+        Any=nodes.Variable("_", unnamed=True, span=call.span),
+    )
+    *others, succeed = inner.plans
+    forget = _steps(failing)[0]
+    return replace(inner, plans=[*others, _with_steps(succeed, forget, *_steps(succeed)), failing, retry])
+
+
+def _steps(plan: nodes.Plan) -> tuple[nodes.Step, ...]:
+    assert isinstance(plan.body, nodes.Body)
+    return plan.body.steps
+
+
+def _with_steps(plan: nodes.Plan, *steps: nodes.Step) -> nodes.Plan:
+    return nodes.replace(plan, body=nodes.replace(plan.body, steps=steps))
+
+
+def _tested(plan: nodes.Plan, call: PatternCall) -> nodes.Plan:
+    """Return *plan* with a last step that tests its own goal."""
+    (tested,) = call.plans("+!Goal <- ?Goal.", Goal=_own_goal(plan))
+    return _with_steps(plan, *_steps(plan), *_steps(tested))
+
+
+def _tried_once(plan: nodes.Plan, index: int, call: PatternCall) -> nodes.Plan:
+    """Return *plan* restricted to goals for which it has not been tried."""
+    text = "+!Goal : not p__tried(N, Goal) <- +p__tried(N, Goal)."
+    (once,) = call.plans(text, Goal=_own_goal(plan), N=nodes.Number(float(index), span=call.span))
+    context = once.context
+    if context is not None and plan.context is not None:
+        context = nodes.And(context, plan.context, span=plan.context.span)
+    return nodes.replace(_with_steps(plan, *_steps(once), *_steps(plan)), context=context)
+
+
+def _own_goal(plan: nodes.Plan) -> nodes.Literal:
+    """Return the goal of a plan with the plan's own variables, without annotations."""
+    assert isinstance(plan.trigger.literal, nodes.Literal)
+    return nodes.replace(plan.trigger.literal, annotations=None)
+
+
+def sequenced(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """``sga("trigger", "context", g)``: each such event adopts *g*, one goal at a time.
+
+    Waiting goals are kept in order in beliefs ``p__queue(N, g)``; a goal that is already waiting is not queued again.
+    Each goal is an intention of its own, and a goal that fails also makes room for the next one. (Jason adopts a waiting
+    goal only if its arguments equal those of the goal that ended.)
+    """
+    call.at_most(3)
+    trigger, context = _trigger(call), _context(call)
+    goal = call.literal(2, "the goal")
+    # The plans are atomic: nothing may happen between asking whether the queue is busy and noting that it is.
+    adopted = call.plans(
+        """@begin[atomic] +Event : not p__busy(N) & Context <- +p__busy(N); !!p__serve(N, Goal).
+           @wait[atomic] +Event : Context <- +>p__queue(N, Goal).
+           +!p__serve(N, _0) <- !_0; !!p__next(N).
+           -!p__serve(N, _0) <- !!p__next(N); .fail.
+           @next[atomic] +!p__next(N) : p__queue(N, _0) <- -p__queue(N, _0); !!p__serve(N, _0).
+           @end[atomic] +!p__next(N) <- -p__busy(N).""",
+        Event=trigger,
+        Context=context,
+        Goal=goal,
+        N=nodes.Number(float(call.number), span=call.span),
+    )
+    return replace(section, plans=[*section.plans, *adopted])
+
+
+def _trigger(call: PatternCall) -> nodes.Trigger:
+    """Return the first argument: a trigger as text or in braces."""
+    argument = call.arguments[0] if call.arguments else None
+    if isinstance(argument, nodes.String):
+        trigger: nodes.Trigger = call.parse(argument.value, PlanParser.trigger, "trigger")
+        return trigger
+    if isinstance(argument, nodes.TriggerTerm):
+        return argument.trigger
+    if isinstance(argument, nodes.BodyTerm) and len(argument.body.steps) == 1:
+        step = argument.body.steps[0]
+        if isinstance(step, nodes.BeliefChange) and isinstance(step.operand, nodes.Literal | nodes.Variable):
+            return nodes.Trigger(step.operator, "", step.operand, span=step.span)
+    raise WrongDirective("argument 1 of `sga` is not a trigger", 'write sga("+order(X)", "true", serve(X))')
+
+
+def _context(call: PatternCall) -> nodes.Term:
+    """Return the second argument: a condition, as text or as a term."""
+    if len(call.arguments) < 2:
+        raise WrongDirective("`sga` expects a context as argument 2", 'write "true" for no context')
+    argument = call.arguments[1]
+    if isinstance(argument, nodes.String):
+        argument = call.parse(argument.value, PlanParser.condition, "condition")
+    return argument
+
+
+class Recipe(NamedTuple):
+    """A pattern that adds plans to those of another one.
+
+    Attributes:
+        inner: the pattern of the block.
+        adds: the plans that follow.
+        wants: the arguments behind the goal, as variables of these plans.
+        nests: a second argument names another pattern than *inner*.
+    """
+
+    inner: str
+    adds: str
+    wants: tuple[str, ...] = ()
+    nests: bool = False
+
+
+_WANTED: Final = {
+    "Impossible": "the belief that the goal is impossible",
+    "Motivation": "the motivation",
+}
+_RECIPES: Final = {
+    # A declarative goal that is retried when a plan fails.
+    "bdg": Recipe("dg", "-!Goal : Possible <- !Goal."),
+    # Blind commitment, until the goal is believed, whatever fails: a last plan posts it again if no other is applicable.
+    "bc": Recipe("bdg", "+!Goal : Possible <- !Goal.", nests=True),
+    # The goal fails when it is impossible, and its failure reaches the goal or plan that posted it; the retry of the
+    # blind commitment inside does not catch it (in Jason it does).
+    "smc": Recipe(
+        "bc",
+        """-!Goal <- .fail(error(impossible), error_msg("the goal is believed to be impossible")).
+           +Impossible <- .fail_goal(Goal).""",
+        ("Impossible",),
+    ),
+    # Losing the motivation ends the goal as if it was achieved.
+    "rc": Recipe("bc", "-Motivation <- .succeed_goal(Goal).", ("Motivation",)),
+    "omc": Recipe("smc", "-Motivation <- .succeed_goal(Goal).", ("Impossible", "Motivation")),
+    # The goal holds initially, and is pursued again whenever it is lost.
+    "mg": Recipe("bc", "-Goal <- !Goal.", nests=True),
+}
+_WRITTEN: Final = {"dg": declarative, "ebdg": exclusive, "sga": sequenced}
+PATTERNS: Final = (*_WRITTEN, *_RECIPES)
+"""The names of all goal patterns."""
+
+
+def apply_pattern(call: PatternCall, section: nodes.Section) -> nodes.Section:
+    """Return the clauses that replace *section*, those of the block of a pattern.
+
+    Raises:
+        WrongDirective: the pattern is used wrongly.
+    """
+    recipe = _RECIPES.get(call.name)
+    if recipe is None:
+        if call.name not in _WRITTEN:
+            raise WrongDirective(f"unknown pattern `{call.name}`", f"use one of {', '.join(PATTERNS)}")
+        return _WRITTEN[call.name](call, section)
+    call.at_most(1 + len(recipe.wants) + recipe.nests)
+    wanted = {name: call.literal(place, _WANTED[name]) for place, name in enumerate(recipe.wants, 1)}
+    impossible = wanted.get("Impossible")
+    possible = TRUE if impossible is None else nodes.Not(impossible, span=call.span)
+    return _cooked(call.name, call, section, {**wanted, "Possible": possible})
+
+
+def _cooked(
+    name: str, call: PatternCall, section: nodes.Section, parts: dict[str, nodes.Node]
+) -> nodes.Section:
+    if name == "dg":
+        return declarative(replace(call, arguments=call.arguments[:1]), section)
+    recipe, goal = _RECIPES[name], call.literal(0, "the goal")
+    if name == call.name and recipe.nests and len(call.arguments) > 1:
+        written = call.literal(1, "a pattern")
+        arguments = written.arguments or (goal,)
+        inner = apply_pattern(replace(call, name=written.functor, arguments=arguments), section)
+    else:
+        inner = _cooked(recipe.inner, call, section, parts)
+    beliefs = [goal] if name == "mg" and is_ground(goal) else []
+    plans = call.plans(recipe.adds, **parts)
+    return replace(inner, beliefs=[*beliefs, *inner.beliefs], plans=[*inner.plans, *plans])
+
 
 _ROOTS: Final = frozenset(
     {"$jacamo", "$jacamoJar", "$jason", "$jasonJar", "$moise", "$moiseJar", "$cartago", "$cartagoJar"}

@@ -9,6 +9,7 @@ from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.actions.internal_action import STANDARD, ActionError, InternalAction
 from jacaros.agents.mind.rules import (
     belief_update,
+    body_steps,
     context,
     cycle,
     deadlines,
@@ -18,10 +19,8 @@ from jacaros.agents.mind.rules import (
     needs,
     pending,
     plan_changes,
-    plan_terms,
     query,
     supervision,
-    waits,
 )
 from jacaros.agents.mind.rules.add_im import Interpreter
 from jacaros.agents.mind.rules.context import Context
@@ -266,15 +265,15 @@ class Mind(Circumstance):
             return
         if not completion.success:
             self.waits.needs.pop(act_id, None)
-            waits.fail(
+            deadlines.fail(
                 self, waiting, "the action failed", (ERROR, atom("action_failed")), *completion.annotations
             )
             return
         misfit = self._take_outputs(completion)
         if misfit is None:
-            waits.succeed(self, waiting)
+            deadlines.succeed(self, waiting)
         else:
-            waits.fail(self, waiting, "", *misfit)
+            deadlines.fail(self, waiting, "", *misfit)
 
     def _take_outputs(self, completion: Completion) -> tuple[Term, ...] | None:
         """Bind the output variables of an act; return the failure if one already has another value."""
@@ -289,9 +288,9 @@ class Mind(Circumstance):
 
     shut_down_in = meta_events.shutting_down
     observe_rest = meta_events.observe_rest  # pyright: ignore[reportAssignmentType]
-    drop_wait = waits.drop  # pyright: ignore[reportAssignmentType]
+    drop_wait = deadlines.drop  # pyright: ignore[reportAssignmentType]
     end_above = supervision.end_above  # pyright: ignore[reportAssignmentType]
-    end_wait = waits.come_true  # pyright: ignore[reportAssignmentType]
+    end_wait = deadlines.come_true  # pyright: ignore[reportAssignmentType]
     notify_listeners = pending.notify_listeners  # pyright: ignore[reportAssignmentType]
 
     # --- called by generated code --------------------------------------------------------------------------
@@ -450,13 +449,13 @@ class Mind(Circumstance):
         if isinstance(result, Waiting) and not (result.ended and result.failure is None):
             result.attach(frame, next_step)
             if result.ended:
-                waits.announce_end(self, result)
+                deadlines.announce_end(self, result)
             return SUSPENDED
         if frame in self.current.frames if self.current is not None else False:
             frame[STEP] = next_step
         return None
 
-    run_value = plan_terms.run_value
+    run_value = body_steps.run_value
 
     fork = forks.fork
 

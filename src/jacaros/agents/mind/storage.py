@@ -20,15 +20,14 @@ from zlib import crc32
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile, Span
-from jacaros.agents.mind.explaining.failure_reason import FailureReason
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import goals, urgency
-from jacaros.agents.mind.rules.body_steps import interpreted
+from jacaros.agents.mind.rules.body_steps import interpreted, plan_of_body
 from jacaros.agents.mind.rules.context import RegisteredFunction
+from jacaros.agents.mind.rules.failure_reason import FailureReason
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
 from jacaros.agents.mind.rules.pending import look_again, now, start_alarm
 from jacaros.agents.mind.rules.plan_changes import look_at_plans
-from jacaros.agents.mind.rules.plan_terms import plan_of_body
 from jacaros.agents.mind.rules.searching import Remaining
 from jacaros.agents.mind.state.act import Completion
 from jacaros.agents.mind.state.belief_base import take_away
@@ -92,9 +91,7 @@ _IN_PLACE = frozenset(
     {*_WHOLE, Functor, List, NoneType, Trigger, bool, deque, dict, float, int, list, set, str, tuple, type}
 )
 """Classes whose objects are written where they occur."""
-_PACKAGES = tuple(
-    f"jacaros.agents.{each}." for each in ("mind.explaining", "mind.rules", "mind.state", "terms")
-)
+_PACKAGES = tuple(f"jacaros.agents.{each}." for each in ("mind.rules", "mind.state", "terms"))
 """Packages of the classes that have a state, and of the functions that are called later."""
 _LIVE = {
     CoroutineWait: "it waits for a coroutine",

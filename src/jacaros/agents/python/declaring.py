@@ -13,8 +13,8 @@ from typing import TypeVar, overload
 from jacaros.agents.body.values import Outputs, to_value
 from jacaros.agents.mind.actions.internal_action import ActionError, Crashed, InternalAction, WrongArguments
 from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.rules.deadlines import fail, succeed
 from jacaros.agents.mind.rules.failure import error_terms
-from jacaros.agents.mind.rules.waits import fail, succeed
 from jacaros.agents.mind.state.pending import CoroutineWait, Waiting
 from jacaros.agents.python.agent import Agent, Literal, agent_of, literal_of, term_of
 from jacaros.agents.terms.operators import ArithmeticFault

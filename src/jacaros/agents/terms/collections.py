@@ -15,11 +15,11 @@ Another agent gets copies of its own (`detached`).
 import heapq
 import itertools
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Any
 
 from jacaros.agents.terms.order import SortKey, sorted_terms
-from jacaros.agents.terms.substitution import resolve, with_parts
+from jacaros.agents.terms.substitution import as_key, resolve, with_parts
 from jacaros.agents.terms.values import ATOMIC, Annotated, List, Term, deref, make_list
 
 
@@ -30,6 +30,26 @@ class SetValue:
 
     def __init__(self, items: dict[Term, None] | None = None) -> None:
         self.items: dict[Term, None] = {} if items is None else items
+
+    def add(self, item: Term) -> None:
+        """Add an element."""
+        self.items[as_key(item)] = None
+
+    def remove(self, item: Term) -> None:
+        """Remove an element, if it is in the set."""
+        self.items.pop(as_key(item), None)
+
+    def keep(self, others: Container[Term]) -> None:
+        """Keep only the elements that are among others."""
+        self.items = {item: None for item in self.items if item in others}
+
+    def clear(self) -> None:
+        """Remove all elements."""
+        self.items.clear()
+
+    def copy(self) -> "SetValue":
+        """Return a new set with the same elements."""
+        return SetValue(dict(self.items))
 
     def as_list(self) -> Term:
         """The elements as a list term."""
@@ -58,6 +78,14 @@ class MapValue:
 
     def __init__(self, items: dict[Term, Term] | None = None) -> None:
         self.items: dict[Term, Term] = {} if items is None else items
+
+    def clear(self) -> None:
+        """Remove all keys."""
+        self.items.clear()
+
+    def copy(self) -> "MapValue":
+        """Return a new map with the same keys and values."""
+        return MapValue(dict(self.items))
 
     def as_list(self) -> Term:
         """Keys and values in turn as a list term."""

@@ -13,10 +13,9 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Final
 
-from jacaros.agents.terms import arithmetic
-from jacaros.agents.terms.arithmetic import Evaluator, settle
+from jacaros.agents.terms import operators
 from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
-from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.operators import ArithmeticFault, Evaluator, settle
 from jacaros.agents.terms.substitution import free_variables, resolve
 from jacaros.agents.terms.values import (
     NUMBERS,
@@ -36,7 +35,7 @@ def _on_number(compute: Callable[[float], float]) -> Callable[..., Term]:
         if value.__class__ not in NUMBERS:
             if free_variables(value):
                 return None
-            arithmetic.warn("argument of a function", value)
+            operators.warn("argument of a function", value)
             return math.nan
         try:
             return float(compute(double(value)))
@@ -166,7 +165,7 @@ FUNCTIONS: Final[Mapping[str, Evaluator]] = MappingProxyType(
         ".length": _length,
     }
 )
-arithmetic.function_table = FUNCTIONS
+operators.function_table = FUNCTIONS
 
 ARITIES: Final[dict[str, tuple[int, float]]] = {
     **dict.fromkeys(_OF_A_NUMBER, (1, 1)),

@@ -17,7 +17,7 @@ from functools import cmp_to_key
 from operator import itemgetter, ne
 from typing import Any
 
-from jacaros.agents.terms.arithmetic import settle
+from jacaros.agents.terms.operators import settle
 from jacaros.agents.terms.values import (
     ARITHMETIC,
     CONS,

@@ -17,8 +17,7 @@ from operator import is_not
 from typing import Any
 
 from jacaros.agents.terms import values
-from jacaros.agents.terms.arithmetic import settle
-from jacaros.agents.terms.operators import BINARY
+from jacaros.agents.terms.operators import BINARY, settle
 from jacaros.agents.terms.order import annotation_set, compare
 from jacaros.agents.terms.values import (
     ARITHMETIC,

@@ -18,8 +18,7 @@ one.
 
 from collections.abc import Iterator
 
-from jacaros.agents.terms.arithmetic import settle
-from jacaros.agents.terms.operators import positive_form, qualify
+from jacaros.agents.terms.operators import positive_form, qualify, settle
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.plans import TWINS
 from jacaros.agents.terms.substitution import ATOMIC, HOLDERS, free_variables, replace_variable, with_tail

@@ -5,7 +5,6 @@ from typing import NoReturn
 
 from jacaros.artifacts.env import ports
 from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation, operation
-from jacaros.artifacts.env.creation import FindType, WorkspaceTree
 from jacaros.artifacts.env.errors import (
     ArtifactId,
     OperationFailed,
@@ -17,7 +16,7 @@ from jacaros.artifacts.env.manual import describe
 from jacaros.artifacts.env.operation import OPERATION, OperationRequest
 from jacaros.artifacts.env.ports import UnderWay
 from jacaros.artifacts.env.values import Structure, equal, plain, text
-from jacaros.artifacts.env.workspace import Workspace
+from jacaros.artifacts.env.workspace import FindType, Workspace, WorkspaceTree
 from jacaros.artifacts.kernel.publication import Setting, log_to_stderr
 from jacaros.artifacts.kernel.registry import Registry
 from jacaros.runtime.clock import Clock

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
 
+from jacaros.artifacts.env.arbiter import Arbiter, Claim, State, local_name
 from jacaros.artifacts.env.errors import ArtifactId
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest, WhenPreempted
 from jacaros.artifacts.env.ports import UnderWay
@@ -13,7 +14,6 @@ from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation
 from jacaros.artifacts.kernel.faults import is_interruption
-from jacaros.artifacts.resources.arbiter import Arbiter, Claim, State, local_name
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 

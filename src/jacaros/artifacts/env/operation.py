@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
+from jacaros.artifacts.env.arbiter import Claim, Policy
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.arbiter import Claim, Policy
 from jacaros.runtime.trace import Cause
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -10,11 +10,11 @@ from itertools import chain
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
+from jacaros.artifacts.env.arbiter import read_uses
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import INIT, INTERNAL, LINK, OPERATION, Mark, WhenPreempted, marks_of
 from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.artifacts.kernel.acceptance import Accept, Unsuitable, kind_of, shown
-from jacaros.artifacts.resources.arbiter import read_uses
 from jacaros.files.texts import aside
 
 # The parameters of an operation: the number of arguments, their kinds, and the outputs.

@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from jacaros.artifacts.env.arbiter import Arbiter
 from jacaros.artifacts.env.errors import ArtifactId
 from jacaros.artifacts.env.execution import EnvironmentListener
 from jacaros.artifacts.env.property import (
@@ -23,7 +24,6 @@ from jacaros.artifacts.env.property import (
     Signal,
     SlowObserver,
 )
-from jacaros.artifacts.resources.arbiter import Arbiter
 from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause, Tracer

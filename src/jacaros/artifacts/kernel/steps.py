@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
 
+from jacaros.artifacts.env.arbiter import read_uses, scoped
 from jacaros.artifacts.env.errors import ArtifactId, InvalidArtifact, OperationFailed
 from jacaros.artifacts.env.execution import Holding, OperationExecution
 from jacaros.artifacts.env.operation import (
@@ -28,7 +29,6 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, W
 from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
-from jacaros.artifacts.resources.arbiter import read_uses, scoped
 from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause

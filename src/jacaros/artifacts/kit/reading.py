@@ -23,8 +23,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from jacaros.artifacts.kit.options import Reader, bands, one_of, positive, yes_or_no
-from jacaros.artifacts.streams.declarations import ReadingPolicy as ReadingPolicy
-from jacaros.artifacts.streams.declarations import Values as Values
+from jacaros.artifacts.streams import ReadingPolicy as ReadingPolicy
+from jacaros.artifacts.streams import Values as Values
 from jacaros.ros.waiting import within
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause

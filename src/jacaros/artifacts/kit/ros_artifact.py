@@ -22,8 +22,9 @@ from jacaros.artifacts.kit.connection import (
 )
 from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import Reading, Values
 from jacaros.artifacts.kit.services import ServedOperation, failure_reason, refusal, succeeded
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
 from jacaros.ros.backend import (
     DEFAULT_POLICY,

@@ -7,13 +7,14 @@ from typing import ClassVar
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text, yes_or_no
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import Reading
 from jacaros.artifacts.map.cells import Cell, LabelledCells, OccupancyCells
 from jacaros.artifacts.map.map_files import Grid
 from jacaros.artifacts.map.mapper import Mapper, ScanOptions
 from jacaros.artifacts.map.routes import Leg, around, frontier, nearest, next_leg
 from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.odometry import Odometer, Odometry
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import ORIGIN, Pose
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds

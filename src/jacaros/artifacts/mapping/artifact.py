@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
@@ -29,7 +30,6 @@ from jacaros.artifacts.mapping.operating import runners_of
 from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
 from jacaros.artifacts.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
 from jacaros.artifacts.mapping.topic_multiplexer import TopicMultiplexer, Updater, find_types
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.files.yaml import Problem
 from jacaros.ros.guarded import VELOCITIES
 

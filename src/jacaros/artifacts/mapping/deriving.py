@@ -7,9 +7,7 @@ from jacaros.artifacts.mapping.file import ArtifactPart
 from jacaros.artifacts.mapping.frames import StampedFrames
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.properties import DerivedPart, FramePart
-from jacaros.artifacts.streams.declarations import Spec, Values
-from jacaros.artifacts.streams.operators import HIDE, SHOW
-from jacaros.artifacts.streams.pattern import Pattern
+from jacaros.artifacts.streams import HIDE, SHOW, Pattern, Spec, Values
 from jacaros.files.texts import is_worth_a_line
 from jacaros.ros.message import to_seconds
 from jacaros.runtime.clock import Timer

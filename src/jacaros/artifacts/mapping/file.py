@@ -31,7 +31,7 @@ from jacaros.artifacts.mapping.properties import (
     read_property,
     read_signal,
 )
-from jacaros.artifacts.streams.declarations import OPERATORS, Spec
+from jacaros.artifacts.streams import OPERATORS, Spec
 from jacaros.files.entries import Entry, declared_entries, values
 from jacaros.files.texts import is_file, suggestion
 from jacaros.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import internal_operation
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
+from jacaros.artifacts.kit.reading import Reading, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.fields import Place, Written
 from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.files.yaml import Problem, shown
 from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.ros.errors import RosError

@@ -34,7 +34,7 @@ from jacaros.artifacts.mapping.interfaces import (
 )
 from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source, ValuePart
 from jacaros.artifacts.mapping.properties import TRANSFORM, DerivedPart, ParameterPart, TopicPart
-from jacaros.artifacts.streams.declarations import OPERATORS, VALUE, ReadingPolicy, Spec
+from jacaros.artifacts.streams import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType

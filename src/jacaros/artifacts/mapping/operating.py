@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.artifact import Out
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.acting import error_code, error_text, missing_number
@@ -20,7 +21,6 @@ from jacaros.artifacts.mapping.host import Host, ask_type
 from jacaros.artifacts.mapping.operations import OperationKind, OperationPart, Source
 from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.topic_multiplexer import Updater
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
 from jacaros.ros.action import ActionClient

@@ -31,7 +31,7 @@ from jacaros.artifacts.mapping.fields import (
     with_entries,
     written,
 )
-from jacaros.artifacts.streams.declarations import (
+from jacaros.artifacts.streams import (
     LONGEST,
     OPERATORS,
     PARTNERS_WAIT,

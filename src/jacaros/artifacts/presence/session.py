@@ -7,13 +7,13 @@ from types import TracebackType
 from typing import Any, TypedDict, TypeVar, Unpack
 
 from jacaros.artifacts.env.artifact import Artifact
-from jacaros.artifacts.env.creation import artifact_named
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed, WorkspaceError
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.ports import ENDED, UnderWay, Workspace, awaited
 from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Out, plain, text
+from jacaros.artifacts.env.workspace import artifact_named
 from jacaros.artifacts.presence.presence import (
     ANYWHERE,
     Account,
@@ -21,7 +21,7 @@ from jacaros.artifacts.presence.presence import (
     Direction,
     Observed,
     ObservedProperty,
-    Observer,
+    OperationObserver,
     Presence,
     PropertyChange,
     ReceivedSignal,
@@ -192,7 +192,7 @@ class Session:
         self._closed = False
         self.presence = Presence(environment, name, home, self._observed)
         self._under_way: dict[SessionOperation, None] = {}
-        self.observer: Observer | None = None
+        self.observer: OperationObserver | None = None
 
     @property
     def clock(self) -> Clock:

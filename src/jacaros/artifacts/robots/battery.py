@@ -6,8 +6,9 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.kit.options import not_negative, number, one_of, positive, text
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant
 from jacaros.ros.qos import SENSOR_DATA

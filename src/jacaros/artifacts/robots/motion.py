@@ -9,12 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import ClassVar, NoReturn
 
+from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.options import positive, text
-from jacaros.artifacts.kit.reading import Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.artifacts.robots.drive_model import (
     STANDSTILL,
@@ -36,6 +36,7 @@ from jacaros.artifacts.robots.odometry import (
     driving_frame,
     pose_values,
 )
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import Pose
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.names import frame_name

@@ -1,6 +1,6 @@
 """The motions of a robot: who drives, who waits, and what ends or interrupts them.
 
-The arbiter of resources (`jacaros.artifacts.resources.arbiter`) decides which of them drives: all use ``wheels``.
+The arbiter of resources (`jacaros.artifacts.env.arbiter`) decides which of them drives: all use ``wheels``.
 """
 
 import asyncio

@@ -9,9 +9,10 @@ from weakref import WeakSet
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import text
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.drive_model import Velocity
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import Pose, normalised, yaw_of
 from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.errors import TransformUnavailable

@@ -9,8 +9,9 @@ from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import positive, text
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, not_finite
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, not_finite
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.ros.backend import Sample
 from jacaros.ros.qos import SENSOR_DATA
 

@@ -8,11 +8,12 @@ import math
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, operation
-from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
+from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading
 from jacaros.artifacts.robots.drive_model import Velocity
 from jacaros.artifacts.robots.maneuver import DriveTo, Straight, Timed, Turn, TurnTo, go_to
 from jacaros.artifacts.robots.motion import WheeledArtifact
 from jacaros.artifacts.robots.odometry import Odometry
+from jacaros.artifacts.streams import ReadingPolicy
 
 BLIND_TURN = Velocity(0.0, 0.5)
 """Turn rate of `rotateD` (rad/s), as in the original system."""

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, get_args
 
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.rules.sel_ev import observe_steps
+from jacaros.agents.mind.rules.cycle import observe_steps
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal

@@ -7,10 +7,10 @@ from typing import Any
 from jacaros.agents.body.values import to_value
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
-from jacaros.agents.mind.explaining.lost_goals import loss_of
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import goals
 from jacaros.agents.mind.rules.failure import told
+from jacaros.agents.mind.rules.failure_reason import loss_of
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.storage import stored

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from jacaros.agents.mind.explaining.lost_goals import FailingContexts
 from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.failure_reason import FailingContexts
 from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
 from jacaros.agents.mind.state.plan import Plan
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger

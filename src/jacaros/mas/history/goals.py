@@ -4,8 +4,8 @@ from collections.abc import Callable
 from functools import partial
 from itertools import count
 
-from jacaros.agents.mind.explaining.failure_reason import goal_text
 from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import observe_goals
 from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.substitution import is_ground

@@ -6,8 +6,8 @@ from typing import Any
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.lowering import format_term
-from jacaros.agents.mind.explaining.failure_reason import unbracketed
 from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.failure_reason import unbracketed
 from jacaros.agents.mind.state.plan import Plan, Rule, every_plan
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.terms.text import text

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from jacaros.agents.language.diagnostics import Span
-from jacaros.agents.mind.explaining.failure_reason import Place, place_of_call
+from jacaros.agents.mind.rules.failure_reason import Place, place_of_call
 from jacaros.agents.mind.state.intention import GOAL, PLAN, STEP, Frame, Intention
 from jacaros.agents.mind.state.plan import Plan, StepInfo
 from jacaros.agents.mind.state.triggers import literal_of

@@ -15,7 +15,7 @@ from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.errors import WorkspaceError
 from jacaros.artifacts.kernel.faults import error_text
-from jacaros.artifacts.presence.presence import Observer
+from jacaros.artifacts.presence.presence import OperationObserver
 from jacaros.artifacts.presence.session import Session
 from jacaros.errors import JacarosError
 from jacaros.mas.agent_host import AgentHost, Run
@@ -53,7 +53,7 @@ class PythonAgentHost(AgentHost):
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
-        self._observer: Observer | None = None
+        self._observer: OperationObserver | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
         self._leaving = self._closed = False
         agent._host = self  # pyright: ignore[reportAttributeAccessIssue] - `send` is a field that holds a function
@@ -63,7 +63,7 @@ class PythonAgentHost(AgentHost):
         """Object of the user's class."""
         return self._agent
 
-    def observe(self, observer: Observer) -> None:
+    def observe(self, observer: OperationObserver) -> None:
         """Report to *observer*, from now on, the agent's ``run``, its operations, and the state of its trees."""
         self._observer = observer
         if self._session is not None:

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Coroutine
 
 from jacaros.agents.body.body import AgentBody
-from jacaros.agents.body.percepts import PerceptWriter
-from jacaros.agents.body.values import References
+from jacaros.agents.body.values import PerceptWriter, References
 from jacaros.agents.mind.state.act import Act, Completion, Percept
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import (

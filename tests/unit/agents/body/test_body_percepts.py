@@ -1,7 +1,6 @@
 """Observations as percepts."""
 
-from jacaros.agents.body.percepts import PerceptWriter
-from jacaros.agents.body.values import References
+from jacaros.agents.body.values import PerceptWriter, References
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, atom, structure

@@ -12,7 +12,7 @@ from typing import Any
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.generated.compiler import executed
-from jacaros.agents.mind.generated.unit import write_select
+from jacaros.agents.mind.generated.selection import write_select
 from jacaros.agents.mind.state.plan import Plan, label_of
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.unifier import Trail

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jacaros.agents.checks.plans import wrong_needs
+from jacaros.agents.checks.checker import wrong_needs
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.nodes import ByKind
 

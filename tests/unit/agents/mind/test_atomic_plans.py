@@ -2,7 +2,7 @@
 
 from recording_host import mind, printed
 
-from jacaros.agents.mind.rules.sel_ev import event_of, is_ready
+from jacaros.agents.mind.rules.cycle import event_of, is_ready
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.values import BY_SELF, atom, functor
 

@@ -177,7 +177,7 @@ def test_the_budget_of_a_question_ends_with_it() -> None:
 
 
 def test_nothing_is_searched_for_handled_failures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jacaros.agents.mind.explaining.lost_goals.FailingContexts", None)
+    monkeypatch.setattr("jacaros.agents.mind.rules.failure_reason.FailingContexts", None)
     host = _run(
         "!go.\n+!go : ready.\n-!go <- .print(saved).\n!outer.\n+!outer <- !go(1).\n+!go(X) : ready.\n-!outer."
     )

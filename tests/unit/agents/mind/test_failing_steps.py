@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from recording_host import mind, printed
 
-from jacaros.agents.mind.explaining.failure_reason import goal_text
 from jacaros.agents.mind.rules import failure
+from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import observe_goals
 
 

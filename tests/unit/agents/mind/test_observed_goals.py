@@ -7,8 +7,8 @@ from random import Random
 import pytest
 from recording_host import mind
 
-from jacaros.agents.mind.explaining.failure_reason import goal_text
 from jacaros.agents.mind.rules.clr_int import pending_event
+from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import failed_number, observe_goals
 from jacaros.agents.mind.state.act import Act, Completion
 from jacaros.agents.mind.state.intention import ANNOTATIONS, EVENT_ANNOTATIONS, EVENT_GOAL, GOAL, SERIAL

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from extension_lab import run, said
 
-from jacaros.agents.terms import arithmetic
+from jacaros.agents.terms import operators
 from jacaros.testing import AgentHarness
 
 SQ = """
@@ -84,7 +84,7 @@ def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path: Path) -
 
 def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path: Path) -> None:
     said(tmp_path, "!go. +!go <- .print(my.sq(3)).", SQ)
-    assert "my.sq" not in arithmetic.function_table
+    assert "my.sq" not in operators.function_table
 
 
 def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path: Path) -> None:
@@ -106,4 +106,4 @@ def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path: Path
         agent.achieve("g")
         agent.run()
     assert [agent.prints for agent in agents] == [["1111"], ["2212"]]
-    assert "my.size" not in arithmetic.function_table
+    assert "my.size" not in operators.function_table

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 import pytest
 
 import jacaros.agents.terms.functions  # noqa: F401 - the functions of the language
-from jacaros.agents.terms.arithmetic import RUNNING, calculated, settle
 from jacaros.agents.terms.collections import MapValue, SetValue
-from jacaros.agents.terms.operators import BINARY, ArithmeticFault
+from jacaros.agents.terms.operators import BINARY, RUNNING, ArithmeticFault, calculated, settle
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, unify

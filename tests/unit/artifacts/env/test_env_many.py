@@ -3,7 +3,7 @@
 import gc
 
 from jacaros.artifacts import Artifact, operation
-from jacaros.artifacts.env.creation import chosen_artifact
+from jacaros.artifacts.env.workspace import chosen_artifact
 from jacaros.artifacts.kernel.declaration import OperationTable
 from jacaros.artifacts.kernel.steps import Steps
 

@@ -5,7 +5,7 @@ term. Backtracking does not undo changes.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TypeVar
+from typing import Any, Final
 
 from jacaros.agents.mind.actions.internal_action import (
     ActionError,
@@ -16,7 +16,7 @@ from jacaros.agents.mind.actions.internal_action import (
     members,
     whole,
 )
-from jacaros.agents.mind.actions.strings import replace_all
+from jacaros.agents.mind.actions.terms import replace_all
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.agents.terms.order import compare, ordered_by_python, sorted_set, sorted_terms
@@ -37,201 +37,107 @@ from jacaros.agents.terms.values import (
     parted,
 )
 
-Collection = TypeVar("Collection", SetValue, MapValue, QueueValue)
+Collection = SetValue | MapValue | QueueValue
+_NAMES: Final[dict[type[Collection], str]] = {SetValue: "set", MapValue: "map", QueueValue: "queue"}
 
 
-def _of_kind(kind: type[Collection], name: str) -> Callable[[Context, Term], Collection]:
-    """Return a function that finds a collection in an argument; an unbound variable becomes an empty one."""
-
-    def find(ctx: Context, term: Term) -> Collection:
-        if isinstance(term, kind):
-            return term
-        if term.__class__ is not Var:
-            raise WrongArguments(f"the first argument must be a {name}, not {text(term)}")
-        made = kind()
-        ctx.unify(term, made)
-        return made
-
-    return find
+def _find(kind: type[Collection], ctx: Context, term: Term) -> Any:
+    """Return the collection in an argument; an unbound variable becomes an empty one."""
+    if isinstance(term, kind):
+        return term
+    if term.__class__ is not Var:
+        raise WrongArguments(f"the first argument must be a {_NAMES[kind]}, not {text(term)}")
+    made = kind()
+    ctx.unify(term, made)
+    return made
 
 
-_set, _map, _queue = _of_kind(SetValue, "set"), _of_kind(MapValue, "map"), _of_kind(QueueValue, "queue")
+def _items(collection: Term) -> list[Term]:
+    return members(collection, "the second argument")
 
 
-def _each(ctx: Context, pattern: Term, values: Iterable[Term]) -> Iterator[None]:
-    """Yield an answer for each of the values that unifies."""
-    for value in values:
-        if ctx.unify(pattern, value):
-            yield
+def _create(name: str, kind: type[Collection]) -> None:
+    """Declare ``.set.create(S)``: the unbound variable becomes an empty collection; fails if it has a value.
+
+    A queue may be made with ``priority``: its smallest element is the next one, not the oldest.
+    """
+
+    def create(ctx: Context, variable: Term, order: Term = None) -> bool:
+        priority = (True,) if isinstance(order, Functor) and order.name == "priority" else ()
+        return variable.__class__ is Var and ctx.unify(variable, kind(*priority))
+
+    internal_action(f".{name}.create", arity=(1, 2) if kind is QueueValue else 1)(create)
 
 
-@internal_action(".set.create", arity=1)
-def create_set(ctx: Context, variable: Term) -> bool:
-    """``.set.create(S)``: the unbound variable *S* becomes an empty set; fails if it has a value."""
-    return variable.__class__ is Var and ctx.unify(variable, SetValue())
+def _changes(name: str, kind: type[Collection], arity: int, change: Callable[..., object]) -> None:
+    """Declare an action that changes a collection: *change* takes it and the other arguments."""
+
+    def action(ctx: Context, collection: Term, *arguments: Term) -> None:
+        change(_find(kind, ctx, collection), *arguments)
+
+    internal_action(name, arity=arity)(action)
 
 
-@internal_action(".set.add", arity=2)
-def add_to_set(ctx: Context, collection: Term, item: Term) -> None:
-    """``.set.add(S, X)`` adds an element."""
-    _set(ctx, collection).items[as_key(item)] = None
+def _gives(
+    name: str, kind: type[Collection], value: Callable[[Any], Term | None], pure: bool = False
+) -> None:
+    """Declare an action whose second argument is the *value* of a collection; it fails if that is None."""
+
+    def action(ctx: Context, collection: Term, result: Term) -> bool:
+        found = value(_find(kind, ctx, collection))
+        return found is not None and ctx.unify(result, found)
+
+    internal_action(name, arity=2, pure=pure)(action)
 
 
-@internal_action(".set.add_all", arity=2)
-@internal_action(".set.union", arity=2)
-def add_all_to_set(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.add_all(S, C)`` and ``.set.union(S, C)`` add the elements of a list, set or queue."""
-    _set(ctx, collection).items.update(dict.fromkeys(map(as_key, _items(items))))
+def _answers(name: str, kind: type[Collection], values: Callable[[Any], Iterable[Term]]) -> None:
+    """Declare an action with an answer for each of the *values* of a collection that unifies with its second argument."""
+
+    def action(ctx: Context, collection: Term, pattern: Term) -> Iterator[None]:
+        for value in list(values(_find(kind, ctx, collection))):
+            if ctx.unify(pattern, value):
+                yield
+
+    internal_action(name, arity=2, backtracks=True, pure=True)(action)
 
 
-@internal_action(".set.intersection", arity=2)
-def intersection_of_sets(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.intersection(S, C)`` keeps in *S* only the elements of the list, set or queue *C*."""
-    target, kept = _set(ctx, collection), dict.fromkeys(map(as_key, _items(items)))
-    target.items = {item: None for item in target.items if item in kept}
+for _kind, _name in _NAMES.items():
+    _create(_name, _kind)
+    _gives(f".{_name}.copy", _kind, _kind.copy)
+    _changes(f".{_name}.clear", _kind, 1, _kind.clear)
+_changes(".set.add", SetValue, 2, SetValue.add)
+for _name in (".set.add_all", ".set.union"):
+    _changes(_name, SetValue, 2, lambda target, others: target.items.update(_keys(others)))
+_changes(".set.intersection", SetValue, 2, lambda target, others: target.keep(_keys(others)))
+_changes(".set.difference", SetValue, 2, lambda target, others: list(map(target.remove, _items(others))))
+_changes(".set.remove", SetValue, 2, SetValue.remove)
+_gives(".set.to_list", SetValue, SetValue.as_list, pure=True)
+_changes(".map.put", MapValue, 3, lambda target, key, value: target.items.update({as_key(key): value}))
+_answers(".map.key", MapValue, iter)
+_answers(".map.value", MapValue, lambda source: [source.items[key] for key in source])
+_changes(".queue.add", QueueValue, 2, QueueValue.add)
+_changes(".queue.add_all", QueueValue, 2, lambda target, others: list(map(target.add, _items(others))))
+_gives(".queue.head", QueueValue, QueueValue.head, pure=True)
+_gives(".queue.remove", QueueValue, QueueValue.remove)
+_gives(".queue.to_list", QueueValue, QueueValue.as_list, pure=True)
 
 
-@internal_action(".set.difference", arity=2)
-def difference_of_sets(ctx: Context, collection: Term, items: Term) -> None:
-    """``.set.difference(S, C)`` removes from *S* the elements of the list, set or queue *C*."""
-    target = _set(ctx, collection)
-    for item in _items(items):
-        target.items.pop(as_key(item), None)
-
-
-@internal_action(".set.remove", arity=2)
-def remove_from_set(ctx: Context, collection: Term, item: Term) -> None:
-    """``.set.remove(S, X)`` removes an element, if it is in the set."""
-    _set(ctx, collection).items.pop(as_key(item), None)
-
-
-@internal_action(".set.to_list", arity=2, pure=True)
-def list_of_set(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.set.to_list(S, L)``: *L* is the sorted list of the elements."""
-    return ctx.unify(result, _set(ctx, collection).as_list())
-
-
-@internal_action(".set.copy", arity=2)
-def copy_set(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.set.copy(S, C)``: *C* is a new set with the same elements."""
-    return ctx.unify(copy, SetValue(dict(_set(ctx, collection).items)))
-
-
-@internal_action(".set.clear", arity=1)
-def clear_set(ctx: Context, collection: Term) -> None:
-    """``.set.clear(S)`` removes all elements."""
-    _set(ctx, collection).items.clear()
-
-
-@internal_action(".map.create", arity=1)
-def create_map(ctx: Context, variable: Term) -> bool:
-    """``.map.create(M)``: the unbound variable *M* becomes an empty map; fails if it has a value."""
-    return variable.__class__ is Var and ctx.unify(variable, MapValue())
-
-
-@internal_action(".map.put", arity=3)
-def put(ctx: Context, collection: Term, key: Term, value: Term) -> None:
-    """``.map.put(M, K, V)`` sets the value of the key *K* to *V*."""
-    _map(ctx, collection).items[as_key(key)] = value
+def _keys(collection: Term) -> dict[Term, None]:
+    return dict.fromkeys(map(as_key, _items(collection)))
 
 
 @internal_action(".map.get", arity=(3, 4), pure=True)
 def get(ctx: Context, collection: Term, key: Term, value: Term, *default: Term) -> bool:
     """``.map.get(M, K, V[, Default])``: *V* is the value of *K*, or the default. Fails without either."""
-    found = _map(ctx, collection).items.get(as_key(key), *default)
+    found = _find(MapValue, ctx, collection).items.get(as_key(key), *default)
     return found is not None and ctx.unify(value, found)
 
 
 @internal_action(".map.remove", arity=(2, 3))
 def remove_from_map(ctx: Context, collection: Term, key: Term, value: Term = None) -> bool:
     """``.map.remove(M, K[, V])`` removes a key with the value *V*. Fails if the key is not in the map."""
-    removed = _map(ctx, collection).items.pop(as_key(key), None)
+    removed = _find(MapValue, ctx, collection).items.pop(as_key(key), None)
     return removed is not None and (value is None or ctx.unify(value, removed))
-
-
-@internal_action(".map.key", arity=2, backtracks=True, pure=True)
-def key_of_map(ctx: Context, collection: Term, key: Term) -> Iterator[None]:
-    """``.map.key(M, K)``: *K* is a key; one answer for each that unifies, in the standard order."""
-    return _each(ctx, key, list(_map(ctx, collection)))
-
-
-@internal_action(".map.value", arity=2, backtracks=True, pure=True)
-def value_of_map(ctx: Context, collection: Term, value: Term) -> Iterator[None]:
-    """``.map.value(M, V)``: *V* is a value; one answer for each that unifies, in the order of the keys."""
-    source = _map(ctx, collection)
-    return _each(ctx, value, [source.items[key] for key in source])
-
-
-@internal_action(".map.copy", arity=2)
-def copy_map(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.map.copy(M, C)``: *C* is a new map with the same keys and values."""
-    return ctx.unify(copy, MapValue(dict(_map(ctx, collection).items)))
-
-
-@internal_action(".map.clear", arity=1)
-def clear_map(ctx: Context, collection: Term) -> None:
-    """``.map.clear(M)`` removes all keys."""
-    _map(ctx, collection).items.clear()
-
-
-@internal_action(".queue.create", arity=(1, 2))
-def create_queue(ctx: Context, variable: Term, kind: Term = None) -> bool:
-    """``.queue.create(Q[, priority])``: the unbound variable *Q* becomes an empty queue.
-
-    A queue with ``priority`` returns its smallest element first, any other queue the oldest. Fails if *Q* has a value.
-    """
-    priority = isinstance(kind, Functor) and kind.name == "priority"
-    return variable.__class__ is Var and ctx.unify(variable, QueueValue(priority))
-
-
-@internal_action(".queue.add", arity=2)
-def add_to_queue(ctx: Context, collection: Term, item: Term) -> None:
-    """``.queue.add(Q, X)`` adds an element."""
-    _queue(ctx, collection).add(item)
-
-
-@internal_action(".queue.add_all", arity=2)
-def add_all_to_queue(ctx: Context, collection: Term, items: Term) -> None:
-    """``.queue.add_all(Q, C)`` adds the elements of a list, set or queue, in order."""
-    target = _queue(ctx, collection)
-    for item in _items(items):
-        target.add(item)
-
-
-@internal_action(".queue.head", arity=2, pure=True)
-def head(ctx: Context, collection: Term, item: Term) -> bool:
-    """``.queue.head(Q, X)``: *X* is the next element, which stays in the queue. Fails for an empty queue."""
-    found = _queue(ctx, collection).head()
-    return found is not None and ctx.unify(item, found)
-
-
-@internal_action(".queue.remove", arity=2)
-def remove_from_queue(ctx: Context, collection: Term, item: Term) -> bool:
-    """``.queue.remove(Q, X)`` removes the next element, *X*. Fails for an empty queue."""
-    found = _queue(ctx, collection).remove()
-    return found is not None and ctx.unify(item, found)
-
-
-@internal_action(".queue.to_list", arity=2, pure=True)
-def list_of_queue(ctx: Context, collection: Term, result: Term) -> bool:
-    """``.queue.to_list(Q, L)``: *L* is the list of the elements, the next one first."""
-    return ctx.unify(result, _queue(ctx, collection).as_list())
-
-
-@internal_action(".queue.copy", arity=2)
-def copy_queue(ctx: Context, collection: Term, copy: Term) -> bool:
-    """``.queue.copy(Q, C)``: *C* is a new queue with the same elements."""
-    return ctx.unify(copy, _queue(ctx, collection).copy())
-
-
-@internal_action(".queue.clear", arity=1)
-def clear_queue(ctx: Context, collection: Term) -> None:
-    """``.queue.clear(Q)`` removes all elements."""
-    _queue(ctx, collection).clear()
-
-
-def _items(collection: Term) -> list[Term]:
-    return members(collection, "the second argument")
 
 
 # Internal actions on lists; several of them also accept strings, sets and queues.

@@ -8,13 +8,13 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import lower
 from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import WrongArguments, internal_action
-from jacaros.agents.mind.explaining.failure_reason import code_place, nowhere, shown_goal
-from jacaros.agents.mind.rules import goals, waits
+from jacaros.agents.mind.rules import deadlines, goals
+from jacaros.agents.mind.rules.body_steps import bindings_of, is_body_frame, trigger_of, variables_of
 from jacaros.agents.mind.rules.clr_int import achieve, pending_event
 from jacaros.agents.mind.rules.context import Context
+from jacaros.agents.mind.rules.failure_reason import code_place, nowhere, shown_goal
 from jacaros.agents.mind.rules.goals import post_external
 from jacaros.agents.mind.rules.pending import listen, now, set_alarm, watch
-from jacaros.agents.mind.rules.plan_terms import bindings_of, is_body_frame, trigger_of, variables_of
 from jacaros.agents.mind.state.intention import ANNOTATIONS, EVENT_GOAL, GOAL, PLAN, STEP, Frame, Intention
 from jacaros.agents.mind.state.pending import Waiting, is_action, is_supervision
 from jacaros.agents.mind.state.plan import SUSPENDED, Failure
@@ -392,19 +392,19 @@ def wait(ctx: Context, what: Term, limit: Term = None, elapsed: Term = None) -> 
     agent = ctx.agent
     if what.__class__ is float:
         timed = _begin(ctx, (TIME, what), elapsed)
-        timed.pending.append(set_alarm(agent, what / 1000.0, waits.come_true, timed))
+        timed.pending.append(set_alarm(agent, what / 1000.0, deadlines.come_true, timed))
         return timed
     found = trigger_of(what)
     if found is not None:
         waiting = _begin(ctx, rename(found[1]), elapsed)
-        waiting.pending.append(listen(agent, *found[:2], waits.come_true, waiting))
+        waiting.pending.append(listen(agent, *found[:2], deadlines.come_true, waiting))
     elif ctx.succeeds(what):
         return None if elapsed is None else ctx.unify(elapsed, 0.0)
     else:
         waiting = _begin(ctx, rename(what), elapsed)
-        waiting.pending.append(watch(agent, what, waits.see_condition, waiting))
+        waiting.pending.append(watch(agent, what, deadlines.see_condition, waiting))
     if limit is not None:
-        waiting.pending.append(set_alarm(agent, limit / 1000.0, waits.time_out, waiting))
+        waiting.pending.append(set_alarm(agent, limit / 1000.0, deadlines.time_out, waiting))
     return waiting
 
 

@@ -3,16 +3,23 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.generated.building import functor_of_literal
-from jacaros.agents.mind.generated.selection import given_positions
-from jacaros.agents.mind.generated.unit import Written, write_body, write_rule, write_search, write_select
+from jacaros.agents.mind.generated.matching import functor_of_literal
+from jacaros.agents.mind.generated.selection import (
+    Written,
+    given_positions,
+    write_body,
+    write_rule,
+    write_search,
+    write_select,
+)
 from jacaros.agents.mind.rules.add_im import Interpreter, Selection
 from jacaros.agents.mind.rules.searching import run, solve
+from jacaros.agents.mind.state.belief_base import Table
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import STEP, Frame, NextStep
 from jacaros.agents.mind.state.plan import Answers, Every, Plan, Rule, Select
@@ -21,7 +28,7 @@ from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.mind.state.triggers import trigger as trigger_of_kind
 from jacaros.agents.terms.substitution import ATOMIC
 from jacaros.agents.terms.unifier import Trail
-from jacaros.agents.terms.values import CONS, NIL, Functor, List, String, Term, Var, functor
+from jacaros.agents.terms.values import CONS, NIL, List, String, Term, Var, functor
 
 Function = Callable[..., Any]
 
@@ -48,17 +55,6 @@ Search = Callable[..., Iterator[tuple[Term, ...]]]
 _TIMES_ASKED = 10
 
 
-class Predicate(Protocol):
-    """What is searched: a table of the belief base."""
-
-    @property
-    def functor(self) -> Functor:
-        """The name of the predicate."""
-
-    def around(self) -> tuple[list[Any], list[Any]] | None:
-        """What answers before all facts, and what behind all facts; None when they are mixed."""
-
-
 class Searches(dict[int, Search]):
     """The generator functions of a predicate with rules, by pattern of use, each made when it is first wanted.
 
@@ -73,7 +69,7 @@ class Searches(dict[int, Search]):
 
     def __init__(
         self,
-        predicate: Predicate,
+        predicate: Table,
         actions: Mapping[str, InternalAction],
         functions: dict[Any, Any],
         deep: bool = False,
@@ -399,7 +395,7 @@ class Compiler(Interpreter):
             functions[key] = (executed(write_rule(rule.node, self.actions)), rule.written)
         return functions[key][0]
 
-    def searches(self, predicate: Any) -> tuple[Any, Any] | None:
+    def searches(self, predicate: Table) -> tuple[Any, Any] | None:
         """Functions that answer questions for a predicate with rules, and those for deep searches."""
         return (
             Searches(predicate, self.actions, self._functions),

@@ -20,15 +20,20 @@ from typing import Any, cast
 from jacaros.agents.language import nodes
 from jacaros.agents.language.nodes import names_in, operands
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.generated.building import as_name, build, is_number, is_static, tuple_of
 from jacaros.agents.mind.generated.function import TOP, FunctionBuilder
 from jacaros.agents.mind.generated.matching import (
     MAX_DEPTH,
     Then,
+    as_name,
+    build,
+    is_number,
+    is_plain,
+    is_static,
     loop_binding,
     loop_over_answers,
     match,
     match_all,
+    tuple_of,
     undoing,
 )
 from jacaros.agents.mind.generated.queries import TRUTHS, internal_action, literal, query
@@ -46,7 +51,7 @@ def relation(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
     elif node.operator == "=..":
         _deconstruction(fn, node, then)
     else:
-        with fn.writer.block(f"if {comparison(fn, node)}:"):
+        with fn.block(f"if {comparison(fn, node)}:"):
             then()
 
 
@@ -62,7 +67,7 @@ def _deconstruction(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> No
         and left.name not in names_in(right)
     ):
         fn.line(f"{found} = constructed({tuple_of([build(fn, part) for part in parts])})")
-        with fn.writer.block(f"if {found} is not None:"):
+        with fn.block(f"if {found} is not None:"):
             fn.bind(left.name, found)
             then()
         return
@@ -70,7 +75,7 @@ def _deconstruction(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> No
     if len(parts) in (3, 4) and _take_anything(fn, parts):
         values = [fn.local("p") for _ in parts]
         fn.line(f"{found} = deconstructed({known}, {len(parts)})")
-        with fn.writer.block(f"if {found} is not None:"):
+        with fn.block(f"if {found} is not None:"):
             fn.line(f"{tuple_of(values)} = {found}")
             match_all(fn, list(parts), values, then)
         return
@@ -79,7 +84,7 @@ def _deconstruction(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> No
 
 def _take_anything(fn: FunctionBuilder, patterns: tuple[nodes.Term, ...]) -> bool:
     """Whether all are variables, different ones that are met here for the first time."""
-    variables = [each for each in patterns if isinstance(each, nodes.Variable) and _is_plain(each)]
+    variables = [each for each in patterns if isinstance(each, nodes.Variable) and is_plain(each)]
     named = [each.name for each in variables if not each.unnamed]
     return (
         len(variables) == len(patterns)
@@ -120,11 +125,7 @@ def _unification(fn: FunctionBuilder, node: nodes.Relation, then: Then) -> None:
 
 
 def _is_unbound(fn: FunctionBuilder, node: nodes.Variable) -> bool:
-    return _is_plain(node) and not node.unnamed and node.name not in fn.values
-
-
-def _is_plain(node: nodes.Variable) -> bool:
-    return node.annotations is None and node.namespace is None and not node.negated
+    return is_plain(node) and not node.unnamed and node.name not in fn.values
 
 
 _MAX_LOOPS = 12
@@ -135,10 +136,10 @@ _FEW = 24
 def condition(fn: FunctionBuilder, node: nodes.Node, then: Then) -> None:
     """Write the search for answers of *node*, with *then* at its innermost point."""
     fn.at(node)
-    if fn.writer.depth > MAX_DEPTH and not isinstance(node, nodes.Literal | nodes.Variable):
+    if fn.indent > MAX_DEPTH and not isinstance(node, nodes.Literal | nodes.Variable):
         in_own_function(fn, node, then)
         return
-    if fn.writer.loops > _MAX_LOOPS and not isinstance(node, (nodes.Relation, nodes.Not)):
+    if fn.loops > _MAX_LOOPS and not isinstance(node, (nodes.Relation, nodes.Not)):
         in_own_function(fn, node, then)
         return
     with fn.branch():
@@ -159,7 +160,7 @@ def _all(fn: FunctionBuilder, formulae: list[nodes.Node], then: Then) -> None:
     if not formulae:
         then()
         return
-    if len(formulae) > 1 and (fn.writer.depth > MAX_DEPTH or fn.writer.loops > _MAX_LOOPS):
+    if len(formulae) > 1 and (fn.indent > MAX_DEPTH or fn.loops > _MAX_LOOPS):
         in_own_function(fn, _joined(formulae), then)
         return
     first, *others = formulae
@@ -176,9 +177,7 @@ def _joined(formulae: list[Any]) -> nodes.Node:
 
 
 def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
-    if not (fn.trampoline or fn.snapshot or fn.writer.loops > _MAX_LOOPS) and _not_in_place(
-        fn, node.operand, then
-    ):
+    if not (fn.trampoline or fn.snapshot or fn.loops > _MAX_LOOPS) and _not_in_place(fn, node.operand, then):
         return
     call = question(fn, node.operand, [])
     if fn.trampoline:
@@ -189,14 +188,14 @@ def _not(fn: FunctionBuilder, node: nodes.Not, then: Then) -> None:
         head = f"if {found} is None:"
     else:
         head = f"if not exists({call}, t):"
-    with fn.writer.block(head):
+    with fn.block(head):
         then()
 
 
 def _not_in_place(fn: FunctionBuilder, node: nodes.Node, then: Then) -> bool:
     """Write the search for something that must have no answer right here, if it is a simple one."""
     if isinstance(node, nodes.Relation) and not BINARY[node.operator].binds:
-        with fn.writer.block(f"if not ({comparison(fn, node)}):"):
+        with fn.block(f"if not ({comparison(fn, node)}):"):
             then()
         return True
     if not isinstance(node, nodes.Literal) or node.functor in TRUTHS:
@@ -218,7 +217,7 @@ def _not_in_place(fn: FunctionBuilder, node: nodes.Node, then: Then) -> bool:
     with fn.branch():
         query(fn, node, answered)
     fn.line(f"if len(t) > {mark}: undo(t, {mark})")
-    with fn.writer.block(f"if not {found}:"):
+    with fn.block(f"if not {found}:"):
         then()
     return True
 
@@ -247,7 +246,7 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
     name = fn.unit.fresh_function("answers")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(node)
-    with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
+    with inner.function(name, "agent", "t", "d", *(f"v_{c}" for c in captured)):
         if isinstance(node, nodes.Or):
             for side in operands(node):
                 with inner.branch():
@@ -256,7 +255,6 @@ def question(fn: FunctionBuilder, node: nodes.Node, results: list[str]) -> str:
             condition(inner, node, lambda: _yield(inner, results))
         inner.line("return")
         inner.line("yield")
-    fn.unit.add(inner.writer)
     return _called(fn, name, captured)
 
 
@@ -290,7 +288,7 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
     name = fn.unit.fresh_function("collect")
     inner.values = {c: f"v_{c}" for c in captured}
     inner.at(formula)
-    with inner.writer.block(f"def {name}(agent, t, d{''.join(f', v_{c}' for c in captured)}):"):
+    with inner.function(name, "agent", "t", "d", *(f"v_{c}" for c in captured)):
         inner.line("found = []")
         inner.line("room = t.room")
         inner.line("if d <= 0: t.room = agent.options.rule_depth")  # what asks counts its rules by itself
@@ -304,7 +302,6 @@ def collect(fn: FunctionBuilder, template: nodes.Node, formula: nodes.Node) -> s
         condition(inner, formula, found)
         inner.line("t.room = room")
         inner.line("return found")
-    fn.unit.add(inner.writer)
     return _called(fn, name, captured)
 
 

@@ -1,143 +1,79 @@
-"""One generated Python function: its text and what is known about variables at the point being written."""
+"""Generated Python functions and their units: text, constants, and what is known of variables at the present point."""
 
 import ast
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import groupby
 from types import CodeType
-from typing import Protocol
+from typing import Any
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.mind.generated import runtime
 from jacaros.agents.mind.state.intention import FIRST_SLOT
 from jacaros.agents.mind.state.plan import Plan
-from jacaros.agents.terms.values import Term
-
-# Python source being written: indentation, fresh names, and the AgentSpeak line behind each line of the compiled code.
-
+from jacaros.agents.mind.state.triggers import Trigger
+from jacaros.agents.terms.values import Functor, String, Term
 
 _READ = re.compile(r" +(v\d+) = deref\(\w+\)")
 _SETTLED = re.compile(r"\bv\d+\b")
-
-
-class Writer:
-    """Collects the lines of one piece of generated code.
-
-    Attributes:
-        file, origin: file and line of the agent program that the next lines come from.
-        files, origins: the same of each line that is written.
-        loops: how many loops are open; Python allows 20 nested ones.
-    """
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self.files: list[SourceFile | None] = []
-        self.origins: list[int] = []
-        self.file: SourceFile | None = None
-        self.origin = 1
-        self.depth = 0
-        self.loops = 0
-        self._count = 0
-
-    def line(self, text: str) -> None:
-        """Write one line."""
-        self.lines.append("    " * self.depth + text)
-        self.files.append(self.file)
-        self.origins.append(self.origin)
-
-    def fresh(self, prefix: str = "t") -> str:
-        """A local name that is used nowhere else."""
-        self._count += 1
-        return f"{prefix}{self._count}"
-
-    @contextmanager
-    def block(self, head: str) -> Iterator[None]:
-        """A compound statement; the lines written inside belong to it."""
-        self.line(head)
-        self.depth += 1
-        loop = head.startswith(("for ", "while "))
-        self.loops += loop
-        before = len(self.lines)
-        yield
-        if len(self.lines) == before:
-            self.line("pass")
-        self.loops -= loop
-        self.depth -= 1
-
-    def prune(self) -> None:
-        """Remove the values of variables that are read and never used."""
-        names = Counter(name for line in self.lines for name in _SETTLED.findall(line))
-        kept = [
-            index
-            for index, line in enumerate(self.lines)
-            if (read := _READ.fullmatch(line)) is None or names[read[1]] > 1
-        ]
-        self.lines = [self.lines[i] for i in kept]
-        self.files = [self.files[i] for i in kept]
-        self.origins = [self.origins[i] for i in kept]
-
-    def text(self) -> str:
-        """The source."""
-        return "\n".join(self.lines) + "\n"
-
-
-def compile_all(writers: Iterable[Writer], filename: str) -> CodeType:
-    """Python code of several pieces, whose line numbers are those of the agent program *filename*."""
-    lines: list[str] = []
-    origins = [0]
-    for writer in writers:
-        lines += writer.lines
-        origins += writer.origins
-    origins.append(origins[-1])
-    return compile_text("\n".join(lines) + "\n", origins, filename)
-
-
-def compile_text(text: str, origins: Sequence[int], filename: str) -> CodeType:
-    """Compile *text*; its line n gets the number ``origins[n]`` of the file *filename*."""
-    tree = ast.parse(text)
-    _move(tree, origins)
-    return compile(tree, filename, "exec")
-
-
-def _move(tree: ast.AST, origins: Sequence[int]) -> None:
-    """Give each node of a syntax tree the line that its own line comes from.
-
-    Written without `ast.walk`, which takes longer than the compiler.
-    """
-    stack: list[ast.AST] = [tree]
-    while stack:
-        parts = stack.pop().__dict__
-        if "lineno" in parts:
-            parts["lineno"] = parts["end_lineno"] = origins[parts["lineno"]]
-            parts["col_offset"] = parts["end_col_offset"] = 0
-        for part in parts.values():
-            if part.__class__ is list:
-                stack += [item for item in part if isinstance(item, ast.AST)]
-            elif isinstance(part, ast.AST):
-                stack.append(part)
 
 
 TOP = "NESTED"
 """The `FunctionBuilder.depth` of a function that no other search has called."""
 
 
-class Unit(Protocol):
-    """The unit that the function becomes part of: constants, and further functions."""
+class CodeUnit:
+    """Collects functions and constants.
 
-    @property
-    def actions(self) -> Mapping[str, InternalAction]:
-        """The internal actions known at compile time."""
+    Attributes:
+        actions: the internal actions known at compile time.
+        globals: the names that the functions use.
+        functions: those that are written.
+    """
+
+    def __init__(self, filename: str, actions: Mapping[str, InternalAction]) -> None:
+        self.filename = filename
+        self.actions = actions
+        self.globals: dict[str, Any] = dict(runtime.NAMES)
+        self.functions: list[FunctionBuilder] = []
+        self._constants: dict[Any, str] = {}
+        self._count = 0
 
     def constant(self, value: Term) -> str:
-        """A global name for a value."""
-
-    def add(self, writer: Writer) -> None:
-        """Make the finished function part of the unit."""
+        """A global name for a value; equal values share it."""
+        key: Any = value if value.__class__ in (Functor, Trigger) else (value.__class__, id(value))
+        if value.__class__ in (String, float, int):
+            key = (value.__class__, value)
+        name = self._constants.get(key)
+        if name is None:
+            name = self._constants[key] = f"{_prefix(value)}_{len(self._constants)}"
+            self.globals[name] = value
+        return name
 
     def fresh_function(self, prefix: str) -> str:
         """A name for another function."""
+        self._count += 1
+        return f"{prefix}{self._count}"
+
+    def code(self) -> list[CodeType]:
+        """Compile what has been written.  A code object has but one file, and plans may be included."""
+        return [
+            compile_all(functions, filename) for filename, functions in groupby(self.functions, self._file_of)
+        ]
+
+    def _file_of(self, function: "FunctionBuilder") -> str:
+        file = function.files[0]
+        return self.filename if file is None else file.name
+
+
+def _prefix(value: Term) -> str:
+    name = getattr(value, "name", None) or getattr(value, "__name__", None) or value.__class__.__name__
+    text = "".join(c if c.isalnum() and c.isascii() else "_" for c in str(name))
+    return f"K_{text}"
 
 
 class FrameLayout:
@@ -168,9 +104,12 @@ class FrameLayout:
 
 
 class FunctionBuilder:
-    """A function being written.
+    """A function being written: its lines, indentation and fresh names, and what is known of variables at this point.
 
     Attributes:
+        file, origin: file and line of the agent program that the next lines come from.
+        files, origins: the same of each line that is written.
+        loops: how many loops are open; Python allows 20 nested ones.
         values: Python expression (a local name) of each variable that has a value here.
         asked: variables that were given a `Var` in this function.
         fresh: variables that got their value in this function, in order.
@@ -181,10 +120,15 @@ class FunctionBuilder:
     """
 
     def __init__(
-        self, unit: Unit, *, trampoline: bool = False, snapshot: bool = False, depth: str = TOP
+        self, unit: CodeUnit, *, trampoline: bool = False, snapshot: bool = False, depth: str = TOP
     ) -> None:
         self.unit = unit
-        self.writer = Writer()
+        self.lines: list[str] = []
+        self.files: list[SourceFile | None] = []
+        self.origins: list[int] = []
+        self.file: SourceFile | None = None
+        self.origin = 1
+        self.indent = self.loops = self._count = 0
         self.values: dict[str, str] = {}
         self.fresh: list[str] = []
         self.asked: set[str] = set()
@@ -193,14 +137,50 @@ class FunctionBuilder:
         self.depth = "0" if trampoline else depth
         self.quiet = True
 
+    @contextmanager
+    def function(self, name: str, *parameters: str) -> Iterator[None]:
+        """Write the function itself, which becomes part of its unit."""
+        with self.block(f"def {name}({', '.join(parameters)}):"):
+            yield
+        self._prune()
+        self.unit.functions.append(self)
+
     def line(self, text: str) -> None:
         """Write a line."""
-        self.writer.line(text)
+        self.lines.append("    " * self.indent + text)
+        self.files.append(self.file)
+        self.origins.append(self.origin)
+
+    @contextmanager
+    def block(self, head: str) -> Iterator[None]:
+        """A compound statement; the lines written inside belong to it."""
+        self.line(head)
+        self.indent += 1
+        loop = head.startswith(("for ", "while "))
+        self.loops += loop
+        before = len(self.lines)
+        yield
+        if len(self.lines) == before:
+            self.line("pass")
+        self.loops -= loop
+        self.indent -= 1
+
+    def _prune(self) -> None:
+        """Remove the values of variables that are read and never used."""
+        names = Counter(name for line in self.lines for name in _SETTLED.findall(line))
+        kept = [
+            index
+            for index, line in enumerate(self.lines)
+            if (read := _READ.fullmatch(line)) is None or names[read[1]] > 1
+        ]
+        self.lines = [self.lines[i] for i in kept]
+        self.files = [self.files[i] for i in kept]
+        self.origins = [self.origins[i] for i in kept]
 
     def at(self, node: nodes.Node) -> None:
         """The next lines stem from this node."""
         if node.span is not None:
-            self.writer.file, self.writer.origin = node.span.file, node.span.line
+            self.file, self.origin = node.span.file, node.span.line
 
     def constant(self, value: Term) -> str:
         """A global name for a value."""
@@ -208,7 +188,8 @@ class FunctionBuilder:
 
     def local(self, prefix: str = "t") -> str:
         """A local name that is used nowhere else."""
-        return self.writer.fresh(prefix)
+        self._count += 1
+        return f"{prefix}{self._count}"
 
     def bind(self, name: str, expression: str | None = None) -> str:
         """Give a variable its value here; returns the local name."""
@@ -261,8 +242,38 @@ class FunctionBuilder:
                 self.line(f"frame[{frame.slots[name]}] = {self.values[name]}")
         frame.asked |= self.asked
 
-    def mark_stored(self, frame: FrameLayout) -> None:
-        """Take note that the fresh variables have a value from now on."""
-        for name in self.fresh:
-            if name in frame.slots:
-                frame.states[name] = "set"
+
+def compile_all(functions: "Iterable[FunctionBuilder]", filename: str) -> CodeType:
+    """Python code of several functions, whose line numbers are those of the agent program *filename*."""
+    lines: list[str] = []
+    origins = [0]
+    for function in functions:
+        lines += function.lines
+        origins += function.origins
+    origins.append(origins[-1])
+    return compile_text("\n".join(lines) + "\n", origins, filename)
+
+
+def compile_text(text: str, origins: Sequence[int], filename: str) -> CodeType:
+    """Compile *text*; its line n gets the number ``origins[n]`` of the file *filename*."""
+    tree = ast.parse(text)
+    _move(tree, origins)
+    return compile(tree, filename, "exec")
+
+
+def _move(tree: ast.AST, origins: Sequence[int]) -> None:
+    """Give each node of a syntax tree the line that its own line comes from.
+
+    Written without `ast.walk`, which takes longer than the compiler.
+    """
+    stack: list[ast.AST] = [tree]
+    while stack:
+        parts = stack.pop().__dict__
+        if "lineno" in parts:
+            parts["lineno"] = parts["end_lineno"] = origins[parts["lineno"]]
+            parts["col_offset"] = parts["end_col_offset"] = 0
+        for part in parts.values():
+            if part.__class__ is list:
+                stack += [item for item in part if isinstance(item, ast.AST)]
+            elif isinstance(part, ast.AST):
+                stack.append(part)

@@ -1,25 +1,21 @@
-"""Code that matches a pattern with a value (heads of plans and rules, rows of beliefs) and loops over answers.
+"""Code that builds terms, matches patterns with values (heads of plans and rules, rows of beliefs), and loops over answers.
 
 Everything is written in continuation style: ``match(fn, pattern, value, then)`` writes the test, and inside it
 whatever *then* writes.  A pattern that meets a structure is taken apart in place; whatever is rarer (an unbound
 variable, annotations, arithmetic) goes to `unify`.
 """
 
+import math
 from collections.abc import Callable, Sequence
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.nodes import names_in
-from jacaros.agents.mind.generated.building import (
-    annotation_parts,
-    build,
-    constant_value,
-    functor_of_literal,
-    is_static,
-    resolved,
-    tuple_of,
-)
+from jacaros.agents.language.lowering import lower
+from jacaros.agents.language.nodes import names_in, variables_in
 from jacaros.agents.mind.generated.function import FunctionBuilder
-from jacaros.agents.terms.values import CONS, SOURCE
+from jacaros.agents.terms.operators import named
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.substitution import resolve
+from jacaros.agents.terms.values import CONS, FUNCTION, SOURCE, Functor, Term, functor
 
 Then = Callable[[], None]
 _SHORT_LIST = 4
@@ -31,7 +27,7 @@ def match(
     fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True
 ) -> None:
     """Match one pattern with the value of a local name."""
-    if isinstance(pattern, nodes.Variable) and _is_plain(pattern):
+    if isinstance(pattern, nodes.Variable) and is_plain(pattern):
         _match_variable(fn, pattern, value, then)
     elif isinstance(pattern, nodes.Number):
         number = build(fn, pattern)  # infinite ones are not Python literals
@@ -42,7 +38,7 @@ def match(
     elif _is_atom(pattern):
         symbol = build(fn, pattern)
         _test(fn, f"{value} is {symbol} or ({_open(symbol, value)})", then)
-    elif isinstance(pattern, nodes.Literal) and _is_plain(pattern) and _is_taken_apart(pattern):
+    elif isinstance(pattern, nodes.Literal) and is_plain(pattern) and _is_taken_apart(pattern):
         symbol = fn.constant(functor_of_literal(pattern))
         _match_structure(fn, symbol, pattern.arguments, value, then)
     elif isinstance(pattern, nodes.ListTerm) and _is_taken_apart_list(pattern):
@@ -62,7 +58,7 @@ def _open(expected: str, value: str) -> str:
 def _is_atom(pattern: nodes.Node) -> bool:
     if isinstance(pattern, nodes.ListTerm):
         return not pattern.items and pattern.tail is None
-    return isinstance(pattern, nodes.Literal) and not pattern.arguments and _is_plain(pattern)
+    return isinstance(pattern, nodes.Literal) and not pattern.arguments and is_plain(pattern)
 
 
 def _is_taken_apart(pattern: nodes.Literal) -> bool:
@@ -78,7 +74,8 @@ def _is_taken_apart_list(pattern: nodes.ListTerm) -> bool:
     return len(pattern.items) == 1 or len(pattern.items) <= _SHORT_LIST
 
 
-def _is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:
+def is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:
+    """Whether nothing stands around a variable or literal that is known only at run time."""
     if pattern.annotations is not None:
         return False
     if isinstance(pattern, nodes.Variable):
@@ -87,7 +84,7 @@ def _is_plain(pattern: nodes.Variable | nodes.Literal) -> bool:
 
 
 def _test(fn: FunctionBuilder, condition: str, then: Then) -> None:
-    with fn.writer.block(f"if {condition}:"):
+    with fn.block(f"if {condition}:"):
         then()
 
 
@@ -111,7 +108,7 @@ def _match_list(
 
     def of_list(value: str, parts: list[str], found: str) -> None:
         first, rest = first_and_rest
-        with fn.writer.block(f"elif {value}.__class__ is List:"):
+        with fn.block(f"elif {value}.__class__ is List:"):
             fn.line(f"{found} = True")
             if not _is_anything(first):
                 fn.line(f"{parts[0]} = {value}.stack[{value}.size - 1]")
@@ -122,7 +119,7 @@ def _match_list(
 
 
 def _is_anything(pattern: nodes.Node) -> bool:
-    return isinstance(pattern, nodes.Variable) and pattern.unnamed and _is_plain(pattern)
+    return isinstance(pattern, nodes.Variable) and pattern.unnamed and is_plain(pattern)
 
 
 def _match_structure(
@@ -141,19 +138,19 @@ def _match_structure(
     found = fn.local("m")
     outer, value = value, fn.local("d")
     fn.line(f"{value} = deref({outer}) if {outer}.__class__ is Var else {outer}")
-    with fn.writer.block(f"if {value}.__class__ is tuple:"):
+    with fn.block(f"if {value}.__class__ is tuple:"):
         fn.line(f"{found} = {value}[0] is {symbol}")
         fn.line(f"if {found}: _, {', '.join(parts)} = {value}")
     if otherwise is not None:
         otherwise(value, parts, found)
-    with fn.writer.block(f"elif {value}.__class__ in CLOSED:"):
+    with fn.block(f"elif {value}.__class__ in CLOSED:"):
         fn.line(f"{found} = False")
-    with fn.writer.block("else:"):
+    with fn.block("else:"):
         for part, argument in zip(parts, arguments, strict=True):
             name = argument.name if isinstance(argument, nodes.Variable) and not argument.unnamed else "_"
             fn.line(f"{part} = Var({name!r})")
         fn.line(f"{found} = unify({tuple_of([symbol, *parts])}, {value}, t)")
-    with fn.writer.block(f"if {found}:"):
+    with fn.block(f"if {found}:"):
         match_all(fn, list(arguments), parts, then)
 
 
@@ -167,7 +164,7 @@ def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str]
     if not patterns:
         then()
         return
-    if fn.writer.depth > MAX_DEPTH:
+    if fn.indent > MAX_DEPTH:
         _match_together(fn, patterns, values, then)
         return
     match(fn, patterns[0], values[0], lambda: match_all(fn, patterns[1:], values[1:], then))
@@ -175,7 +172,7 @@ def match_all(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str]
 
 def _only_binds(fn: FunctionBuilder, pattern: nodes.Node) -> bool:
     """Return whether any value matches: the pattern is a variable that occurs for the first time."""
-    return isinstance(pattern, nodes.Variable) and _is_plain(pattern) and fn.values.get(pattern.name) is None
+    return isinstance(pattern, nodes.Variable) and is_plain(pattern) and fn.values.get(pattern.name) is None
 
 
 def _nothing() -> None:
@@ -185,7 +182,7 @@ def _nothing() -> None:
 def _match_together(fn: FunctionBuilder, patterns: list[nodes.Node], values: list[str], then: Then) -> None:
     """Match many patterns in one test: Python allows no more than 100 levels of indentation."""
     expected = tuple_of([build(fn, pattern) for pattern in patterns])
-    with fn.writer.block(f"if unify_rows({expected}, {tuple_of(values)}, t):"):
+    with fn.block(f"if unify_rows({expected}, {tuple_of(values)}, t):"):
         settle_fresh(fn, names_in(*patterns))
         then()
 
@@ -194,7 +191,7 @@ def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then,
     """Build the pattern as a term and unify."""
     expected = build(fn, pattern)
     left, right = (expected, value) if pattern_left else (value, expected)
-    with fn.writer.block(f"if unify({left}, {right}, t):"):
+    with fn.block(f"if unify({left}, {right}, t):"):
         settle_fresh(fn, names_in(pattern))
         then()
 
@@ -216,12 +213,12 @@ def loop_over_answers(fn: FunctionBuilder, generator: str, targets: list[str], t
     if fn.trampoline:
         source, answer = fn.local("g"), fn.local("r")
         fn.line(f"{source} = {generator}")
-        with fn.writer.block(f"while ({answer} := (yield {source})) is not None:"):
+        with fn.block(f"while ({answer} := (yield {source})) is not None:"):
             if targets:
                 fn.line(f"{tuple_of(targets)} = {answer}")
             then()
     else:
-        with fn.writer.block(f"for {tuple_of(targets) if targets else '_'} in {generator}:"):
+        with fn.block(f"for {tuple_of(targets) if targets else '_'} in {generator}:"):
             then()
 
 
@@ -241,7 +238,7 @@ def undoing(fn: FunctionBuilder, test: str, names: list[str], then: Then) -> Non
     """Write a test that may bind variables; the bindings are undone when the search continues."""
     mark = fn.local("n")
     fn.line(f"{mark} = len(t)")
-    with fn.writer.block(f"if {test}:"):
+    with fn.block(f"if {test}:"):
         settle_fresh(fn, names)
         then()
     fn.line(f"if len(t) > {mark}: undo(t, {mark})")
@@ -322,7 +319,7 @@ def each_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then:
         then()
         return
     candidate, mark = fn.local("c"), fn.local("n")
-    with fn.writer.block(f"for {candidate} in {held}:"):
+    with fn.block(f"for {candidate} in {held}:"):
         _pass_over_others(fn, patterns[0], candidate)
         fn.line(f"{mark} = len(t)")
         match(fn, patterns[0], candidate, lambda: each_match(fn, patterns[1:], held, then))
@@ -358,13 +355,207 @@ def first_match(fn: FunctionBuilder, patterns: list[nodes.Term], held: str, then
                 fn.line("break")
                 known.update(fn.values)
 
-        with fn.writer.block(f"for {candidate} in {held}:"):
+        with fn.block(f"for {candidate} in {held}:"):
             _pass_over_others(fn, patterns[index], candidate)
             fn.line(f"{mark} = len(t)")
             match(fn, patterns[index], candidate, matched)
             fn.line(f"if len(t) > {mark}: undo(t, {mark})")
 
     one(0)
-    with fn.writer.block(f"if {found}:"):
+    with fn.block(f"if {found}:"):
         fn.values = known
         then()
+
+
+# Code that builds terms: an expression for the value of a piece of syntax.
+
+_STATIC = (nodes.Literal, nodes.ListTerm, nodes.String)
+_LONG_LIST = 12
+
+
+def build(fn: FunctionBuilder, node: nodes.Node) -> str:
+    """An expression (a name or a small literal) for the value of a term; variables without value get a `Var`."""
+    if isinstance(node, nodes.Number):
+        return (
+            repr(node.value)
+            if node.value.__class__ is float and math.isfinite(node.value)
+            else _const(fn, node)
+        )
+    if isinstance(node, nodes.Constant):
+        return fn.constant(node.value)
+    if isinstance(node, nodes.Variable):
+        return _variable(fn, node)
+    if isinstance(node, _STATIC) and is_static(node):
+        return _const(fn, node)
+    return _COMPOUND[type(node)](fn, node)
+
+
+def written(node: nodes.Node) -> Term | None:
+    """The value of a term that is the same at every evaluation; None for others."""
+    return resolve(lower(node, _no_variable)) if isinstance(node, _STATIC) and is_static(node) else None
+
+
+def is_static(node: object) -> bool:
+    """Whether a term is the same at every evaluation."""
+    if any(True for _ in variables_in(node)):
+        return False
+    return not _has_calls(node)
+
+
+def _has_calls(node: object) -> bool:
+    if isinstance(node, (nodes.FunctionCall, nodes.Constant)):
+        return True
+    if isinstance(node, nodes.Arithmetic):
+        # A division may have no result, which is for the plan to see when it comes to it.
+        return named(node.operator, len(node.operands)).partial or _has_calls(node.operands)
+    if isinstance(node, tuple):
+        return any(_has_calls(item) for item in node)
+    if isinstance(node, nodes.Literal):
+        return _has_calls(node.arguments) or (
+            node.annotations is not None and _has_calls(node.annotations.items)
+        )
+    if isinstance(node, nodes.ListTerm):
+        return _has_calls(node.items) or (node.tail is not None and _has_calls(node.tail))
+    return not isinstance(node, (nodes.Number, nodes.String))
+
+
+def _const(fn: FunctionBuilder, node: nodes.Node) -> str:
+    return fn.constant(constant_value(node))
+
+
+def constant_value(node: nodes.Node) -> Term:
+    """The value of a term that is the same at every evaluation."""
+    return resolve(lower(node, _no_variable))
+
+
+def _no_variable(name: str) -> object:
+    raise KeyError(name)
+
+
+def variable(fn: FunctionBuilder, name: str) -> str:
+    """The value of a variable; one without value gets a `Var` of its own."""
+    value = fn.values.get(name)
+    return value if value is not None else fn.bind(name, f'Var("{name}")')
+
+
+def _variable(fn: FunctionBuilder, node: nodes.Variable) -> str:
+    value = f'Var("{node.name}")' if node.unnamed else variable(fn, node.name)
+    if node.namespace is not None or node.negated:
+        value = f"qualify({value}, {namespace(fn, node.namespace)}, {node.negated})"
+    return _annotated(fn, value, node.annotations)
+
+
+def functor_of_literal(literal: nodes.Literal) -> Functor:
+    """The functor of a literal whose namespace is known when the plan is compiled."""
+    assert not isinstance(literal.namespace, nodes.Variable)
+    return functor(literal.functor, len(literal.arguments), literal.negated, literal.namespace)
+
+
+def namespace(fn: FunctionBuilder, value: str | nodes.Variable | None) -> str:
+    """An expression for a namespace."""
+    if isinstance(value, nodes.Variable):
+        return f"namespace_name({variable(fn, value.name)})"
+    return repr(value)
+
+
+def _annotated(fn: FunctionBuilder, value: str, annotations: nodes.Annotations | None) -> str:
+    if annotations is None:
+        return value
+    items, tail = annotation_parts(fn, annotations)
+    return f"Annotated({value}, {items}, {tail})"
+
+
+def annotation_parts(fn: FunctionBuilder, annotations: nodes.Annotations) -> tuple[str, str]:
+    """Expressions for the sorted annotations and for the tail."""
+    tail = "None" if annotations.tail is None else build(fn, annotations.tail)
+    if all(is_static(item) for item in annotations.items):
+        from_terms = tuple(map(constant_value, annotations.items))
+        return fn.constant(annotation_set(from_terms)), tail
+    items = tuple_of([build(fn, item) for item in annotations.items])
+    return (f"annotation_set({items})" if len(annotations.items) > 1 else items), tail
+
+
+def tuple_of(items: list[str]) -> str:
+    """A tuple display."""
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
+
+
+def _literal(fn: FunctionBuilder, node: nodes.Literal) -> str:
+    arguments = [build(fn, a) for a in node.arguments]
+    if isinstance(node.namespace, nodes.Variable):
+        parts = ", ".join([repr(node.functor), repr(node.negated), namespace(fn, node.namespace), *arguments])
+        value = f"literal_in({parts})"
+    else:
+        symbol = fn.constant(functor_of_literal(node))
+        value = tuple_of([symbol, *arguments]) if arguments else symbol
+    return _annotated(fn, value, node.annotations)
+
+
+def _list(fn: FunctionBuilder, node: nodes.ListTerm) -> str:
+    if node.tail is None:
+        return f"make_list({tuple_of([build(fn, i) for i in node.items])})"
+    tail = build(fn, node.tail)
+    items = [build(fn, i) for i in node.items]
+    if len(items) > _LONG_LIST:
+        return f"make_list({tuple_of(items)}, {tail})"
+    for item in reversed(items):
+        tail = f"(CONS, {item}, {tail})"
+    return tail
+
+
+def _arithmetic(fn: FunctionBuilder, node: nodes.Arithmetic) -> str:
+    operands = [as_name(fn, build(fn, o)) for o in node.operands]
+    result = fn.local()
+    value = named(node.operator, len(operands)).code_for(*operands)
+    tests = [f"{o}.__class__ is float" for o in dict.fromkeys(operands) if not is_number(o)]
+    if tests:
+        value += f' if {" and ".join(tests)} else calculated("{node.operator}", {", ".join(operands)})'
+    fn.line(f"{result} = {value}")
+    return result
+
+
+def is_number(expression: str) -> bool:
+    """Whether the expression is a number literal."""
+    return expression[0].isdigit() or expression[0] == "-"
+
+
+def as_name(fn: FunctionBuilder, expression: str) -> str:
+    """The expression as something that may be written twice."""
+    if expression.isidentifier() or is_number(expression):
+        return expression
+    name = fn.local()
+    fn.line(f"{name} = {expression}")
+    return name
+
+
+def resolved(fn: FunctionBuilder, expression: str) -> str:
+    """The expression with all bindings applied."""
+    if is_number(expression):
+        return expression
+    name = as_name(fn, expression)
+    return f"{name} if {name}.__class__ in ATOMIC else resolve({name})"
+
+
+def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:
+    arguments = [build(fn, a) for a in node.arguments]
+    symbol = fn.constant(functor(node.name, len(arguments), kind=FUNCTION))
+    result = fn.local()
+    fn.line(f"{result} = agent.call_function({tuple_of([symbol, *arguments])})")
+    return result
+
+
+def _lowered(fn: FunctionBuilder, node: nodes.Node) -> str:
+    """A formula, plan, rule or body as a term, which is made as an interpreted step makes it: few programs need many."""
+    values = ", ".join(f"{name!r}: {variable(fn, name)}" for name in names_in(node))
+    return f"lower({fn.constant(node)}, Names({{{values}}}).__getitem__)"
+
+
+_COMPOUND: dict[type, Callable[..., str]] = {
+    nodes.String: _const,
+    nodes.Literal: _literal,
+    nodes.ListTerm: _list,
+    nodes.Arithmetic: _arithmetic,
+    nodes.FunctionCall: _function,
+    **dict.fromkeys((nodes.Relation, nodes.Not, nodes.And, nodes.Or, nodes.InternalAction), _lowered),
+    **dict.fromkeys((nodes.PlanTerm, nodes.TriggerTerm, nodes.RuleTerm, nodes.BodyTerm), _lowered),
+}

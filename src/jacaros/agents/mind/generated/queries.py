@@ -3,26 +3,25 @@
 from jacaros.agents.language import nodes
 from jacaros.agents.language.nodes import names_in
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.generated.building import (
+from jacaros.agents.mind.generated.function import TOP, FunctionBuilder
+from jacaros.agents.mind.generated.matching import (
+    Then,
     annotation_parts,
     as_name,
     build,
     constant_value,
+    each_match,
     functor_of_literal,
     is_number,
+    is_plain,
     is_static,
-    resolved,
-    tuple_of,
-)
-from jacaros.agents.mind.generated.function import TOP, FunctionBuilder
-from jacaros.agents.mind.generated.matching import (
-    Then,
-    each_match,
     loop_binding,
     match,
     match_all,
     patterns_in_order,
+    resolved,
     settle_fresh,
+    tuple_of,
     undoing,
 )
 from jacaros.agents.terms.substitution import is_key
@@ -104,7 +103,7 @@ class QueryArguments:
         if is_static(pattern):
             return [] if is_key(constant_value(pattern)) else None
         if isinstance(pattern, nodes.Variable):
-            if pattern.unnamed or pattern.negated or pattern.annotations or pattern.namespace is not None:
+            if pattern.unnamed or not is_plain(pattern):
                 return None
             return [f"{self.fn.values[pattern.name]}.__class__ in ATOMIC"]
         if isinstance(pattern, nodes.Literal) and pattern.annotations is None:
@@ -169,7 +168,7 @@ def literal(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
         if node.functor == "true":
             then()
         else:
-            with fn.writer.block("if False:"):
+            with fn.block("if False:"):
                 then()
         return
     if isinstance(node.namespace, nodes.Variable):
@@ -202,7 +201,7 @@ def query(fn: FunctionBuilder, node: nodes.Literal, then: Then) -> None:
         source = f"{rows} if {test} else run({deep}, agent.options.rule_depth)"
     else:
         source = _rows_at_once(fn, table, arguments, rows)
-    with fn.writer.block(f"for {arguments.target} in ({source}):"):
+    with fn.block(f"for {arguments.target} in ({source}):"):
         arguments.match_rest(then)
 
 
@@ -227,7 +226,7 @@ def _trampolined_rows(
     source, fast, row = fn.local("g"), fn.local("f"), fn.local("r")
     fn.line(f"{fast} = {test}")
     fn.line(f"{source} = iter({rows}) if {fast} else {general}")
-    with fn.writer.block("while True:"):
+    with fn.block("while True:"):
         fn.line(f"{row} = next({source}, None) if {fast} else (yield {source})")
         fn.line(f"if {row} is None: break")
         if arguments.target != "_":
@@ -261,7 +260,7 @@ def _rows_with_annotations(
     general = f"solve_held(agent, {table}, {tuple_of(arguments.terms)}, t)"
     test = " and ".join([f"{table}.plain", *arguments.tests])
     rows = arguments.rows_and_annotations(table)
-    with fn.writer.block(
+    with fn.block(
         f"for {arguments.target}, {held} in ({rows} if {test} else run({general}, agent.options.rule_depth)):"
     ):
         arguments.match_rest(lambda: each_match(fn, patterns, held, then))
@@ -291,7 +290,7 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
         variable, *others = node.arguments
         rest = "".join(f", {resolved(fn, build(fn, a))}" for a in others)
         value = fn.local("c")
-        with fn.writer.block(f"for {value} in values_of(agent.context, {constant}{rest}):"):
+        with fn.block(f"for {value} in values_of(agent.context, {constant}{rest}):"):
             match(fn, variable, value, then)
         return
     arguments = "".join(f", {resolved(fn, build(fn, a))}" for a in node.arguments)
@@ -307,7 +306,7 @@ def internal_action(fn: FunctionBuilder, node: nodes.InternalAction, then: Then)
     else:
         mark = fn.local("n")
         fn.line(f"{mark} = len(t)")
-        with fn.writer.block(f"for _ in answers_of(agent.context, t, {constant}{arguments}):"):
+        with fn.block(f"for _ in answers_of(agent.context, t, {constant}{arguments}):"):
             settle_fresh(fn, names)
             then()
         fn.line(f"if len(t) > {mark}: undo(t, {mark})")
@@ -320,9 +319,7 @@ def _gives_values(fn: FunctionBuilder, action: InternalAction, node: nodes.Inter
     variable, *others = node.arguments
     return (
         isinstance(variable, nodes.Variable)
-        and variable.annotations is None
-        and variable.namespace is None
-        and not variable.negated
+        and is_plain(variable)
         and (variable.unnamed or variable.name not in fn.values)
         and all(name in fn.values and name != variable.name for other in others for name in names_in(other))
     )

@@ -1,12 +1,15 @@
-"""What generated code calls: the names of its global namespace.
+"""What generated code calls: the names of this module are those of its global namespace.
 
 Nothing here knows of agents beyond what is passed in: tables of beliefs, the trail, the context of internal actions.
 """
+
+# ruff: noqa: F401 - generated code calls what is imported
 
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
+from jacaros.agents.language.lowering import Names, lower
 from jacaros.agents.mind.rules.belief_update import add_belief, delete_belief, replace_belief
 from jacaros.agents.mind.rules.deadlines import begin_guarded
 from jacaros.agents.mind.rules.forks import join_branch
@@ -45,8 +48,7 @@ from jacaros.agents.mind.state.triggers import (
     positive,
     resolve_all,
 )
-from jacaros.agents.terms.arithmetic import calculated
-from jacaros.agents.terms.operators import OPERATORS, qualify
+from jacaros.agents.terms.operators import OPERATORS, calculated, qualify
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.substitution import ATOMIC, equal, free_variables, related, rename, resolve
 from jacaros.agents.terms.unifier import Trail, undo, unify, unify_annotations
@@ -72,75 +74,11 @@ CLOSED = frozenset({float, String, Functor, List})
 """Values that never unify with a structure."""
 
 
-_FUNCTIONS = (
-    add_belief,
-    annotation_set,
-    annotations_of_event,
-    answers_of,
-    values_of,
-    calculated,
-    cannot_wait,
-    related,
-    constructed,
-    deconstruct,
-    deconstruct_in,
-    deconstructed,
-    deeper,
-    delete_belief,
-    bare,
-    deref,
-    equal,
-    exists,
-    facts,
-    first_answer_of,
-    free_variables,
-    holds,
-    begin_guarded,
-    join_branch,
-    literal_in,
-    literal_of,
-    make_list,
-    namespace_name,
-    namespace_of,
-    own_annotations,
-    positive,
-    qualify,
-    refuse,
-    refuse_quietly,
-    release,
-    replace_belief,
-    resolve,
-    resolve_all,
-    rows_still_held,
-    run,
-    solve,
-    solve_annotated,
-    solve_held,
-    too_many_open,
-    undo,
-    unify,
-    unify_annotations,
-    unify_rows,
-    unknown,
-)
-_CLASSES = (Annotated, InternalError, Loop, NextPlan, Remaining, Functor, List, String, Trail, Var)
-
+_ARITHMETIC = {
+    each.numbers.__name__: each.numbers for each in OPERATORS if each.numbers is not None and not each.code
+}
+copy, new = rename, object.__new__
 NAMES: Final[Mapping[str, Any]] = MappingProxyType(
-    {
-        **{item.__name__: item for item in (*_FUNCTIONS, *_CLASSES)},
-        **{
-            each.numbers.__name__: each.numbers
-            for each in OPERATORS
-            if each.numbers is not None and not each.code
-        },
-        "ATOMIC": ATOMIC,
-        "BY_SELF": BY_SELF,
-        "CLOSED": CLOSED,
-        "CONS": CONS,
-        "FAILED": FAILED,
-        "NESTED": NESTED,
-        "copy": rename,
-        "new": object.__new__,
-    }
+    {**{name: value for name, value in globals().items() if name[0] != "_"}, **_ARITHMETIC}
 )
-"""The global names of generated code."""
+"""The global names of generated code: those of this module."""

@@ -4,17 +4,71 @@
 plan that applies, or None if no plan is applicable (rules RelPl, ApplPl and SelAppl in one).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.nodes import names_in
-from jacaros.agents.mind.generated.bodies import BodyCompiler, body_compiler
-from jacaros.agents.mind.generated.building import annotation_parts, build, tuple_of
+from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.mind.generated.bodies import BodyCompiler
 from jacaros.agents.mind.generated.conditions import condition
-from jacaros.agents.mind.generated.function import FrameLayout, FunctionBuilder, Unit
-from jacaros.agents.mind.generated.matching import first_match, match_all, patterns_in_order, settle_fresh
-from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Plan
+from jacaros.agents.mind.generated.function import CodeUnit, FrameLayout, FunctionBuilder
+from jacaros.agents.mind.generated.matching import (
+    annotation_parts,
+    build,
+    first_match,
+    match_all,
+    patterns_in_order,
+    settle_fresh,
+    tuple_of,
+)
+from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Plan, StepInfo
+from jacaros.agents.mind.state.triggers import Trigger
 from jacaros.agents.terms.values import Functor
+
+
+class Body(NamedTuple):
+    """The written body of a plan.
+
+    Attributes:
+        plan: whose body it is.
+        first: name of its first step function, ``"None"`` without any.
+        size: number of places of a frame behind the fixed ones.
+        steps: what is known of each step, by the name of its function.
+    """
+
+    plan: Plan
+    first: str
+    size: int
+    steps: dict[str, StepInfo]
+
+    def install(self, names: Mapping[str, Any]) -> None:
+        """Give the plan its steps.  What is known of a step is kept with its function: a frame may still be at a step of an
+        earlier unit when the plan is compiled again.
+        """
+        plan = self.plan
+        plan.first = names[self.first] if self.first != "None" else None
+        plan.steps, plan.size = self.steps, self.size
+        for name, info in self.steps.items():
+            function = names[name]
+            function.plan, function.info, function.steps = plan, info, self.steps
+
+
+class Written(NamedTuple):
+    """A unit that has been written, and what its functions are for.
+
+    Attributes:
+        unit: holds the code.
+        name: of the function that others call.
+        bodies: of the plans that it chooses among.
+        conditions: of each plan that has one, the name of the test of its goal condition.
+    """
+
+    unit: CodeUnit
+    name: str
+    bodies: Sequence[Body] = ()
+    conditions: Sequence[tuple[Plan, str]] = ()
+
 
 # Code that answers questions for a predicate with rules: one generator for its facts and rules in their order.
 #
@@ -30,29 +84,30 @@ def given_positions(pattern: int, arity: int) -> list[int]:
     return [i for i in range(arity) if pattern >> i & 1]
 
 
-def compile_search(
-    unit: Unit,
+def write_search(
     symbol: Functor,
     pattern: int,
     before: Sequence[nodes.Rule],
     after: Sequence[nodes.Rule],
+    actions: Mapping[str, InternalAction],
     trampoline: bool,
-) -> str:
-    """Write the generator function of a predicate for one pattern of use; returns its name.
+) -> Written:
+    """Write the generator function of a predicate for one pattern of use.
 
     Args:
-        unit: the unit it becomes part of.
         symbol: the predicate.
         pattern: which arguments are given.
         before: the rules that answer before all facts.
         after: those that answer after them.
+        actions: the internal actions known at compile time.
         trampoline: write the function that is driven by ``run``.
     """
+    unit = CodeUnit(_file_of((*before, *after)[0]), actions)
     name = unit.fresh_function("search")
     fn = FunctionBuilder(unit, trampoline=trampoline, depth="d - 1")
     given = {i: f"a{i}" for i in given_positions(pattern, symbol.arity)}
     fn.at((*before, *after)[0])
-    with fn.writer.block(f"def {name}({', '.join(['agent', 't', 'd', *given.values()])}):"):
+    with fn.function(name, "agent", "t", "d", *given.values()):
         if not trampoline:
             fn.line("t.room -= 1")
             fn.line("if t.room < 0: too_many_open(agent.options.rule_depth)")
@@ -66,16 +121,15 @@ def compile_search(
             fn.line("t.room += 1")
         fn.line("return")
         fn.line("yield")
-    unit.add(fn.writer)
-    return name
+    return Written(unit, name)
 
 
 def _facts(fn: FunctionBuilder, symbol: Functor, given: dict[int, str]) -> None:
     fn.line(f"b = agent.beliefs[{fn.constant(symbol)}]")
-    with fn.writer.block("if len(b.rows) > b.others:"):
+    with fn.block("if len(b.rows) > b.others:"):
         if not given:
             rows = "rows_still_held(b, list(reversed(b.rows)))" if fn.trampoline else "reversed(b.rows)"
-            with fn.writer.block(f"for row in {rows}:"):
+            with fn.block(f"for row in {rows}:"):
                 fn.line("if row.__class__ is tuple: yield row")
             return
         known = list(given.values())
@@ -121,7 +175,7 @@ class SelectCompiler:
         firsts: for each plan, the name of the first step function.
     """
 
-    def __init__(self, unit: Unit, arity: int, every: bool = False) -> None:
+    def __init__(self, unit: CodeUnit, arity: int, every: bool = False) -> None:
         self.unit = unit
         self.arity = arity
         self.every = every
@@ -132,7 +186,7 @@ class SelectCompiler:
         name = self.unit.fresh_function("select")
         fn = FunctionBuilder(self.unit)
         fn.at(plans[0].node)
-        with fn.writer.block(f"def {name}(agent, goal, annotations):"):
+        with fn.function(name, "agent", "goal", "annotations"):
             fn.line("t = agent.trail")
             if outer is not None:
                 _read_outer(fn, outer, plans)
@@ -143,7 +197,7 @@ class SelectCompiler:
                 fn.at(plan.node)
                 if index:
                     fn.line("if t: undo(t, 0)")
-                with fn.branch(), fn.writer.block("try:"):
+                with fn.branch(), fn.block("try:"):
                     self._plan(fn, plan, parts)
                 fn.line("except InternalError: raise")
                 if self.every:
@@ -153,7 +207,6 @@ class SelectCompiler:
             fn.line("return" if self.every else "return None")
             if self.every:
                 fn.line("yield")
-        self.unit.add(fn.writer)
         return name
 
     def _plan(self, fn: FunctionBuilder, plan: Plan, parts: list[str]) -> None:
@@ -181,7 +234,7 @@ class SelectCompiler:
             return
         symbol = "goal[0].functor"
         same = f"{symbol}.name == {name!r} and {symbol}.negated is {negated}"
-        with fn.writer.block(f"if {same}:"):
+        with fn.block(f"if {same}:"):
             if not namespace.unnamed:
                 fn.bind(namespace.name, f"namespace_of({symbol})")
             self._arguments(fn, plan, literal, parts)
@@ -198,7 +251,7 @@ class SelectCompiler:
         whole = variable.annotations is None
         value = f"literal_of(goal, {'annotations' if whole else '()'})"
         if variable.negated:
-            with fn.writer.block("if goal[0].functor.negated:"):
+            with fn.block("if goal[0].functor.negated:"):
                 fn.bind(variable.name, f"positive({value})")
                 self._annotations(fn, plan, variable.annotations)
             return
@@ -218,9 +271,7 @@ class SelectCompiler:
             first_match(fn, patterns, held, lambda: self._context(fn, plan))
             return
         items, tail = annotation_parts(fn, annotations)
-        with fn.writer.block(
-            f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"
-        ):
+        with fn.block(f"if unify_annotations({items}, {tail}, annotations_of_event(annotations), None, t):"):
             settle_fresh(fn, names_in(annotations))
             self._context(fn, plan)
 
@@ -239,7 +290,7 @@ class SelectCompiler:
             if variable in frame.slots:
                 frame.states[variable] = "set"
         prefix = self.unit.fresh_function("step")
-        body = body_compiler(self.unit, frame, prefix)
+        body = BodyCompiler(self.unit, frame, prefix)
         assert isinstance(node.body, nodes.Body)
         first = body.body(node.body.steps, "None")
         self.bodies.append((plan, body, first))
@@ -277,7 +328,7 @@ def _read_outer(fn: FunctionBuilder, outer: Plan, plans: Sequence[Plan]) -> None
         fn.values[name] = f"v_{name}"
 
 
-def compile_goal_condition(unit: Unit, plan: Plan) -> str:
+def _goal_condition(unit: CodeUnit, plan: Plan) -> str:
     """Write the test of a goal condition: ``holds(agent, frame)``; it leaves no bindings behind."""
     name = unit.fresh_function("achieved")
     fn = FunctionBuilder(unit)
@@ -289,7 +340,7 @@ def compile_goal_condition(unit: Unit, plan: Plan) -> str:
         fn.line("undo(t, n0)")
         fn.line("return True")
 
-    with fn.writer.block(f"def {name}(agent, frame):"):
+    with fn.function(name, "agent", "frame"):
         fn.line("t = agent.trail")
         fn.line("n0 = len(t)")
         for variable in names_in(node):
@@ -299,18 +350,18 @@ def compile_goal_condition(unit: Unit, plan: Plan) -> str:
                 fn.values[variable] = f"v_{variable}"
         condition(fn, node, then)
         fn.line("return False")
-    unit.add(fn.writer)
     return name
 
 
-def compile_rule(unit: Unit, rule: nodes.Rule) -> str:
+def write_rule(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> Written:
     """Write the generator function of a rule: ``rule(agent, arguments, t)`` yields once per answer."""
+    unit = CodeUnit(_file_of(rule), actions)
     name = unit.fresh_function("rule")
     fn = FunctionBuilder(unit, trampoline=True)
     fn.at(rule)
     arguments = rule.head.arguments
     parts = [fn.local("a") for _ in arguments]
-    with fn.writer.block(f"def {name}(agent, arguments, t):"):
+    with fn.function(name, "agent", "arguments", "t"):
         fn.line("n0 = len(t)")
         if parts:
             fn.line(f"{tuple_of(parts)} = arguments")
@@ -329,5 +380,39 @@ def compile_rule(unit: Unit, rule: nodes.Rule) -> str:
         fn.line("if len(t) > n0: undo(t, n0)")
         fn.line("return")
         fn.line("yield")
-    unit.add(fn.writer)
-    return name
+    return Written(unit, name)
+
+
+def _file_of(rule: nodes.Rule) -> str:
+    return rule.span.file.name if rule.span is not None else "<run time>"
+
+
+def write_select(
+    trigger: Trigger,
+    plans: Sequence[Plan],
+    actions: Mapping[str, InternalAction],
+    outer: Plan | None = None,
+    every: bool = False,
+) -> Written:
+    """Write the select function of an event kind; *outer* is the plan that sub-plans belong to.
+
+    With *every* it is a generator of the frames of all applicable plans.
+    """
+    unit = CodeUnit(plans[0].file, actions)
+    compiler = SelectCompiler(unit, trigger.functor.arity, every)
+    name = compiler.select(plans, outer)
+    conditions = [
+        (plan, _goal_condition(unit, plan)) for plan in plans if plan.node.goal_condition is not None
+    ]
+    bodies = [Body(plan, first, body.frame.size, body.infos) for plan, body, first in compiler.bodies]
+    return Written(unit, name, bodies, conditions)
+
+
+def write_body(plan: Plan, actions: Mapping[str, InternalAction]) -> Written:
+    """Write the steps of a plan that stands for a body made at run time."""
+    unit = CodeUnit("<body>", actions)
+    compiler = BodyCompiler(unit, FrameLayout(plan), "step")
+    body = plan.node.body
+    assert isinstance(body, nodes.Body)
+    first = compiler.body(body.steps, "None")
+    return Written(unit, first, [Body(plan, first, compiler.frame.size, compiler.infos)])

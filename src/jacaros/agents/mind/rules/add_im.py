@@ -7,8 +7,7 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.lowering import Names, lower
 from jacaros.agents.language.nodes import names_in
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.agents.mind.explaining import lost_goals
-from jacaros.agents.mind.rules import forks, meta_events, needs
+from jacaros.agents.mind.rules import failure_reason, forks, meta_events, needs
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.deadlines import begin_guarded
 from jacaros.agents.mind.rules.failure import has_room, too_deep, unplanned
@@ -25,7 +24,7 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     NextStep,
 )
-from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Every, Plan, Rule, Select
+from jacaros.agents.mind.state.plan import ALL_UNIFIERS, Answers, Engine, Every, Plan, Rule, Select
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,
@@ -288,13 +287,13 @@ def go_without(
 def log_inapplicable(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> None:
     """Log why no plan was selected for an event that has relevant ones, if the agent logs details."""
     if agent.options.verbose > 1 and agent.library.relevant(goal[0]):
-        agent.architecture.log("debug", lost_goals.inapplicable(agent, goal, annotations).text())
+        agent.architecture.log("debug", failure_reason.inapplicable(agent, goal, annotations).text())
 
 
 # Run plans and rules as the language defines them, without code made for speed.
 
 
-class Interpreter:
+class Interpreter(Engine):
     """Runs plans and rules, see `jacaros.agents.mind.state.plan.Engine`.
 
     Args:
@@ -303,14 +302,6 @@ class Interpreter:
 
     def __init__(self, actions: Mapping[str, InternalAction]) -> None:
         self.actions = actions
-
-    def begin(self, agent: Circumstance) -> None:
-        """Do nothing: nothing needs preparation."""
-
-    def compile_ahead(self, program: Any) -> bool:
-        """False: nothing is compiled."""
-        del program
-        return False
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """Return the selection among plans for one kind of event."""
@@ -333,8 +324,3 @@ class Interpreter:
     def answers(self, agent: Any, rule: Rule, arguments: tuple[Term, ...], trail: Trail) -> Answers:
         """Return the answers of a rule."""
         return interpret_rule(agent, rule.node, arguments, trail)
-
-    def searches(self, predicate: Any) -> tuple[Any, Any] | None:
-        """None: rules are called one by one."""
-        del predicate
-        return None

@@ -298,8 +298,8 @@ def add_rule(agent: Circumstance, rule: Rule, head: Functor, last: bool) -> None
 
 
 Kept = tuple[Functor, Row, bool]
-Holder = tuple[Annotations, Any]
-"""The annotations of a property among several with the same values, and the entry of its belief in the table."""
+Holder = tuple[Annotations, Any, Row, Row]
+"""Of a property among several with the same values: its annotations, its entry, its row in the base, and as perceived."""
 
 
 def take_percepts(agent: Circumstance) -> None:
@@ -359,17 +359,6 @@ def _take(agent: Circumstance, percepts: list[Percept]) -> None:
             post(((trigger, *row), None, annotations, percept.cause))
 
 
-def _take_unusual(
-    agent: Circumstance, symbol: Functor, row: Row, percept: Percept, keyed: bool
-) -> Row | None:
-    """Take a percept that others agree with, or that cannot be looked up; return what it changed."""
-    if percept.kind == "add":
-        return (_believe if keyed else _believe_unkeyed)(agent, symbol, row, percept)
-    if percept.kind == "remove":
-        return (_forget if keyed else _forget_unkeyed)(agent, symbol, row, percept)
-    return _own_row(row)
-
-
 def _keep(percept: Percept) -> Kept:
     """Keep functor and arguments of a percept for all minds that share it, and whether it can be looked up by these."""
     literal = percept.literal
@@ -387,89 +376,63 @@ def _keep(percept: Percept) -> Kept:
     return kept
 
 
-def _believe(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Add a percept to a belief that is already held, by the agent or for other properties with the same values.
-
-    Return None if the base has no room for it.
-    """
-    known = agent.beliefs.held_percepts.get(percept.literal)
-    if known is not None:
-        return _believe_apart(agent, symbol, row, percept, known)
-    table = agent.beliefs[symbol]
-    if insert(table, row, percept.annotations) is None and table.get(row) is None:
-        return None
-    agent.beliefs.held_percepts[percept.literal] = percept.annotations
-    return row
+# Properties with the same values are beliefs of their own, each with its own annotations. Python could not compare or hash
+# very long or deeply nested terms, and of sets and maps every agent needs its own: such a percept is identified by the
+# argument objects of its property, and is a belief by itself, too.
 
 
-def _believe_apart(
-    agent: Circumstance, symbol: Functor, row: Row, percept: Percept, known: Any
+def _take_unusual(
+    agent: Circumstance, symbol: Functor, row: Row, percept: Percept, keyed: bool
 ) -> Row | None:
-    """Add a property beside others with the same values, as a belief of its own with its own annotations.
+    """Take a percept that others agree with, or that cannot be looked up (not *keyed*).
 
-    Return None if the base has no room for it.
+    Return what it changed, with sets and maps of the agent's own; None if the base has no room for the belief, or no
+    longer holds it.
     """
-    belief = OpenFact(literal(symbol, row), percept.annotations)
-    if agent.beliefs[symbol].add(belief, percept.annotations) is None:
-        return None
-    holders: list[Holder] = known if known.__class__ is list else [(known, row)]
-    holders.append((percept.annotations, belief))
-    agent.beliefs.held_percepts[percept.literal] = holders
-    return row
+    own = row if keyed else tuple(map(detached, row))
+    if percept.kind == "signal":
+        return own
+    # No literal begins with None.
+    key = percept.literal if keyed else (None, symbol, *map(id, row))
+    held_percepts, table, annotations = (
+        agent.beliefs.held_percepts,
+        agent.beliefs[symbol],
+        percept.annotations,
+    )
+    known = held_percepts.pop(key, None)
+    holders: list[Holder] = (
+        known if known.__class__ is list else [] if known is None else [(known, row, own, row)]
+    )
+    if percept.kind == "remove":
+        return _forget(table, key, percept, holders, row, held_percepts)
+    entry: Any = row
+    if keyed and not holders:
+        held = insert(table, row, annotations) is not None or table.get(row) is not None
+    else:
+        entry = OpenFact(literal(symbol, own), annotations)
+        held = table.add(entry, annotations) is not None
+    if held:
+        # The arguments are kept with it: their identities stay theirs.
+        holders.append((annotations, entry, own, row))
+    if holders:
+        held_percepts[key] = annotations if holders == [(annotations, row, own, row)] else holders
+    return own if held else None
 
 
-def _forget(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    """Remove the belief of one property; others may have the same values.
-
-    Return None if the belief is no longer held.
-    """
-    known = agent.beliefs.held_percepts.pop(percept.literal, None)
-    holders: list[Holder] = known if known.__class__ is list else [] if known is None else [(known, row)]
+def _forget(
+    table: Table, key: Any, percept: Percept, holders: list[Holder], row: Row, held_percepts: dict[Term, Any]
+) -> Row | None:
+    """Remove the belief of one property; others may have the same values."""
     # Of two properties of one artifact the annotations are equal, too: either may go.
     place = next((i for i, holder in enumerate(holders) if holder[0] == percept.annotations), None)
-    entry = row if place is None else holders.pop(place)[1]
+    _, entry, own, _ = (None, row, row, row) if place is None else holders.pop(place)
     if holders:
-        agent.beliefs.held_percepts[percept.literal] = holders
-    return row if _take_away(agent.beliefs[symbol], entry, percept) else None
-
-
-def _take_away(table: Table, entry: Any, percept: Percept) -> bool:
-    """Remove the annotations of a percept from its belief; return False if it is no longer held."""
+        held_percepts[key] = holders
     held = table.get(entry)
-    if held is not None:
-        take_away(table, entry, held, percept.annotations)
-    return held is not None
-
-
-# --- percepts that cannot be looked up by what they say --------------------------------------------------------
-
-# Python could not compare or hash very long or deeply nested terms, and of sets and maps every agent needs its own.  Such
-# a percept is identified by the argument objects of its property, and is a belief by itself.
-
-
-def _own_row(row: Row) -> Row:
-    """The arguments, with sets and maps of the agent's own."""
-    return tuple(map(detached, row))
-
-
-def _believe_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    own = _own_row(row)
-    belief = OpenFact(literal(symbol, own), percept.annotations)
-    if agent.beliefs[symbol].add(belief, percept.annotations) is None:
+    if held is None:
         return None
-    # The arguments are kept with it: their identities stay theirs.
-    agent.beliefs.held_percepts[_identity(symbol, row)] = belief, row, own
+    take_away(table, entry, held, percept.annotations)
     return own
-
-
-def _forget_unkeyed(agent: Circumstance, symbol: Functor, row: Row, percept: Percept) -> Row | None:
-    belief, _, own = agent.beliefs.held_percepts.pop(_identity(symbol, row), (None, row, row))
-    return own if belief is not None and _take_away(agent.beliefs[symbol], belief, percept) else None
-
-
-def _identity(symbol: Functor, row: Row) -> tuple[object, ...]:
-    # No literal begins with None.
-    return (None, symbol, *map(id, row))
 
 
 # --- backpressure: whether an agent has handled its percepts ----------------------------------------------------

@@ -17,9 +17,8 @@ from jacaros.agents.mind.state.budget import SearchBudget, SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, Intention
 from jacaros.agents.mind.state.plan import Answers, Plan, Rule
-from jacaros.agents.terms.arithmetic import RUNNING, settle
 from jacaros.agents.terms.functions import FunctionNames
-from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.operators import RUNNING, ArithmeticFault, settle
 from jacaros.agents.terms.substitution import free_variables, resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify

@@ -10,9 +10,8 @@ from typing import Any
 
 from jacaros.agents.language import nodes
 from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
-from jacaros.agents.mind.explaining import lost_goals
-from jacaros.agents.mind.explaining.failure_reason import ERROR, ERROR_MSG, FailureReason, Place, goal_text
-from jacaros.agents.mind.rules import forks, meta_events, supervision
+from jacaros.agents.mind.rules import failure_reason, forks, meta_events, supervision
+from jacaros.agents.mind.rules.failure_reason import ERROR, ERROR_MSG, FailureReason, Place, goal_text
 from jacaros.agents.mind.rules.forks import branch_failed
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
@@ -414,7 +413,7 @@ def fail_intention(
         return posted
     goal = None if unplanned is None else unplanned[0]
     if intention.on_failed is not None:
-        lost_goals.note_goals(agent, intention, reason, goal)
+        failure_reason.note_goals(agent, intention, reason, goal)
         function, arguments = intention.on_failed
         function(agent, reason, *arguments)
     else:
@@ -422,7 +421,7 @@ def fail_intention(
         budget = agent.budgets.get(reason.error())
         count = budget.note_loss() if budget is not None else 1
         if count:
-            _tell_people(agent, lost_goals.loss(agent, intention, reason, goal), count)
+            _tell_people(agent, failure_reason.loss(agent, intention, reason, goal), count)
     if agent.features.meta:
         _tell_unplanned(agent, intention, unplanned, reason, over=True)
         _tell_failed(agent, intention, reason)
@@ -452,7 +451,7 @@ def _tell_unplanned(
     if unplanned is None or not agent.features.meta:
         return
     goal, annotations, number = unplanned
-    why = lost_goals.why(reason) if agent.observers.goal is not None else ""
+    why = failure_reason.why(reason) if agent.observers.goal is not None else ""
     meta_events.observe_goal(agent, intention, goal, number, "failed", why)
     meta_events.goal_state(agent, goal, annotations, "failed", atom(reason.error()))
     if over:
@@ -473,19 +472,19 @@ def observe_failed(
 ) -> None:
     """Report to the observer that the goals of the frames from *first* on failed and are over."""
     if agent.observers.goal is not None:
-        why = lost_goals.why(reason) if reason is not None else ""
+        why = failure_reason.why(reason) if reason is not None else ""
         for frame in reversed(intention.frames[first:]):
             meta_events.observe(agent, intention, frame, "failed", why)
             meta_events.observe(agent, intention, frame, "finished")
 
 
 def _tell(agent: Circumstance, intention: Intention, frame: Frame, reason: FailureReason) -> None:
-    why = lost_goals.why(reason) if agent.observers.goal is not None else ""
+    why = failure_reason.why(reason) if agent.observers.goal is not None else ""
     meta_events.observe(agent, intention, frame, "failed", why)
     meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "failed", atom(reason.error()))
 
 
-def _tell_people(agent: Circumstance, loss: lost_goals.Loss, count: int = 1) -> None:
+def _tell_people(agent: Circumstance, loss: failure_reason.Loss, count: int = 1) -> None:
     """Warn of a lost goal, the *count*-th of its kind."""
     note = f"\n  {count} goals have failed for this reason" if count > 1 else ""
     agent.architecture.log("warning", loss.text() + note)
@@ -502,7 +501,7 @@ def _lost_in_handler(
         function(agent, reason, *arguments)
     else:
         agent.architecture.goal_lost()
-        _tell_people(agent, lost_goals.lost_in_handler(agent, intention, goal, reason))
+        _tell_people(agent, failure_reason.lost_in_handler(agent, intention, goal, reason))
     number = meta_events.failed_number(annotations)
     if number is not None:
         meta_events.observe_goal(agent, intention, goal, number, "failed")

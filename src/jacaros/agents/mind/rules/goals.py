@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterator
 
 from jacaros.agents.mind.actions.internal_action import ActionError
-from jacaros.agents.mind.explaining.failure_reason import FailureReason, nowhere
-from jacaros.agents.mind.rules import failure, meta_events, needs, waits
+from jacaros.agents.mind.rules import deadlines, failure, meta_events, needs
 from jacaros.agents.mind.rules.clr_int import achieve, cut_out, pending_event, pop_finished, remove_event
+from jacaros.agents.mind.rules.cycle import announce
 from jacaros.agents.mind.rules.deadlines import supervised
-from jacaros.agents.mind.rules.exec_int import announce
 from jacaros.agents.mind.rules.failure import release_bindings
+from jacaros.agents.mind.rules.failure_reason import FailureReason, nowhere
 from jacaros.agents.mind.rules.pending import cancel, watch
 from jacaros.agents.mind.state.belief_base import parts
 from jacaros.agents.mind.state.circumstance import Circumstance
@@ -275,7 +275,7 @@ def resume_intention(agent: Circumstance, intention: Intention, by: Term = _BY_R
     if held is not None:
         _queue_again(agent, held)
     elif intention.waiting is not None:
-        waits.resume(agent, intention.waiting)
+        deadlines.resume(agent, intention.waiting)
     else:
         agent.make_ready(intention)
         if agent.features.meta:

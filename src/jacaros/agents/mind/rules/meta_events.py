@@ -5,7 +5,7 @@ Also events about the agent itself: it falls asleep, awakes, or is about to be s
 
 from collections.abc import Callable
 
-from jacaros.agents.mind.explaining.failure_reason import FailureReason
+from jacaros.agents.mind.rules.failure_reason import FailureReason
 from jacaros.agents.mind.state.act import MindObserver
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (

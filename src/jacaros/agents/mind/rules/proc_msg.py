@@ -6,11 +6,10 @@ from typing import Any
 
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.lowering import fresh_names, lower_plan
-from jacaros.agents.mind.explaining.failure_reason import FailureReason
-from jacaros.agents.mind.explaining.lost_goals import lost_question
-from jacaros.agents.mind.rules import belief_update, failure, waits
+from jacaros.agents.mind.rules import belief_update, deadlines, failure
+from jacaros.agents.mind.rules.body_steps import relevant_plans
 from jacaros.agents.mind.rules.deadlines import adopt
-from jacaros.agents.mind.rules.plan_terms import relevant_plans
+from jacaros.agents.mind.rules.failure_reason import FailureReason, lost_question
 from jacaros.agents.mind.rules.query import solve_formula
 from jacaros.agents.mind.rules.searching import run
 from jacaros.agents.mind.state.act import SpeechAct
@@ -128,8 +127,8 @@ def take_answer(agent: Circumstance, waiting: AnswerWait, message: SpeechAct) ->
     """An answer to a question of this agent has come, or the question was not delivered."""
     agent.waits.questions.pop(str(message.in_reply_to), None)
     if message.performative == "undelivered":
-        waits.forget(agent, waiting)
-        waits.fail(agent, waiting, *nobody_there(message.sender))
+        deadlines.forget(agent, waiting)
+        deadlines.fail(agent, waiting, *nobody_there(message.sender))
         return
     content = atom("false") if message.performative == "untell" else _with_source(agent, message)
     waiting.answers.append(content)
@@ -143,12 +142,12 @@ def time_out_question(agent: Circumstance, waiting: AnswerWait) -> None:
 
 
 def _end_question(agent: Circumstance, waiting: AnswerWait, value: Term) -> None:
-    waits.forget(agent, waiting)
+    deadlines.forget(agent, waiting)
     if agent.context.unify(waiting.target, value):
         del agent.trail[:]
-        waits.succeed(agent, waiting)
+        deadlines.succeed(agent, waiting)
     else:
-        waits.fail(agent, waiting, "the answer does not match", (ERROR, atom("ask_failed")))
+        deadlines.fail(agent, waiting, "the answer does not match", (ERROR, atom("ask_failed")))
 
 
 def _with_source(agent: Circumstance, message: SpeechAct) -> Term:

@@ -26,8 +26,7 @@ from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.plan import Answers, OpenFact, Rule
 from jacaros.agents.mind.state.triggers import namespace_name
 from jacaros.agents.terms import plans
-from jacaros.agents.terms.arithmetic import settle
-from jacaros.agents.terms.operators import qualify
+from jacaros.agents.terms.operators import qualify, settle
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.substitution import ATOMIC, related, rename, resolve
 from jacaros.agents.terms.unifier import Trail, undo, unify

@@ -1,7 +1,7 @@
 """Supervised goals and plans end or fail; a goal with ``retry`` is tried again."""
 
-from jacaros.agents.mind.explaining.failure_reason import FailureReason
 from jacaros.agents.mind.rules import meta_events
+from jacaros.agents.mind.rules.failure_reason import FailureReason
 from jacaros.agents.mind.rules.pending import cancel, now, set_alarm
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import ANNOTATIONS, GOAL, Frame, Intention, NextStep, Posted

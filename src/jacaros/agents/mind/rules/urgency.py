@@ -21,16 +21,16 @@ unrelated events one table lookup each.
 
 from bisect import bisect_left, bisect_right
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Generic, TypeVar
 
-from jacaros.agents.mind.rules.plan_terms import bindings_of, plan_term
+from jacaros.agents.mind.rules.body_steps import bindings_of, plan_term
 from jacaros.agents.mind.rules.proc_msg import RECEIVED
 from jacaros.agents.mind.rules.query import solve_formula
 from jacaros.agents.mind.rules.searching import run
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.belief_base import SELECT_OPTION, Table
-from jacaros.agents.mind.state.circumstance import Circumstance
+from jacaros.agents.mind.state.circumstance import Circumstance, Selections
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
     EVENT_GOAL,
@@ -73,33 +73,15 @@ class OptionFilter(Table):
         return super().add(row, annotations, last)
 
 
-class Fair:
-    """See `jacaros.agents.mind.state.circumstance.Selections`."""
+class Fair(Selections):
+    """Takes what came first, and the first applicable plan that passes the rules that filter plans."""
 
-    __slots__ = ("agent", "chooses", "option_filter", "plain", "refused", "urgencies")
+    __slots__ = ()
 
     def __init__(self, agent: Circumstance) -> None:
-        self.agent = agent
-        self.plain, self.chooses = True, False
         if SELECT_OPTION not in agent.beliefs:
             agent.beliefs[SELECT_OPTION] = OptionFilter(SELECT_OPTION, agent)
-        self.option_filter = agent.beliefs[SELECT_OPTION]
-        self.refused = False
-        self.urgencies: Mapping[Trigger, int] | None = None
-
-    def urgency_of(self, intention: Intention) -> int:
-        """Return 0: no intention is more urgent than others."""
-        del intention
-        return 0
-
-    def select_messages(self) -> Sequence[SpeechAct]:
-        """Return the oldest message."""
-        return (self.agent.incoming.messages.popleft(),)
-
-    def select_event(self) -> Event | None:
-        """Return the oldest event."""
-        events = self.agent.events
-        return events.popleft() if events else None
+        super().__init__(agent, agent.beliefs[SELECT_OPTION])
 
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
@@ -112,20 +94,6 @@ class Fair:
                 return frame
             self.refused = True
         return None
-
-    def select_intention(self) -> Intention | None:
-        """Return the intention whose last turn is the longest ago."""
-        intentions = self.agent.intentions
-        return intentions.popleft() if intentions else None
-
-    def rank(self) -> None:
-        """Do nothing: first come, first served."""
-
-    def note_intention(self, intention: Intention) -> None:
-        """Do nothing: the intention is queued last."""
-
-    def note_message(self, message: SpeechAct) -> None:
-        """Do nothing: the message is read last."""
 
 
 def options(agent: Circumstance, goal: Goal, annotations: EventAnnotations) -> Iterator[Frame]:
@@ -183,7 +151,7 @@ class Urgent(Fair):
         super().__init__(agent)
         self._named = dict(agent.options.urgency)
         self._of_kinds = _OfKinds(self)
-        self.urgencies: Mapping[Trigger, int] | None = self._of_kinds
+        self.urgencies = self._of_kinds
         self._in_order = False
         self._ranked = False
         self._urgent_messages = 0

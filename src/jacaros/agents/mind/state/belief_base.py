@@ -246,7 +246,7 @@ class Table:
             self.rows, self.late = dict(self.rows), OrderedDict(self.late) if self.late else _NO_LATE
             self.indexes = {}
 
-    def around(self) -> tuple[list[Entry], list[Entry]] | None:
+    def around(self) -> tuple[list[Any], list[Any]] | None:
         """The rules and beliefs with variables that answer before all facts, and those behind all facts.
 
         None when they are mixed, or when there is a belief with variables that no function can be written for.
@@ -256,7 +256,7 @@ class Table:
         sides = self._sides()
         return None if sides is None else (sides[0], [*sides[1], *self.late])
 
-    def _sides(self) -> tuple[list[Entry], list[Entry]] | None:
+    def _sides(self) -> tuple[list[Any], list[Any]] | None:
         """What `around` tells, of `rows` alone."""
         before = list(itertools.islice(reversed(self.rows), self.others))
         while before and before[-1].__class__ is tuple:
@@ -374,8 +374,8 @@ class BeliefTables(dict[Functor, Table]):
         room: number of beliefs that can be added without a look at the limit: deleted ones are counted when it is used up.
         budget: how much the present question may search; None between questions.
         engine: runs the rules.
-        held_percepts: for each perceived literal the annotations of the property that shows it, or a list of pairs
-            of annotations and entries if several do (decision 22).
+        held_percepts: for each perceived literal the annotations of the property that shows it, or a list with the
+            entries and annotations if several do (decision 22).
         namespace_properties: properties that programs give to namespaces.
     """
 

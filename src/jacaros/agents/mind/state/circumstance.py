@@ -31,11 +31,11 @@ from jacaros.runtime.trace import Cause
 # The port of a mind to what chooses: which message, event, plan and intention goes first.
 
 
-class Selections(Protocol):
+class Selections:
     """The selection functions of one agent, as the published semantics have them (S_M, S_E, S_O, S_I).
 
-    `jacaros.agents.mind.rules.urgency.Fair` takes what came first, `jacaros.agents.mind.rules.urgency.Urgent` what is most
-    urgent, and the class of a project what it likes.  Each takes what it chooses out of its queue.
+    These and `jacaros.agents.mind.rules.urgency.Fair` take what came first, `jacaros.agents.mind.rules.urgency.Urgent` what
+    is most urgent, and the class of a project what it likes.  Each takes what it chooses out of its queue.
 
     Attributes:
         plain: at present the first of each queue goes first, so an intention may stay in its turn while nothing else
@@ -47,37 +47,48 @@ class Selections(Protocol):
         refused: there were applicable plans for the last event, and none of them was let pass.
     """
 
-    plain: bool
-    chooses: bool
-    option_filter: Table
+    __slots__ = ("agent", "chooses", "option_filter", "plain", "refused", "urgencies")
+
     urgencies: Mapping[Trigger, int] | None
-    refused: bool
+
+    def __init__(self, agent: "Circumstance", option_filter: Table) -> None:
+        self.agent, self.option_filter = agent, option_filter
+        self.plain, self.chooses, self.refused = True, False, False
+        self.urgencies = None
 
     def urgency_of(self, intention: Intention) -> int:
-        """How urgent an intention is."""
+        """Return how urgent an intention is: 0 if none is more urgent than others."""
+        del intention
+        return 0
 
     def select_messages(self) -> Sequence[SpeechAct]:
-        """Those that are read in this cycle, of a mailbox that is not empty."""
+        """Return those that are read in this cycle, of a mailbox that is not empty: the oldest one."""
+        return (self.agent.incoming.messages.popleft(),)
 
     def select_event(self) -> Event | None:
-        """The one that is taken up now; None when none is to be."""
+        """Return the event that is handled now, the oldest; None if none is to be."""
+        events = self.agent.events
+        return events.popleft() if events else None
 
     def select_option(
         self, goal: Goal, annotations: EventAnnotations, intention: Intention | None
     ) -> Frame | None:
-        """The frame of the plan that is taken for an event (of that intention, if it is one's own)."""
+        """Return the frame of the plan that is selected for an event (of that intention, if it is the agent's own)."""
+        raise NotImplementedError
 
     def select_intention(self) -> Intention | None:
-        """The one that makes a step now."""
+        """Return the intention that makes a step now: the one whose last turn is the longest ago."""
+        intentions = self.agent.intentions
+        return intentions.popleft() if intentions else None
 
     def rank(self) -> None:
-        """An event of an urgent kind is about to be queued, or handled at once."""
+        """Note that an event of an urgent kind is about to be queued, or handled immediately."""
 
     def note_message(self, message: SpeechAct) -> None:
-        """A message is about to be queued."""
+        """Note a message that is about to be queued."""
 
     def note_intention(self, intention: Intention) -> None:
-        """An intention that waited, was suspended or is new is about to be queued."""
+        """Note an intention that waited, was suspended or is new, and is about to be queued."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +181,7 @@ class Observers:
     Attributes:
         goal: called with each goal that changes, or None, see `jacaros.agents.mind.rules.meta_events.observe_goals`.
         lost: called with the description of each lost goal (first line, further lines, place), or None.
-        step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.sel_ev.observe_steps`.
+        step: may hold the agent before an event or a step, or None, see `jacaros.agents.mind.rules.cycle.observe_steps`.
         mind: observes plans, beliefs and messages, or None; see `jacaros.agents.mind.rules.meta_events.observe_mind`.
         hear_beliefs: whether one of the last two is set.
     """

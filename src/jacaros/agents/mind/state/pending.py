@@ -1,6 +1,6 @@
 """What ends later, as data: calls at a moment, at an event or when a condition holds, and the steps that wait for them.
 
-`jacaros.agents.mind.rules.pending` makes and cancels the calls, `jacaros.agents.mind.rules.waits` has the rules for
+`jacaros.agents.mind.rules.pending` makes and cancels the calls, `jacaros.agents.mind.rules.deadlines` has the rules for
 the end of a wait.
 """
 

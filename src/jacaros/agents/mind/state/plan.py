@@ -372,15 +372,17 @@ class Engine(Protocol):
     `jacaros.agents.mind.generated.compiler.Compiler` with code that it generates.
     """
 
-    @property
-    def actions(self) -> Mapping[str, InternalAction]:
-        """The internal actions that plans may call."""
+    actions: Mapping[str, InternalAction]
+    """The internal actions that plans may call."""
 
     def begin(self, agent: Any) -> None:
         """An agent is about to begin: prepare what cannot wait until it is asked for."""
+        del agent
 
     def compile_ahead(self, program: Any) -> bool:
         """Prepare a little more of the plans of a program, while there is time; False when nothing is left to prepare."""
+        del program
+        return False
 
     def select(self, trigger: Trigger, plans: Sequence[Plan], outer: Plan | None = None) -> Select:
         """What chooses among plans for one kind of event; *outer* is the plan that they are sub-plans of."""
@@ -399,3 +401,5 @@ class Engine(Protocol):
 
     def searches(self, predicate: Any) -> tuple[Any, Any] | None:
         """Functions that answer questions for a predicate with rules, and those for deep searches; None without any."""
+        del predicate
+        return None

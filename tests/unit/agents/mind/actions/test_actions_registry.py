@@ -33,11 +33,6 @@ def test_each_action_takes_its_number_of_arguments(name: str, arity: tuple[int, 
     assert (action.minimum, action.maximum) == arity
 
 
-@pytest.mark.parametrize("name", [name for name, _ in CASES])
-def test_each_action_is_explained_by_its_call(name: str) -> None:
-    assert f"``{name}" in (STANDARD[name].function.__doc__ or "")
-
-
 def test_actions_can_be_called_with_the_fewest_arguments(mind: FakeContext) -> None:
     assert mind.succeeds(".print")
     assert mind.succeeds(".stopMAS")

@@ -2,7 +2,7 @@ import pytest
 from fake_context import FakeContext
 
 from jacaros.agents.mind.actions.internal_action import ActionError, WrongArguments
-from jacaros.agents.mind.actions.strings import replace_all
+from jacaros.agents.mind.actions.terms import replace_all
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import String, Var, structure
 

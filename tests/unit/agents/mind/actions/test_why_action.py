@@ -4,7 +4,7 @@ import pytest
 
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
-from jacaros.agents.mind.actions.output import written_question
+from jacaros.agents.mind.actions.agents import written_question
 
 
 @pytest.mark.parametrize(

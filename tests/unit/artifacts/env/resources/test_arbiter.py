@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from jacaros.artifacts.env.arbiter import REPORTED, Arbiter, Claim, Policy, State, read_uses, scoped
 from jacaros.artifacts.env.values import Atom, Structure, text
-from jacaros.artifacts.resources.arbiter import REPORTED, Arbiter, Claim, Policy, State, read_uses, scoped
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -7,8 +7,8 @@ from typing import TypeVar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from jacaros.artifacts.env.arbiter import POLICIES, Arbiter, Claim, State
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.resources.arbiter import POLICIES, Arbiter, Claim, State
 from jacaros.runtime.clock import VirtualClock, run
 
 NAMES = ("base", "arm", "lift", "map")

@@ -1,1 +1,0 @@
-"""Why things happened: reasons of failures, contexts that fail, lost goals."""

@@ -1,1 +1,0 @@
-"""Resources that operations and plans share, such as the wheels of a robot."""
