@@ -16,7 +16,7 @@ from jacaros.mas.deployment import AgentSpec
 from jacaros.mas.directory import Directory
 from jacaros.mas.idleness import AgentTimer
 from jacaros.mas.programs import Programs
-from jacaros.mas.project.unsupported import class_without_effect
+from jacaros.mas.project.declarations import class_without_effect
 from jacaros.mas.python_code import PythonCode
 
 
