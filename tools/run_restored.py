@@ -54,7 +54,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
         alarm.timer.cancel()
     new = Mind(old.name, old.program, host, old.options, old.engine.actions)
     new.observers, new.functions.project = old.observers, old.functions.project  # given by the host
-    host.mind = new
+    host.set_mind(new)
     restore(new, json.loads(text), same_host=True)
 
 

@@ -4,129 +4,87 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.errors import JacarosError
 from jacaros.files.python_modules import NotImported, ProjectModules
-from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.deployment import AgentSpec, ProjectError
-from jacaros.mas.python_code import PythonCode
 
 if TYPE_CHECKING:
     from jacaros.agents.python.customising import Made
 
 _DEFAULTS = ("", "jason.asSemantics.Agent")
 
+Warn = Callable[[Diagnostic], object]
+"""Takes a warning."""
 
-class AgentClasses:
-    """Creates the hosts and minds of agents, including those of user-defined classes.
 
-    Args:
-        modules: the project's Python code.
-        warn: takes a warning.
+def check_classes(modules: ProjectModules, agents: Iterable[AgentSpec], warn: Warn) -> None:
+    """Find the classes of agents, to report errors before anything runs.
+
+    Raises:
+        ProjectError: all errors.
     """
-
-    def __init__(self, modules: ProjectModules, warn: Callable[[Diagnostic], None]) -> None:
-        self._modules, self._warn = modules, warn
-        self._warned: set[str] = set()
-
-    def check(self, agents: Iterable[AgentSpec]) -> None:
-        """Find all classes, to report errors before anything runs.
-
-        Raises:
-            ProjectError: all errors.
-        """
-        wrong: list[Diagnostic] = []
-        for spec in agents:
-            try:
-                if spec.is_python:
-                    from jacaros.mas.python_agents import loading  # here: most projects have none
-
-                    loading.check(self._modules, spec, self._warn_once)
-                else:
-                    self._object(spec)
-            except NotImported:
-                continue
-            except JacarosError as error:
-                found = error.diagnostics if isinstance(error, ProjectError) else ()
-                wrong += [d for d in found if d not in wrong]
-        if wrong:
-            raise ProjectError(wrong)
-
-    def make(
-        self,
-        spec: AgentSpec,
-        program: Program,
-        run: Run,
-        seed: str,
-        options: Options,
-        code: PythonCode,
-        plans: ProgramPlans,
-    ) -> AgentHost:
-        """Return the host of an agent, with its mind.
-
-        Raises:
-            ProjectError: a class cannot be found or instantiated.
-        """
-        if spec.is_python:
-            from jacaros.mas.python_agents import loading
-
-            return loading.make(self._modules, spec, run, seed)
-        made = self._object(spec)
-        host = AgentHost(spec.name, run, seed)
-        kind = Mind
-        if made is not None:
-            from jacaros.agents.python.customising import CustomMind  # here: most projects have no classes
-
-            kind = CustomMind
-        mind = kind(spec.name, program, host, options, code.actions, plans)  # pyright: ignore[reportArgumentType]
-        code.serve(mind)
-        host.mind = mind
-        if made is not None:
-            self._begin_as(spec, mind, made)
-        return host
-
-    def _begin_as(self, spec: AgentSpec, mind: Mind, face: "Made") -> None:
-        from jacaros.agents.python.customising import begin_as
-
+    wrong: list[Diagnostic] = []
+    for spec in agents:
         try:
-            begin_as(mind, face.made)
-            face.made.init(*face.arguments)
-        except JacarosError as error:
-            raise self._project_error(spec, str(error)) from error
-        except Exception as error:
-            from jacaros.agents.python.declaring import crash_text
+            if spec.is_python:
+                from jacaros.mas.python_agents import loading  # here: most projects have none
 
-            message = crash_text(f"agent {spec.name}", face.made.init, error)
-            raise self._project_error(spec, message) from error
+                loading.check(modules, spec, warn)
+            else:
+                object_of_class(modules, spec, warn)
+        except NotImported:
+            continue
+        except ProjectError as error:
+            wrong += [d for d in error.diagnostics if d not in wrong]
+    if wrong:
+        raise ProjectError(wrong)
 
-    def _object(self, spec: AgentSpec) -> "Made | None":
-        """Return an object of the agent's class; None, with a warning, if the project does not have the class."""
-        written = spec.agent_class or ""
-        name = written.partition("(")[0].strip()
-        if name in _DEFAULTS:
-            return None
-        from jacaros.agents.python.customising import object_of
 
-        try:
-            made = object_of(self._modules, written)
-        except (ProjectError, NotImported):
-            raise
-        except JacarosError as error:
-            raise self._project_error(spec, str(error)) from error
-        if made is None:
-            self._warn_once(_java_class(spec, name))
-        return made
+def object_of_class(modules: ProjectModules, spec: AgentSpec, warn: Warn) -> "Made | None":
+    """Return an object of the class of an agent; None, with a warning, if the project does not have the class.
 
-    def _warn_once(self, warning: Diagnostic) -> None:
-        if warning.message not in self._warned:
-            self._warned.add(warning.message)
-            self._warn(warning)
+    Raises:
+        ProjectError: the class cannot be instantiated.
+    """
+    written = spec.agent_class or ""
+    name = written.partition("(")[0].strip()
+    if name in _DEFAULTS:
+        return None
+    from jacaros.agents.python.customising import object_of  # here: most projects have no classes
 
-    def _project_error(self, spec: AgentSpec, message: str) -> ProjectError:
-        return ProjectError([Diagnostic("error", message, spec.span)])
+    try:
+        made = object_of(modules, written)
+    except (ProjectError, NotImported):
+        raise
+    except JacarosError as error:
+        raise _project_error(spec, str(error)) from error
+    if made is None:
+        warn(_java_class(spec, name))
+    return made
+
+
+def begin_as(spec: AgentSpec, mind: Mind, face: "Made") -> None:
+    """Connect a mind to an object of a class.
+
+    Raises:
+        ProjectError: its ``init`` fails.
+    """
+    from jacaros.agents.python import customising
+    from jacaros.agents.python.declaring import crash_text
+
+    try:
+        customising.begin_as(mind, face.made)
+        face.made.init(*face.arguments)
+    except JacarosError as error:
+        raise _project_error(spec, str(error)) from error
+    except Exception as error:
+        message = crash_text(f"agent {spec.name}", face.made.init, error)
+        raise _project_error(spec, message) from error
+
+
+def _project_error(spec: AgentSpec, message: str) -> ProjectError:
+    return ProjectError([Diagnostic("error", message, spec.span)])
 
 
 def _java_class(spec: AgentSpec, name: str) -> Diagnostic:

@@ -4,12 +4,13 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
+from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind, new_engine
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.mind.storage import copy_mind
 from jacaros.errors import JacarosError
-from jacaros.mas.agent_classes import AgentClasses
+from jacaros.mas.agent_classes import begin_as, check_classes, object_of_class
 from jacaros.mas.agent_host import AgentHost, Run
 from jacaros.mas.agent_options import mind_options
 from jacaros.mas.deployment import AgentSpec
@@ -27,7 +28,6 @@ class AgentLifecycle:
         run: port of the run for their hosts.
         directory: the directory of agents.
         programs: reads programs.
-        classes: creates agents of user-defined classes.
         code: the project's Python code.
         seed: seed of the run.
         plain: run plans without generated code.
@@ -44,7 +44,6 @@ class AgentLifecycle:
         run: Run,
         directory: Directory[AgentHost],
         programs: Programs,
-        classes: AgentClasses,
         code: PythonCode,
         seed: int,
         plain: bool,
@@ -54,13 +53,13 @@ class AgentLifecycle:
         self.programs = programs
         self._run = run
         self._directory = directory
-        self._classes = classes
         self._code = code
         self._seed = seed
         self._plain = plain
         self._situate = situate
         self._when_made = when_made
         self.when_ended: Callable[[str], None] = lambda name: None
+        self._warned: set[str] = set()
         self._specs: dict[str, AgentSpec] = {}
         self._plans: dict[int, ProgramPlans] = {}
         self._uncompiled: deque[ProgramPlans] = deque()
@@ -71,7 +70,12 @@ class AgentLifecycle:
         Raises:
             ProjectError: all errors.
         """
-        self._classes.check(agents)
+        check_classes(self._code.modules, agents, self._warn)
+
+    def _warn(self, warning: Diagnostic) -> None:
+        if warning.message not in self._warned:
+            self._warned.add(warning.message)
+            self._run.console.log(warning.render(), "warning")
 
     def add(self, spec: AgentSpec, program: Program) -> AgentHost:
         """Create an agent. To start it, call `begin`.
@@ -79,17 +83,42 @@ class AgentLifecycle:
         Raises:
             ProjectError: its class cannot be found or instantiated.
         """
-        name = spec.name
-        self._specs[name] = spec
-        seed = f"{self._seed}/{name}"
-        options = replace(mind_options(spec.options), plans_from_others=not self._code.restricted)
-        plans = self.plans_of(program)
-        host = self._classes.make(spec, _initial(spec, program), self._run, seed, options, self._code, plans)
-        self._directory.add(name, host)
+        self._specs[spec.name] = spec
+        host = self._make(spec, program)
+        self._directory.add(spec.name, host)
         self._situate(host, spec)
         if self._when_made is not None:
             self._when_made(host)
         return host
+
+    def _make(self, spec: AgentSpec, program: Program) -> AgentHost:
+        """Return the host of an agent, with its mind."""
+        seed = f"{self._seed}/{spec.name}"
+        if spec.is_python:
+            from jacaros.mas.python_agents import loading  # here: most projects have none
+
+            return loading.make(self._code.modules, spec, self._run, seed)
+        made = object_of_class(self._code.modules, spec, self._warn)
+        host = AgentHost(spec.name, self._run, seed)
+        kind = Mind
+        if made is not None:
+            from jacaros.agents.python.customising import CustomMind  # here: most projects have no classes
+
+            kind = CustomMind
+        options = replace(mind_options(spec.options), plans_from_others=not self._code.restricted)
+        # The goals of a situated agent come later: see `AgentHost.begin`.
+        initial = replace(program, goals=()) if spec.is_situated else program
+        plans = self.plans_of(program)
+        mind = kind(spec.name, initial, host, options, self._code.actions, plans)  # pyright: ignore[reportArgumentType]
+        self._code.serve(mind)
+        host.set_mind(mind)
+        if made is not None:
+            begin_as(spec, mind, made)
+        return host
+
+    def begin(self, host: AgentHost, program: Program) -> None:
+        """Start an agent."""
+        host.begin(program.goals if self._specs[host.name].is_situated else None)
 
     def plans_of(self, program: Program) -> ProgramPlans:
         """Return the plans of a program. Agents with the same program share them, compiled."""
@@ -119,9 +148,8 @@ class AgentLifecycle:
         log = self._run.console.log
         try:
             path = self.programs.path.find(wanted)
-            spec = AgentSpec(
-                self._directory.free_name(name), path, name, agent_class=classes.get("agentClass")
-            )
+            free = self._directory.free_name(name)
+            spec = AgentSpec(free, path, name, agent_class=classes.get("agentClass"))
             program = self.programs.load(spec)
             host = self.add(spec, program)
         except FileNotFoundError as missing:
@@ -135,7 +163,7 @@ class AgentLifecycle:
             if found is not None:
                 topic, what = found
                 log(f"warning: {what} of agent {name} has no effect: {topic.why}; {topic.help}", "warning")
-        begin(host, spec, program)
+        self.begin(host, program)
         return host.name
 
     def clone(self, original: str, name: str) -> str | None:
@@ -145,12 +173,12 @@ class AgentLifecycle:
         """
         host = self._directory.find(original)
         spec = self._specs.get(original)
-        if host is None or spec is None or not isinstance(host.mind, Mind):
+        if host is None or spec is None or host.mind is None:
             message = f"error: agent {name}: cannot clone unknown agent `{original}`"
             self._run.console.log(message, "error")
             return None
         copy = self.add(replace(spec, name=self._directory.free_name(name)), host.mind.program)
-        assert isinstance(copy.mind, Mind)
+        assert copy.mind is not None
         copy_mind(host.mind, copy.mind)
         return copy.name
 
@@ -160,10 +188,10 @@ class AgentLifecycle:
         Return False if it is unknown or refuses.
         """
         host = self._directory.find(name)
-        if host is None or not host.mind.accept_kill(killer):
+        if host is None or not host.accept_kill(killer):
             return False
         if delay > 0:
-            host.mind.shut_down_in(delay * 1000)
+            host.shut_down_in(delay)
             AgentTimer(self._run.clock, self._run.activity, delay, lambda: self.end(host))
         else:
             self.end(host)
@@ -176,21 +204,3 @@ class AgentLifecycle:
         host.halt()
         host.end()
         self.when_ended(host.name)
-
-
-def begin(host: AgentHost, spec: AgentSpec, program: Program) -> None:
-    """Start a mind. As in JaCaMo, it perceives what it focuses before it adopts its goals."""
-    host.mind.start()
-    if _is_situated(spec):
-        host.mind.run(1)
-        host.mind.adopt(program.goals)
-
-
-def _is_situated(spec: AgentSpec) -> bool:
-    """Return whether an agent joins workspaces or focuses artifacts at its start."""
-    return bool(spec.join or spec.focus)
-
-
-def _initial(spec: AgentSpec, program: Program) -> Program:
-    """Return the program that the mind starts with. The goals of a situated agent come later: see `begin`."""
-    return replace(program, goals=()) if _is_situated(spec) else program

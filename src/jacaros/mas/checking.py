@@ -14,7 +14,7 @@ from jacaros.agents.language.loader import parse_literals, read_program
 from jacaros.files.python_modules import ModuleUnreadable, ProjectModules
 from jacaros.files.texts import is_file
 from jacaros.files.yaml import Problem
-from jacaros.mas.agent_classes import AgentClasses
+from jacaros.mas.agent_classes import check_classes
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.loading import load_deployment
 from jacaros.mas.programs import NEVER_SELECTED, Programs, text_of
@@ -368,12 +368,13 @@ def _of_classes(
     deployment: Deployment, folders: tuple[Path, ...], unseen: set[Path] | None
 ) -> list[Diagnostic]:
     """Return the errors in the classes that agents declare."""
-    found: list[Diagnostic] = []
+    found: dict[str, Diagnostic] = {}  # a class without effect is reported once
+    modules = ProjectModules(*folders, unseen=unseen)
     try:
-        AgentClasses(ProjectModules(*folders, unseen=unseen), found.append).check(deployment.agents)
+        check_classes(modules, deployment.agents, lambda warning: found.setdefault(warning.message, warning))
     except ProjectError as error:
-        found += error.diagnostics
-    return found
+        return [*found.values(), *error.diagnostics]
+    return [*found.values()]
 
 
 def _of_project(diagnostic: Diagnostic) -> Diagnostic:

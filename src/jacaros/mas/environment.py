@@ -18,7 +18,7 @@ from jacaros.artifacts.env.ports import Workspace, ignore_made
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kernel.acceptance import Unsuitable
 from jacaros.artifacts.kernel.declaration import Parameter
-from jacaros.artifacts.presence.presence import Presence
+from jacaros.artifacts.presence.presence import Account, Presence
 from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.files.texts import close_matches
 from jacaros.mas.agent_host import AgentHost
@@ -54,6 +54,27 @@ class Resources(Mapping[str, object]):
 
     def __len__(self) -> int:
         return len(self._makers)
+
+
+class OperationAccount(Account):
+    """Counts the running operations of Python code. Its waits do not concern the agents.
+
+    Args:
+        activity: counts what the agents wait for.
+        settled: called whenever an operation has ended.
+    """
+
+    def __init__(self, activity: Activity, settled: Callable[[], None]) -> None:
+        self._activity, self._settled = activity, settled
+
+    def begin(self) -> None:
+        """An operation, or something else with an end, has begun."""
+        self._activity.begin()
+
+    def end(self) -> None:
+        """It has ended."""
+        self._activity.end()
+        self._settled()
 
 
 class TypeFinder:

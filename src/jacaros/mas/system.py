@@ -13,9 +13,8 @@ from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Services
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.agent_classes import AgentClasses
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
+from jacaros.mas.agent_lifecycle import AgentLifecycle
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
@@ -64,7 +63,7 @@ class System:
         idleness: detects when the run is idle.
         lifecycle: creates and ends agents.
         mailboxes: delivers messages between agents.
-        deliver: delivers a message. Returns False if the receiver is unknown.
+        deliver, agent_names, create_agent, clone_agent, kill_agent: requests of agents.
         lost_goals: number of failed goals without a plan for their failure, and of Python agents that an exception ended.
         services: the directory facilitator. May be replaced before the run starts.
     """
@@ -102,11 +101,13 @@ class System:
         if self.options.until_idle or when_idle is not None:
             self.idleness.watch(when_idle or (lambda: self.end(0)))
         self.mailboxes = Mailboxes(self.directory.find, self.directory.find_other)
-        self.deliver = self.mailboxes.deliver
+        self.deliver, self.agent_names = self.mailboxes.deliver, self.directory.names
         self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
         self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
         self.lifecycle = self._found(prepare, when_made)
+        self.create_agent, self.clone_agent = self.lifecycle.create, self.lifecycle.clone
+        self.kill_agent = self.lifecycle.kill
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
@@ -144,17 +145,8 @@ class System:
 
         deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
         programs = Programs(deployment.source_paths, warn, code, prepare)
-        classes = AgentClasses(self._modules, lambda warning: warn(warning.render()))
         return AgentLifecycle(
-            self,
-            self.directory,
-            programs,
-            classes,
-            code,
-            self._seed,
-            self.options.plain,
-            self._situate,
-            when_made,
+            self, self.directory, programs, code, self._seed, self.options.plain, self._situate, when_made
         )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
@@ -278,12 +270,11 @@ class System:
         if self._has_environment and self._has_workspace_setup():
             await self.run_environment().set_up(self.deployment)
         await self.ros.guard()
-        agents = list(zip(self.deployment.agents, programs, strict=True))
-        hosts = [lifecycle.add(spec, program) for spec, program in agents]
+        hosts = list(map(lifecycle.add, self.deployment.agents, programs))
         if self.options.explain or any(map(asks_why, programs)):
             self.keep_history()
-        for host, (spec, program) in zip(hosts, agents, strict=True):
-            begin(host, spec, program)
+        for host, program in zip(hosts, programs, strict=True):
+            lifecycle.begin(host, program)
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self.ros.watch_parameters()
@@ -342,11 +333,10 @@ class System:
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
             if self._has_environment:
-                from jacaros.mas.python_agents.situation import (
-                    situate,  # here: most projects have no such agent
-                )
+                from jacaros.mas.python_agents.host import PythonAgentHost  # here: most projects have none
 
-                situate(host, spec, self.run_environment())
+                assert isinstance(host, PythonAgentHost)
+                host.situate(spec, self.run_environment())
             return
         if self._has_environment:
             host.make_body = lambda: self.run_environment().make_body(host)
@@ -360,11 +350,10 @@ class System:
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
             host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
-            host.mind = Mind(DIRECTORY_NAME, Program(), host)  # pyright: ignore[reportArgumentType]
+            host.set_mind(Mind(DIRECTORY_NAME, Program(), host))  # pyright: ignore[reportArgumentType]
             self.directory.add(DIRECTORY_NAME, host)
-        mind = host.mind
-        assert isinstance(mind, Mind)
-        return mind
+        assert host.mind is not None
+        return host.mind
 
     # ---- the end
 
@@ -472,36 +461,14 @@ class System:
 
     # ---- requests of agents
 
-    def agent_names(self) -> Sequence[str]:
-        """Return the names of all agents, in the order of creation."""
-        return self.directory.names()
-
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds, after announcing it to the agents."""
         if delay > 0:
             for host in self.directory:
-                host.mind.shut_down_in(delay * 1000)
+                host.shut_down_in(delay)
             AgentTimer(self.clock, self.activity, delay, lambda: self.end(exit_code))
         else:
             self.end(exit_code)
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create and start an agent. Return its final name, or None after logging the reason."""
-        return self.lifecycle.create(name, source, classes)
-
-    def clone_agent(self, original: str, name: str) -> str | None:
-        """Create an agent with a copy of the mind of *original*.
-
-        Return its final name, or None after logging the reason.
-        """
-        return self.lifecycle.clone(original, name)
-
-    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        """Kill an agent on behalf of another, *delay* seconds after announcing it.
-
-        Return False if it is unknown or refuses.
-        """
-        return self.lifecycle.kill(name, delay, killer)
 
     def end_agent(self, name: str) -> None:
         """End an agent immediately, without asking it. Unknown names have no effect."""

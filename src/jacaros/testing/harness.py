@@ -32,7 +32,7 @@ from jacaros.agents.mind.state.budget import Options
 from jacaros.errors import UsageError
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import file_text
-from jacaros.mas.coroutines import Ended, without_exit
+from jacaros.mas.agent_host import Ended, without_exit
 from jacaros.mas.embedding.running_agent import PursuedGoal
 from jacaros.mas.open_mind import OpenMind, literal
 from jacaros.mas.programs import Programs

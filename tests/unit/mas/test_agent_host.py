@@ -89,7 +89,7 @@ class FakeRun:
 def host_and_mind() -> tuple[AgentHost, Mind, FakeRun]:
     run_ = FakeRun()
     host, mind = AgentHost("ann", run_, "1"), Mind()
-    host.mind = mind
+    host.set_mind(mind)
     return host, mind, run_
 
 

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.agents.mind.storage import restore
 from jacaros.errors import UsageError
-from jacaros.mas.agent_lifecycle import begin
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
-from jacaros.mas.embedding.errors import UnknownAgent
-from jacaros.mas.embedding.run import EmbeddedRun
+from jacaros.mas.embedding.run import EmbeddedRun, OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.running_agent import RunningAgent
-from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
+from jacaros.mas.embedding.waits import UnknownAgent
 from jacaros.mas.loading import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.source_path import source_folders
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.errors import ArtifactId
     from jacaros.artifacts.env.ports import Workspace
     from jacaros.artifacts.presence.session import Session
-    from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
+    from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes, Stream
     from jacaros.mas.environment import RunEnvironment
     from jacaros.ros.backend import Backend
     from jacaros.sim import World
@@ -153,7 +151,7 @@ class Mas(EmbeddedRun):
         host = system.lifecycle.add(spec, tree)
         agent = self.agent(spec.name)
         if stored is None:
-            begin(host, spec, tree)
+            system.lifecycle.begin(host, tree)
         else:
             try:
                 restore(agent.mind, dict(stored))
@@ -236,12 +234,14 @@ class Mas(EmbeddedRun):
             self._mailboxes.add(known)
         return known
 
-    def output(self, agent: str | None = None) -> Stream[PrintedLine]:
+    def output(self, agent: str | None = None) -> "Stream[PrintedLine]":
         """Return the output of agents from now on, as an asynchronous iterator that ends with the run.
 
         Args:
             agent: only the output of this agent.
         """
+        from jacaros.mas.embedding.mailbox import Stream
+
         _, waits = self._running
         stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
 
@@ -343,11 +343,11 @@ class Mas(EmbeddedRun):
             OperationFailed: the workspace does not exist.
         """
         from jacaros.artifacts.presence.session import Session
-        from jacaros.mas.embedding.session_account import SessionAccount
+        from jacaros.mas.environment import OperationAccount
 
         environment = self.environment
         system = self._open
-        account = SessionAccount(system.activity, system.idleness)
+        account = OperationAccount(system.activity, system.idleness.look)
         session = Session(environment, name, _workspace(environment, workspace).path, account)
         self._at_end.append(session.close)
         return session

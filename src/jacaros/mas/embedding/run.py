@@ -5,13 +5,13 @@ from collections.abc import Callable, Coroutine
 from dataclasses import replace
 from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeVar
 
+from jacaros.artifacts.kernel.faults import error_text
 from jacaros.errors import UsageError
+from jacaros.mas.console import StandardConsole, place_of_fault
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.embedding.errors import RunEnded
-from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedConsole
-from jacaros.mas.embedding.waits import Waits
+from jacaros.mas.embedding.waits import RunEnded, Waits
 from jacaros.mas.history.explanation import Explanation
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
@@ -19,6 +19,74 @@ from jacaros.runtime.clock import Clock, VirtualClock, VirtualEventLoop, WallClo
 
 if TYPE_CHECKING:
     from jacaros.mas.debugging.debugger import Debugger
+
+
+class PrintedLine(NamedTuple):
+    """A line of an agent's output.
+
+    Attributes:
+        agent: name of the agent.
+        text: the line, without the name.
+    """
+
+    agent: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"[{self.agent}] {self.text}"
+
+
+OnPrint = Callable[[str, str], None]
+"""Called with the name of an agent and its output."""
+
+OnLog = Callable[[str, str], None]
+"""Called with a line of the log and its level: ``debug``, ``info``, ``warning`` or ``error``."""
+
+
+class PrintedConsole:
+    """The console of an embedded system.
+
+    Args:
+        on_print: prints the output of agents. Default: print ``[agent] text`` to standard output.
+        on_log: logs lines. Default: standard error.
+    """
+
+    def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
+        # Looks up the standard streams on each write: tests and notebooks replace them.
+        self._standard = StandardConsole()
+        self._on_print = on_print or self._standard.print
+        self._on_log = on_log or self._standard.log
+        self._listeners: list[OnPrint] = []
+
+    def listen(self, callback: OnPrint) -> Callable[[], None]:
+        """Also call *callback* with all output from now on. Return a function that ends this."""
+        self._listeners.append(callback)
+        return lambda: self._listeners.remove(callback) if callback in self._listeners else None
+
+    def print(self, agent: str, text: str) -> None:
+        """Print a line of an agent's output."""
+        for callback in (self._on_print, *self._listeners):
+            try:
+                callback(agent, text)
+            except Exception as error:
+                self.log(
+                    f"error: an on_print callback raised {error_text(error)}{place_of_fault(error)}",
+                    "error",
+                )
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Log a line."""
+        try:
+            self._on_log(text, level)
+        except Exception as error:
+            self._standard.log(text, level)
+            self._standard.log(
+                f"error: an on_log callback raised {error_text(error)}{place_of_fault(error)}", "error"
+            )
+
+    def close(self) -> None:
+        """Write what waits for a slow reader."""
+        self._standard.close()
 
 
 class EmbeddedRun:

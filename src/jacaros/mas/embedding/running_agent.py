@@ -18,8 +18,7 @@ from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Functor, String, Term, bare, deref
 from jacaros.errors import UsageError
 from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.embedding.errors import AgentEnded, GoalFailed
-from jacaros.mas.embedding.waits import Waits
+from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, Waits
 from jacaros.mas.open_mind import OpenMind, literal, question, values_of
 
 

@@ -90,7 +90,7 @@ class AgentRecords:
             self._ends[host.name] = self._observe_inbox(host)
 
     def _observe_inbox(self, host: "PythonAgentHost") -> Callable[[], None]:
-        inbox = host.mail.inbox
+        inbox = host.mail
         inbox.when_read = self._records.messages.read
 
         def end() -> None:

@@ -1,35 +1,31 @@
-"""The host of a Python agent: its tasks, messages and session."""
+"""The host of a Python agent: its tasks, handlers, messages and session."""
 
 import asyncio
-from collections.abc import Callable, Coroutine, Iterable, Iterator
+from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
+from inspect import isawaitable
 from typing import Any
 
 from jacaros.agents.language.loader import parse_literals
 from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.language.nodes import Literal as LiteralNode
-from jacaros.agents.mind.state.act import Completion, SpeechAct
-from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.python.agent import Literal, literal_of
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.python.agent import Literal, ReceivedMessage, literal_of, overridden
 from jacaros.agents.python.python_agent import PythonAgent
-from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.errors import WorkspaceError
 from jacaros.artifacts.kernel.faults import error_text
 from jacaros.artifacts.presence.presence import Observer
 from jacaros.artifacts.presence.session import Session
 from jacaros.errors import JacarosError
-from jacaros.mas.agent_host import AgentHost, Run
+from jacaros.mas.agent_host import PATIENCE, AgentHost, Run, without_exit
 from jacaros.mas.agent_options import mind_options
-from jacaros.mas.coroutines import without_exit
+from jacaros.mas.console import place_of_fault, places_of_fault
 from jacaros.mas.deployment import AgentSpec
-from jacaros.mas.python_agents.faults import fault_lines, place_of_fault
-from jacaros.mas.python_agents.handlers import Handlers
-from jacaros.mas.python_agents.messaging import Messaging
-from jacaros.mas.python_agents.task_activity import TaskActivity
+from jacaros.mas.environment import OperationAccount, RunEnvironment
+from jacaros.mas.idleness import Activity
+from jacaros.mas.messaging import Messaging
 from jacaros.runtime.clock import Clock
-
-_PATIENCE = 5.0
-"""Seconds that an agent has for its clean-up at the end of a run."""
 
 
 class PythonAgentHost(AgentHost):
@@ -44,12 +40,13 @@ class PythonAgentHost(AgentHost):
 
     def __init__(self, agent: PythonAgent, spec: AgentSpec, run: Run, seed: str) -> None:
         super().__init__(spec.name, run, seed)
-        name, self.options = spec.name, spec.options
+        self.options = spec.options
         self.beliefs = _beliefs(spec)
         self.open_session: Callable[[], Session] | None = None
         self.task_activity = TaskActivity(run.activity, self._settled)
-        self.mail = Messaging(name, self.send, run.agent_names, run.clock, run.activity, self.task_activity)
-        self.mind = _Task(self, mind_options(spec.options))
+        waiting = self.task_activity.waiting
+        self.mail = Messaging(spec.name, self.send, run.agent_names, run.clock, run.activity, waiting)
+        self._verbose = mind_options(spec.options).verbose
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
@@ -59,9 +56,13 @@ class PythonAgentHost(AgentHost):
         agent._host = self  # pyright: ignore[reportAttributeAccessIssue] - `send` is a field that holds a function
 
     @property
-    def agent(self) -> PythonAgent:
-        """Object of the user's class."""
-        return self._agent
+    def mind(self) -> None:
+        """None: it has tasks instead."""
+
+    @property
+    def verbose(self) -> int:
+        """The agent's option of this name."""
+        return self._verbose
 
     def observe(self, observer: Observer) -> None:
         """Report to *observer*, from now on, the agent's ``run``, its operations, and the state of its trees."""
@@ -71,8 +72,9 @@ class PythonAgentHost(AgentHost):
 
     # ---- lifecycle
 
-    def begin(self) -> None:
-        """Start the agent in the next turn of the event loop."""
+    def begin(self, goals: Sequence[LiteralNode] | None) -> None:
+        """Start the agent in the next turn of the event loop. It has no goals."""
+        del goals
         if self._leaving:
             return
         if self._handlers.wanted:
@@ -135,14 +137,26 @@ class PythonAgentHost(AgentHost):
 
     def _failed(self, error: BaseException) -> None:
         self.system.goal_lost()
-        for line in fault_lines(error):
+        for line in _fault_lines(error):
             self.system.console.log(f"[{self.name}] {line}", "error")
         if not self._leaving:
             self.system.end_agent(self.name)
 
-    def run(self, fuel: int) -> bool:
-        """Do nothing: the event loop runs its tasks."""
-        return False
+    def receive(self, message: SpeechAct) -> None:
+        """Receive a message."""
+        if not self._ended:
+            self.mail.receive(message)
+
+    def accept_kill(self, killer: str) -> bool:
+        """Return whether another agent may kill this one."""
+        try:
+            return bool(self._agent.accept_kill(killer))
+        except Exception as error:
+            self.log("error", f"accept_kill: {error_text(error)}{place_of_fault(error)}")
+            return True
+
+    def shut_down_in(self, seconds: float) -> None:
+        """Do nothing: it is cancelled at the end."""
 
     def _settled(self) -> None:
         """Check whether the run is idle, as after the turn of any agent."""
@@ -163,7 +177,7 @@ class PythonAgentHost(AgentHost):
         """Leave the environment, after its tasks have ended."""
         super().end()
         if self._tasks:
-            self.system.clock.call_later(_PATIENCE, self._shut)
+            self.system.clock.call_later(PATIENCE, self._shut)
         else:
             self._shut()
 
@@ -171,7 +185,7 @@ class PythonAgentHost(AgentHost):
         """Wait until its tasks have finished their clean-up."""
         await super().close()
         if self._tasks:
-            await asyncio.wait(tuple(self._tasks), timeout=_PATIENCE)
+            await asyncio.wait(tuple(self._tasks), timeout=PATIENCE)
         self._shut()
 
     def _shut(self) -> None:
@@ -179,7 +193,7 @@ class PythonAgentHost(AgentHost):
             return
         self._closed = True
         if self._tasks:
-            what = f"the agent did not end within {_PATIENCE:g} s of its cancellation"
+            what = f"the agent did not end within {PATIENCE:g} s of its cancellation"
             self.system.console.log(f"[{self.name}] warning: {what}", "warning")
         if self._session is not None:
             self._session.close()
@@ -216,6 +230,12 @@ class PythonAgentHost(AgentHost):
 
     # ---- the environment
 
+    def situate(self, spec: AgentSpec, where: RunEnvironment) -> None:
+        """Give the agent a session, which joins and focuses what the project declares."""
+        self.open_session = lambda: Session(where.environment, self.name, account=self.task_activity)
+        if spec.join or spec.focus:
+            where.situate(self.session.presence, spec)
+
     @property
     def session(self) -> Session:
         """The agent's session in the environment.
@@ -242,47 +262,6 @@ class PythonAgentHost(AgentHost):
             self.system.console.print(self.name, text)
 
 
-class _Task:
-    """Replaces a mind, for the run."""
-
-    def __init__(self, host: PythonAgentHost, options: Options) -> None:
-        self.stopped = False
-        self.options = options
-        self._host = host
-
-    def start(self) -> None:
-        """Start the agent."""
-        self._host.begin()
-
-    def post_goal(self, goal: Term) -> None:
-        """Do nothing: it has no goals."""
-
-    def adopt(self, goals: Iterable[LiteralNode]) -> None:
-        """Do nothing: it has no goals."""
-
-    def run(self, fuel: int) -> bool:
-        """Do nothing: it has no cycles."""
-        return False
-
-    def receive(self, message: SpeechAct) -> None:
-        """Receive a message."""
-        self._host.mail.inbox.put(message)
-
-    def accept_kill(self, killer: str) -> bool:
-        """Return whether another agent may kill this one."""
-        try:
-            return bool(self._host.agent.accept_kill(killer))
-        except Exception as error:
-            self._host.log("error", f"accept_kill: {error_text(error)}{place_of_fault(error)}")
-            return True
-
-    def complete(self, act_id: int, completion: Completion) -> None:
-        """Do nothing: it acts through its session."""
-
-    def shut_down_in(self, milliseconds: float) -> None:
-        """Do nothing: it is cancelled at the end."""
-
-
 def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
     if not spec.beliefs.strip():
         return ()
@@ -290,3 +269,149 @@ def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
         literal_of(lower_value(node))
         for node in parse_literals(spec.beliefs, f"the declaration of {spec.name}")
     )
+
+
+def _fault_lines(error: BaseException) -> list[str]:
+    """Return the exception, the line of the user's code that raised it, and the lines that led there."""
+    if isinstance(error.__cause__, SystemExit):
+        error = error.__cause__
+    places = places_of_fault(error)
+    lines = [f"error: the agent was ended by {error_text(error)}{place_of_fault(error)}"]
+    lines += [f"  called from {place}" for place in reversed(places[:-1])]
+    for each in error.exceptions if isinstance(error, BaseExceptionGroup) else ():
+        lines.append(f"  {error_text(each)}{place_of_fault(each)}")
+    return lines
+
+
+class Handlers:
+    """Calls the handlers of an agent in turn, in the order of events.
+
+    Args:
+        agent: the agent.
+        mail: its messages.
+        task_activity: counts waits.
+        start: runs a coroutine of the agent.
+    """
+
+    def __init__(
+        self,
+        agent: PythonAgent,
+        mail: Messaging,
+        task_activity: "TaskActivity",
+        start: Callable[[Coroutine[Any, Any, Any]], object],
+    ) -> None:
+        self._mail, self._task_activity, self._start = mail, task_activity, start
+        self._on_message = overridden(agent, PythonAgent, "on_message")
+        self._on_signal = overridden(agent, PythonAgent, "on_signal")
+        self._on_property = overridden(agent, PythonAgent, "on_property")
+        self._waiting: asyncio.Queue[Callable[[], Any]] = asyncio.Queue()
+
+    @property
+    def wanted(self) -> bool:
+        """Whether the agent has handlers."""
+        return any((self._on_message, self._on_signal, self._on_property))
+
+    async def serve(self) -> None:
+        """Call them until the agent ends."""
+        if self._on_message is not None:
+            self._start(self._read())
+        while True:
+            with self._task_activity.waiting():
+                handle = await self._waiting.get()
+            done = handle()
+            if isawaitable(done):
+                await done
+
+    def listen(self, session: Session) -> None:
+        """Record what the session of the agent perceives, from its beginning."""
+        if self._on_signal is not None:
+            on_signal = self._on_signal
+            session.on_signal(lambda signal: self._waiting.put_nowait(partial(on_signal, signal)))
+        if self._on_property is not None:
+            on_change = self._on_property
+            session.on_change(lambda change: self._waiting.put_nowait(partial(on_change, change)))
+
+    async def _read(self) -> None:
+        while True:
+            message = await self._mail.next_message(None)
+            self._waiting.put_nowait(partial(self._handle, message))
+
+    async def _handle(self, message: ReceivedMessage) -> None:
+        assert self._on_message is not None
+        answer = self._on_message(message)
+        if isawaitable(answer):
+            answer = await answer
+        if message.is_question and not message.answered:
+            message.reply(answer)
+
+
+class TaskActivity(OperationAccount):
+    """Counts the tasks of one agent. The agent is busy unless all of them wait for others.
+
+    A task waits for others while it is in `waiting`: for a message, a signal, a condition. A task that waits for
+    anything else, such as a thread or a socket, is busy. But if it has started tasks that are not the agent's own (with
+    ``asyncio.gather`` or a task group), and all of them wait for others, so does it.
+
+    Args:
+        activity: activity of the run.
+        settled: called whenever the agent may have become idle.
+    """
+
+    def __init__(self, activity: Activity, settled: Callable[[], None]) -> None:
+        super().__init__(activity, settled)
+        self._own: set[asyncio.Task[Any]] = set()
+        self._others: set[asyncio.Task[Any]] = set()
+        self._waiting: dict[asyncio.Task[Any], int] = {}
+        self._counted = False
+
+    @contextmanager
+    def under_way(self) -> Iterator[None]:
+        """Context of something with an end."""
+        self.begin()
+        try:
+            yield
+        finally:
+            self.end()
+
+    def add(self, task: "asyncio.Task[Any]") -> None:
+        """Add a task of the agent."""
+        self._own.add(task)
+        task.add_done_callback(self._gone)
+        self._count()
+
+    @contextmanager
+    def waiting(self) -> Iterator[None]:
+        """Context of a wait that something else must end."""
+        task = asyncio.current_task()
+        assert task is not None
+        if task not in self._own and task not in self._others:
+            self._others.add(task)
+            task.add_done_callback(self._gone)
+        self._waiting[task] = self._waiting.get(task, 0) + 1
+        self._count()
+        try:
+            yield
+        finally:
+            self._waiting[task] -= 1
+            if not self._waiting[task]:
+                del self._waiting[task]
+            self._count()
+
+    def _gone(self, task: "asyncio.Task[Any]") -> None:
+        self._own.discard(task)
+        self._others.discard(task)
+        self._count()
+
+    def _count(self) -> None:
+        busy = self._is_busy()
+        if busy and not self._counted:
+            self._activity.begin()
+        elif not busy and self._counted:
+            self._activity.end()
+            self._settled()
+        self._counted = busy
+
+    def _is_busy(self) -> bool:
+        if any(task not in self._waiting for task in self._others):
+            return True
+        return not self._others and any(task not in self._waiting for task in self._own)

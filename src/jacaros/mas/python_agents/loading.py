@@ -9,9 +9,9 @@ from jacaros.agents.python.python_agent import PythonAgent
 from jacaros.files.python_modules import UNSEEN, ModuleUnreadable, ProjectModules
 from jacaros.files.texts import suggestion
 from jacaros.mas.agent_host import Run
+from jacaros.mas.console import place_of_fault
 from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
-from jacaros.mas.python_agents.faults import place_of_fault
 from jacaros.mas.python_agents.host import PythonAgentHost
 
 _OF_MINDS: Final = (
@@ -85,7 +85,7 @@ def _classes(module: ModuleType) -> dict[str, type[PythonAgent]]:
     return own or known
 
 
-def check(modules: ProjectModules, spec: AgentSpec, warn: Callable[[Diagnostic], None]) -> None:
+def check(modules: ProjectModules, spec: AgentSpec, warn: Callable[[Diagnostic], object]) -> None:
     """Check the class of an agent, and warn about options without effect.
 
     Raises:

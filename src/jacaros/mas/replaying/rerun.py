@@ -158,6 +158,7 @@ class _Rerun:
             self._finish(act, each)
 
     def _finish(self, act: Act, recorded: RecordedAct) -> None:
+        assert self._host.mind is not None, "it runs a program"
         self._host.mind.complete(act.id, completion(recorded, act))
 
     def _act(self, act: Act) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 import jacaros
 from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.task_activity import TaskActivity
+from jacaros.mas.python_agents.host import TaskActivity
 
 
 class Stage:
