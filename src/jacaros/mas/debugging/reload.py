@@ -26,7 +26,7 @@ def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) 
     agents = [
         (host.mind, spec)
         for host in directory
-        if isinstance(host.mind, Mind)
+        if host.mind is not None
         and (spec := lifecycle.spec(host.name)) is not None
         and spec.source_path.suffix == ".asl"
         and not spec.is_python
