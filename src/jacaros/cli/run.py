@@ -31,8 +31,7 @@ from jacaros.files.texts import is_file
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import launch, load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.runtime.output import CLOSING, PATIENCE

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from jacaros.agents.mind.mind import Mind
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.ros.errors import RosError
@@ -64,9 +63,9 @@ class AgentHealth:
 
     def look(self, seconds: float) -> Status:
         """Return its state, *seconds* after the last call."""
-        mind = self._host.mind
-        if not isinstance(mind, Mind):
-            return Status(f"agent {self._host.name}", OK, "Python agent")
+        mind, name = self._host.mind, f"agent {self._host.name}"
+        if mind is None:
+            return Status(name, OK, "Python agent")
         waiting = len(mind.events) + len(mind.incoming.messages) + len(mind.incoming.percepts)
         self._grown = self._grown + 1 if waiting > self._waiting else 0
         rate = (mind.counts.cycles - self._cycles) / seconds
@@ -80,9 +79,8 @@ class AgentHealth:
         }
         if self._grown >= GROWING and waiting > MANY:
             text = f"{waiting} events, messages and percepts are waiting, and arrive faster than the agent processes them"
-            return Status(f"agent {self._host.name}", WARN, text, values)
-        doing = "reasoning" if mind.alive else "waiting for events"
-        return Status(f"agent {self._host.name}", OK, doing, values)
+            return Status(name, WARN, text, values)
+        return Status(name, OK, "reasoning" if mind.alive else "waiting for events", values)
 
 
 class Diagnostics:
@@ -134,24 +132,13 @@ class Diagnostics:
         for gone in set(self._health) - set(hosts):
             del self._health[gone]
         agents = [self._health.setdefault(host, AgentHealth(host)).look(PERIOD) for host in hosts]
-        return [self._connection(), *self._defect(), *agents]
-
-    def _connection(self) -> Status:
-        backend = self._backend
-        values = {
-            "middleware": backend.name,
-            "node": backend.node_name,
-            "connection losses": str(self._lost),
-        }
-        if backend.connected:
-            return Status("connection", OK, "connected", values)
-        return Status("connection", WARN, "ROS graph unreachable", values)
-
-    def _defect(self) -> list[Status]:
-        error = self._error()
-        if error is None:
-            return []
-        return [Status("run", ERROR, f"internal error: {type(error).__name__}: {error}")]
+        backend, error = self._backend, self._error()
+        values = {"middleware": backend.name, "node": backend.node_name, "connection losses": str(self._lost)}
+        level, text = (OK, "connected") if backend.connected else (WARN, "ROS graph unreachable")
+        found = [Status("connection", level, text, values)]
+        if error is not None:
+            found.append(Status("run", ERROR, f"internal error: {type(error).__name__}: {error}"))
+        return [*found, *agents]
 
     def _note_connection(self, connected: bool) -> None:
         self._lost += not connected
@@ -176,9 +163,6 @@ class Diagnostics:
         header = {"stamp": self._clock.now()}
         self._publisher.publish(self._publisher.message(header=header, status=statuses))
 
-
-if TYPE_CHECKING:
-    from jacaros.ros.backend import Backend
 
 LEVELS = {"debug": "debug", "info": "info", "warning": "warn", "error": "error"}
 """From a console's levels to those of ROS's log."""

@@ -5,14 +5,13 @@ declares a given parameter.
 """
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
 from jacaros.ros.backend import Backend, Subscription
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
 
@@ -152,53 +151,12 @@ class EmptyGraph:
             self._task.cancel()
 
 
-_DECLARING = 3.0
-"""Seconds of the run's clock: agents also create artifacts with their first steps."""
-
 _FEW = 5
 """Maximum number of names in a message: a file for all nodes of a robot may have hundreds."""
 
 
-class UndeclaredParameters:
-    """Logs which of the given parameters are not declared `_DECLARING` seconds after the start.
-
-    A run that ends before that logs it at its end.
-
-    Args:
-        names: names of the given parameters.
-        given: returns the parameters of our node; None without a node.
-        clock: measures the seconds.
-        log: takes one line.
-    """
-
-    def __init__(
-        self,
-        names: Iterable[str],
-        given: "Callable[[], GivenParameters | None]",
-        clock: Clock,
-        log: Callable[[str], None],
-    ) -> None:
-        self._names, self._given, self._log = sorted(names), given, log
-        self._is_told = False
-        self._timer = clock.call_later(_DECLARING, self.tell)
-
-    def tell(self) -> None:
-        """Log it, unless it has been logged."""
-        if self._is_told:
-            return
-        self.close()
-        given = self._given()
-        unknown, known = (self._names, []) if given is None else (given.untaken(), given.known())
-        if unknown:
-            self._log(_text(unknown, known))
-
-    def close(self) -> None:
-        """Stop watching."""
-        self._is_told = True
-        self._timer.cancel()
-
-
-def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
+def undeclared(unknown: Sequence[str], known: Sequence[str]) -> str:
+    """Return the warning about given parameters that nothing declares."""
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")
     near = dict.fromkeys(each for name in unknown for each in close_matches(name, known))

@@ -99,13 +99,7 @@ class Programs:
             program = self.read(agent.source_path, chooses)
         else:
             program = self._checked(agent.source_path, written, chooses)
-        place = f"the declaration of {agent.name}"
-        # As in Jason, the project's beliefs and goals come first.
-        beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
-        goals = parse_literals(agent.goals, place) if agent.goals.strip() else ()
-        if not beliefs and not goals:
-            return program
-        return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))
+        return with_declared(program, agent, f"the declaration of {agent.name}")
 
     def read(self, path: Path, chooses: bool = False) -> nodes.Program:
         """Return the program in a file.
@@ -128,7 +122,7 @@ class Programs:
             program = self._prepare(program, self._code)
         found = check_for_run(program, KnownActions(self._code.actions, self._code.help))
         for warning in wanted([*warnings, *found]):
-            if _concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
+            if concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
                 self._warn(warning.render())
         return program
 
@@ -159,7 +153,20 @@ class Programs:
         )
 
 
-def _concerns_author(warning: Diagnostic, path: Path) -> bool:
+def with_declared(program: nodes.Program, agent: AgentSpec, place: str) -> nodes.Program:
+    """Return a program with the beliefs and goals that the project declares. As in Jason, its goals come first.
+
+    Raises:
+        AslError: they have errors. *place* is their file in diagnostics.
+    """
+    beliefs = parse_literals(agent.beliefs, place) if agent.beliefs.strip() else ()
+    goals = parse_literals(agent.goals, place) if agent.goals.strip() else ()
+    if not beliefs and not goals:
+        return program
+    return replace(program, beliefs=(*program.beliefs, *beliefs), goals=(*goals, *program.goals))
+
+
+def concerns_author(warning: Diagnostic, path: Path) -> bool:
     """Return whether a warning concerns the author of the program at *path*.
 
     A library of JaCaROS does not. And a plan before an include often replaces one in it, as in tests.

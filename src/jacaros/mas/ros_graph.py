@@ -13,15 +13,12 @@ from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import ProjectError
 from jacaros.mas.options import RunOptions
-from jacaros.runtime.clock import Clock
+from jacaros.runtime.clock import Clock, Timer
 
 if TYPE_CHECKING:
     from jacaros.agents.language.diagnostics import Span
-    from jacaros.mas.graph_warnings import EmptyGraph, GraphTime, UndeclaredParameters
     from jacaros.mas.guarding import RunGuard
     from jacaros.ros.backend import Backend
-    from jacaros.ros.parameter import GivenParameters
-    from jacaros.ros.ros_clock import RosClock
     from jacaros.runtime.trace import Tracer
     from jacaros.sim.node import SimNode
     from jacaros.sim.world import World
@@ -32,6 +29,9 @@ DEFAULT_WORLD = "empty"
 
 NO_WORLD = "none"
 """Instead of the name of a world: no other node is in the in-process graph."""
+
+_DECLARING = 3.0
+"""Seconds of the run's clock in which given parameters must be declared: first steps of agents also create artifacts."""
 
 _GROUND_TRUTH = 1000
 """Number of points of a robot's path, and of events, that are kept by default: some minutes of motion."""
@@ -75,10 +75,9 @@ class RosGraph:
         self._tracer: Tracer | None = None
         self._companions: list[Backend] = []
         self._node: SimNode | None = None
-        self._followed: RosClock | None = None
-        self._time: GraphTime | None = None
-        self._empty: EmptyGraph | None = None
-        self._undeclared: UndeclaredParameters | None = None
+        self._watches: list[Callable[[], object]] = []
+        """What ends the observation of the graph."""
+        self._undeclared: Timer | None = None
         self._guard: RunGuard | None = None
         self.world: World | None = None
         self._world_watchers: tuple[Callable[[World], None], ...] = ()
@@ -108,8 +107,9 @@ class RosGraph:
             else:
                 from jacaros.mas.graph_warnings import GraphTime  # here: only for real graphs
 
-                self._time = GraphTime(backend, self._log_ros)
-                self._time.watch()
+                time = GraphTime(backend, self._log_ros)
+                time.watch()
+                self._watches.append(time.close)
             # Only on request: a project that names a world for practice also runs on the real robot.
             if self._options.world is not None:
                 self._start_world(backend)
@@ -179,19 +179,23 @@ class RosGraph:
 
     def watch_parameters(self) -> None:
         """Check whether the given parameters are declared. Called when everything has been created."""
-        if not self._options.parameters:
-            return
-        from jacaros.mas.graph_warnings import UndeclaredParameters  # here: few runs are given any
-
-        def given() -> "GivenParameters | None":
-            return self._backend.given_parameters if self._backend is not None else None
-
-        self._undeclared = UndeclaredParameters(self._options.parameters, given, self._clock, self._log_ros)
+        if self._options.parameters:
+            self._undeclared = self._clock.call_later(_DECLARING, self.ending)
+            self._watches.append(self._undeclared.cancel)
 
     def ending(self) -> None:
-        """Log pending warnings before the run ends."""
-        if self._undeclared is not None:
-            self._undeclared.tell()
+        """Log given parameters that nothing has declared; in any case before the run ends."""
+        if self._undeclared is None:
+            return
+        from jacaros.mas.graph_warnings import undeclared  # here: few runs are given any
+
+        self._undeclared.cancel()
+        self._undeclared = None
+        given = self._backend.given_parameters if self._backend is not None else None
+        names = self._options.parameters
+        unknown, known = (sorted(names), []) if given is None else (given.untaken(), given.known())
+        if unknown:
+            self._log_ros(undeclared(unknown, known))
 
     async def close(self) -> None:
         """Stop the robots, then the world, and leave the graph."""
@@ -204,14 +208,8 @@ class RosGraph:
                 steps.callback(self._node.close)
             if self._backend is not None:
                 steps.push_async_callback(self._backend.close)
-            if self._followed is not None:
-                steps.callback(self._followed.close)
-            if self._time is not None:
-                steps.callback(self._time.close)
-            if self._empty is not None:
-                steps.callback(self._empty.close)
-            if self._undeclared is not None:
-                steps.callback(self._undeclared.close)
+            for close in self._watches:
+                steps.callback(close)
 
     def _open(self) -> "Backend":
         backend = self._options.open(self._clock, self._name, self._log_ros)
@@ -228,14 +226,14 @@ class RosGraph:
         from jacaros.ros.ros_clock import RosClock
 
         assert isinstance(self._clock, RosClock), "the launch makes the clock that the options ask for"
-        self._followed = self._clock
         self._clock.listen(backend)
+        self._watches.append(self._clock.close)
 
     def _look_for_others(self, backend: "Backend") -> None:
         from jacaros.mas.graph_warnings import EmptyGraph
 
         where = f"the ROS 2 graph of domain {self._options.identity}"
-        self._empty = EmptyGraph(backend, self._clock, where, self._log_ros)
+        self._watches.append(EmptyGraph(backend, self._clock, where, self._log_ros).close)
 
     def _log_ros(self, text: str) -> None:
         self._log(f"[ros] {text}")

@@ -65,6 +65,10 @@ class System:
         mailboxes: delivers messages between agents.
         deliver, agent_names, create_agent, clone_agent, kill_agent: requests of agents.
         lost_goals: number of failed goals without a plan for their failure, and of Python agents that an exception ended.
+        exit_code: exit code of the run; None while it is running.
+        error: the defect of JaCaROS that ended the run, or None.
+        listen_to_log: calls a function with text and level of each line that is logged from now on. Returns a function that
+            ends this.
         services: the directory facilitator. May be replaced before the run starts.
     """
 
@@ -80,9 +84,14 @@ class System:
     ) -> None:
         self.deployment = deployment
         self.clock = clock
-        self.console: Console = console
-        self.options = options or RunOptions()
-        self.options.check()
+        self.options = options = options or RunOptions()
+        options.check()
+        if options.wants_rosout:
+            from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
+
+            console = RosoutConsole(console, lambda: self.ros.joined)
+        self.console: Console = HeardConsole(console)
+        self.listen_to_log = self.console.listen
         self.directory: Directory[AgentHost] = Directory()
         self.activity = Activity()
         self.idleness = Idleness(self.activity)
@@ -96,58 +105,32 @@ class System:
         self._keeps_history = False
         self._debugger: Debugger | None = None
         self._diagnostics: Diagnostics | None = None
-        self.ros = self._find_graph()
+        source, span, log = deployment.world, deployment.world_span, self.console.log
+        self.ros = RosGraph(options, clock, deployment.name, source, log, self.scheduler.hurry, span)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
-        if self.options.until_idle or when_idle is not None:
+        if options.until_idle or when_idle is not None:
             self.idleness.watch(when_idle or (lambda: self.end(0)))
         self.mailboxes = Mailboxes(self.directory.find, self.directory.find_other)
         self.deliver, self.agent_names = self.mailboxes.deliver, self.directory.names
         self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
-        self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
-        self.lifecycle = self._found(prepare, when_made)
+        self._seed = options.seed if options.seed is not None else Random().getrandbits(64)
+        code = PythonCode(self._modules, options.restricted)
+        programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), code, prepare)
+        self.lifecycle = AgentLifecycle(
+            self, self.directory, programs, code, self._seed, options.plain, self._situate, when_made
+        )
         self.create_agent, self.clone_agent = self.lifecycle.create, self.lifecycle.clone
         self.kill_agent = self.lifecycle.kill
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self._ending = False
         self.lost_goals = 0
-        self._exit_code: int | None = None
-        self._error: BaseException | None = None
+        self.exit_code: int | None = None
+        self.error: BaseException | None = None
 
     def _compile_ahead(self) -> bool:
         return self.lifecycle.compile_ahead()
-
-    def _find_graph(self) -> RosGraph:
-        deployment, options = self.deployment, self.options
-        if options.wants_rosout:
-            from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
-
-            self.console = RosoutConsole(self.console, lambda: self.ros.joined)
-        self.console = self._log = HeardConsole(self.console)
-        return RosGraph(
-            options,
-            self.clock,
-            deployment.name,
-            deployment.world,
-            self.console.log,
-            self.scheduler.hurry,
-            deployment.world_span,
-        )
-
-    def _found(
-        self,
-        prepare: Callable[[Program, PythonCode], Program] | None,
-        when_made: Callable[[AgentHost], None] | None,
-    ) -> AgentLifecycle:
-        def warn(text: str) -> None:
-            self.console.log(text, "warning")
-
-        deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
-        programs = Programs(deployment.source_paths, warn, code, prepare)
-        return AgentLifecycle(
-            self, self.directory, programs, code, self._seed, self.options.plain, self._situate, when_made
-        )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
         """Run the project until it ends. Return the exit code.
@@ -166,8 +149,8 @@ class System:
             code = await self.ended()
         finally:
             await self.close()
-        if self._error is not None:
-            raise self._error
+        if self.error is not None:
+            raise self.error
         return code
 
     @property
@@ -193,10 +176,6 @@ class System:
 
         return end
 
-    def listen_to_log(self, callback: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *callback* with text and level of each line that is logged from now on. Return a function that ends this."""
-        return self._log.listen(callback)
-
     @property
     def debugger(self) -> "Debugger":
         """Pauses and steps the run. Created on first use."""
@@ -204,13 +183,8 @@ class System:
             from jacaros.mas.debugging.debugger import Debugger  # here: most runs are not debugged
 
             self._debugger = Debugger(self)
-            self._debugger.listen(lambda _: self._look())
+            self._debugger.listen(lambda _: self._history.look() if self._history is not None else None)
         return self._debugger
-
-    def _look(self) -> None:
-        """Let the history, if any, record the state of the agents."""
-        if self._history is not None:
-            self._history.look()
 
     def history(self) -> "History":
         """Return the history of the run, for recordings, views and explanations. Created on first use."""
@@ -293,7 +267,7 @@ class System:
         from jacaros.mas.diagnostics import Diagnostics  # here: only for runs on a real graph
         from jacaros.ros.errors import UnknownInterface
 
-        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self._error)
+        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self.error)
         try:
             diagnostics.start()
         except UnknownInterface as missing:
@@ -370,7 +344,7 @@ class System:
             self.console.log(f"error: {goals} lost (--fail-on-lost-goal)", "error")
         self.ros.ending()
         self._ending = True
-        self._exit_code = exit_code
+        self.exit_code = exit_code
         self.scheduler.stop()
         self.idleness.stop()
         for host in self.directory:
@@ -391,16 +365,6 @@ class System:
         """Wait for the end of the run. Return the exit code."""
         assert self._ended is not None, "the run has not been started"
         return await asyncio.shield(self._ended)
-
-    @property
-    def exit_code(self) -> int | None:
-        """The exit code of the run; None while it is running."""
-        return self._exit_code
-
-    @property
-    def error(self) -> BaseException | None:
-        """The defect of JaCaROS that ended the run, or None."""
-        return self._error
 
     def goal_lost(self) -> None:
         """Count a failed goal without a plan for its failure."""
@@ -429,8 +393,8 @@ class System:
         if isinstance(error, MemoryError):
             self.out_of_memory()
             return
-        if self._error is None:
-            self._error = error
+        if self.error is None:
+            self.error = error
         self.end(1)
 
     def close_last(self, closer: Callable[[], Awaitable[None]]) -> None:

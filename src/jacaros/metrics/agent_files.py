@@ -9,7 +9,7 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.action_check import artifact_types
+from jacaros.mas.checks.artifacts import artifact_types
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.source_path import TEST_LIBRARY, SourcePath

@@ -10,7 +10,7 @@ from jacaros.artifacts.registry import type_finder
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import is_file
 from jacaros.files.yaml import plain_values
-from jacaros.mas.checking import MAPPINGS, PROJECTS, files_below
+from jacaros.mas.checks.files import MAPPINGS, PROJECTS, files_below
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.mappings import diagnostics_of
 from jacaros.mas.project.cursor import ProjectCursor

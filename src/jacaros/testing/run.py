@@ -18,8 +18,7 @@ from jacaros.errors import JacarosError, UsageError
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import file_text, help_line, is_file
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
-from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import launch, load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.programs import Programs
 from jacaros.mas.python_code import PythonCode

@@ -23,7 +23,7 @@ from jacaros.agents.terms.text import text
 from jacaros.errors import InternalError, JacarosError
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.deployment import Deployment, ProjectError
-from jacaros.mas.loading import mapped
+from jacaros.mas.launch import mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 from jacaros.mas.source_path import SourcePath, source_folders
 
 

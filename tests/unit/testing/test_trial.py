@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 from jacaros.mas.source_path import SourcePath
 from jacaros.runtime import clock
 from jacaros.testing.run import Outcome, suite_of

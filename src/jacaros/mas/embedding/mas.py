@@ -11,7 +11,7 @@ from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.run import EmbeddedRun, OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.waits import UnknownAgent
-from jacaros.mas.loading import load_deployment, mapped
+from jacaros.mas.launch import load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.source_path import source_folders
 
