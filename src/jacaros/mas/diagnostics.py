@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer

@@ -21,7 +21,7 @@ from jacaros.artifacts.kernel.declaration import Parameter
 from jacaros.artifacts.presence.presence import Account, Presence
 from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.files.texts import close_matches
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
     AgentSpec,
@@ -32,7 +32,7 @@ from jacaros.mas.deployment import (
     WorkspaceSpec,
     has_own_artifacts,
 )
-from jacaros.mas.idleness import Activity
+from jacaros.mas.scheduler import Activity
 from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:

@@ -18,10 +18,10 @@ from typing import Any, NoReturn
 
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.files.texts import is_file
+from jacaros.mas.agents.programs import PROJECTS, source_folders
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.options import RunOptions
-from jacaros.mas.source_path import PROJECTS, source_folders
 from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
 from jacaros.ros import lifetime

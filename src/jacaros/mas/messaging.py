@@ -10,7 +10,7 @@ from jacaros.agents.mind.state.act import SpeechAct, message_id
 from jacaros.agents.python.agent import ReceivedMessage
 from jacaros.agents.terms.values import Term
 from jacaros.mas.embedding.waits import UnknownAgent, fail
-from jacaros.mas.idleness import Activity, AgentTimer
+from jacaros.mas.scheduler import Activity, AgentTimer
 from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")

@@ -13,18 +13,17 @@ from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Services
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.agents.lifecycle import AgentLifecycle
+from jacaros.mas.agents.programs import Programs, asks_why
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory
-from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import Programs, asks_why
-from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
-from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.scheduler import Activity, AgentTimer, Idleness, Scheduler
 from jacaros.runtime.clock import Clock, of_run
 
 if TYPE_CHECKING:
@@ -258,7 +257,7 @@ class System:
 
     def _warn_of_real_time(self) -> None:
         if files := self._modules.loaded_files():
-            from jacaros.mas.time_of_day import readings  # here: few projects have Python code
+            from jacaros.mas.agents.python_code import readings  # here: few projects have Python code
 
             for warning in readings(files):
                 self.console.log(warning.render(), "warning")
@@ -307,7 +306,7 @@ class System:
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
             if self._has_environment:
-                from jacaros.mas.python_agents.host import PythonAgentHost  # here: most projects have none
+                from jacaros.mas.agents.python_agents import PythonAgentHost  # here: most projects have none
 
                 assert isinstance(host, PythonAgentHost)
                 host.situate(spec, self.run_environment())

@@ -16,7 +16,7 @@ from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.add_im import Selection
 from jacaros.agents.mind.rules.body_steps import Step
 from jacaros.agents.mind.state.plan import FAILED, Plan
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 
 INTERVAL = 1.0
 """Seconds between two checks."""

@@ -14,12 +14,18 @@ from jacaros.agents.language.loader import read_program
 from jacaros.files.python_modules import ModuleUnreadable, ProjectModules
 from jacaros.files.texts import is_file
 from jacaros.files.yaml import Problem
-from jacaros.mas.agent_classes import check_classes
+from jacaros.mas.agents.lifecycle import check_classes
+from jacaros.mas.agents.programs import (
+    NEVER_SELECTED,
+    Programs,
+    concerns_author,
+    source_folders,
+    text_of,
+    with_declared,
+)
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
-from jacaros.mas.programs import NEVER_SELECTED, Programs, concerns_author, text_of, with_declared
 from jacaros.mas.project.reading import read_project
-from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_path import source_folders
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact

@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
 from jacaros.errors import UsageError
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,

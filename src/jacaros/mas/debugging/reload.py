@@ -7,8 +7,8 @@ from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import shape
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.plan_changes import outdated_plans, replace_plans, replace_rules
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory
 
 NOTHING = "no program has changed"

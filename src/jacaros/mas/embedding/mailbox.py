@@ -12,9 +12,9 @@ from jacaros.agents.python.agent import Message
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Term, bare, is_list, list_items
+from jacaros.mas.embedding.running_agent import question, values_of
 from jacaros.mas.embedding.waits import RunEnded, Waits
 from jacaros.mas.messaging import Arrivals, Correspondent, Names, Send
-from jacaros.mas.open_mind import question, values_of
 
 T = TypeVar("T")
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from jacaros.agents.mind.storage import restore
 from jacaros.errors import UsageError
+from jacaros.mas.agents.programs import source_folders
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.run import EmbeddedRun, OnLog, OnPrint, PrintedLine
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.waits import UnknownAgent
 from jacaros.mas.launch import load_deployment, mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.source_path import source_folders
 
 if TYPE_CHECKING:
     from jacaros.agents.python.python_agent import PythonAgent

@@ -4,8 +4,8 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.mas.history.causes import CauseRecords

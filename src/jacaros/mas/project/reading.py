@@ -6,11 +6,11 @@ from typing import Final
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.files.texts import file_text, is_file
+from jacaros.mas.agents.programs import source_folders
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, Deployment, ProjectError
 from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.declarations import ArtifactPart, FocusPart, ProjectPart, WorkspacePart, condensed
 from jacaros.mas.project.resolving import ProjectAgents, ProjectPlaces, Remarks
-from jacaros.mas.source_path import source_folders
 
 _JCM: Final = ".jcm"
 _CODE_PATHS: Final = ("src", "src/env", "src/agt")

@@ -8,7 +8,8 @@ from jacaros.agents.language.diagnostics import AslError, Diagnostic, Span
 from jacaros.agents.language.loader import parse_literals
 from jacaros.artifacts.env.errors import resolve_path
 from jacaros.files.texts import suggestion
-from jacaros.mas.agent_options import check_option
+from jacaros.mas.agents.options import check_option
+from jacaros.mas.agents.programs import SourcePath
 from jacaros.mas.deployment import AgentSpec, FocusSpec, WorkspaceSpec
 from jacaros.mas.project.declarations import (
     INSTITUTIONS,
@@ -21,7 +22,6 @@ from jacaros.mas.project.declarations import (
     WorkspacePart,
     Written,
 )
-from jacaros.mas.source_path import SourcePath
 
 _MAIN = "/main"
 _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "system"})

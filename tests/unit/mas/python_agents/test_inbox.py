@@ -7,9 +7,9 @@ import pytest
 import jacaros
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.terms.values import atom
-from jacaros.mas.idleness import Activity
+from jacaros.mas.agents.python_agents import TaskActivity
 from jacaros.mas.messaging import Messaging
-from jacaros.mas.python_agents.host import TaskActivity
+from jacaros.mas.scheduler import Activity
 from jacaros.runtime.clock import clock_of
 
 

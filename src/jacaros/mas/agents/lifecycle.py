@@ -1,8 +1,9 @@
-"""The lifecycle of agents in a run: create, clone, end."""
+"""The lifecycle of agents in a run: create, clone, end; and agents whose class a project file names."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.agents.language.nodes import Program
@@ -10,15 +11,18 @@ from jacaros.agents.mind.mind import Mind, new_engine
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.mind.storage import copy_mind
 from jacaros.errors import JacarosError
-from jacaros.mas.agent_classes import begin_as, check_classes, object_of_class
-from jacaros.mas.agent_host import AgentHost, Run
-from jacaros.mas.agent_options import mind_options
-from jacaros.mas.deployment import AgentSpec
+from jacaros.files.python_modules import NotImported, ProjectModules
+from jacaros.mas.agents.host import AgentHost, Run
+from jacaros.mas.agents.options import mind_options
+from jacaros.mas.agents.programs import Programs
+from jacaros.mas.agents.python_code import PythonCode
+from jacaros.mas.deployment import AgentSpec, ProjectError
 from jacaros.mas.directory import Directory
-from jacaros.mas.idleness import AgentTimer
-from jacaros.mas.programs import Programs
 from jacaros.mas.project.declarations import class_without_effect
-from jacaros.mas.python_code import PythonCode
+from jacaros.mas.scheduler import AgentTimer
+
+if TYPE_CHECKING:
+    from jacaros.agents.python.customising import Made
 
 
 class AgentLifecycle:
@@ -95,9 +99,9 @@ class AgentLifecycle:
         """Return the host of an agent, with its mind."""
         seed = f"{self._seed}/{spec.name}"
         if spec.is_python:
-            from jacaros.mas.python_agents import loading  # here: most projects have none
+            from jacaros.mas.agents.python_agents import make_python_agent  # here: most projects have none
 
-            return loading.make(self._code.modules, spec, self._run, seed)
+            return make_python_agent(self._code.modules, spec, self._run, seed)
         made = object_of_class(self._code.modules, spec, self._warn)
         host = AgentHost(spec.name, self._run, seed)
         kind = Mind
@@ -204,3 +208,85 @@ class AgentLifecycle:
         host.halt()
         host.end()
         self.when_ended(host.name)
+
+
+_DEFAULTS = ("", "jason.asSemantics.Agent")
+
+Warn = Callable[[Diagnostic], object]
+"""Takes a warning."""
+
+
+def check_classes(modules: ProjectModules, agents: Iterable[AgentSpec], warn: Warn) -> None:
+    """Find the classes of agents, to report errors before anything runs.
+
+    Raises:
+        ProjectError: all errors.
+    """
+    wrong: list[Diagnostic] = []
+    for spec in agents:
+        try:
+            if spec.is_python:
+                from jacaros.mas.agents.python_agents import check_python_agent  # here: see `_make`
+
+                check_python_agent(modules, spec, warn)
+            else:
+                object_of_class(modules, spec, warn)
+        except NotImported:
+            continue
+        except ProjectError as error:
+            wrong += [d for d in error.diagnostics if d not in wrong]
+    if wrong:
+        raise ProjectError(wrong)
+
+
+def object_of_class(modules: ProjectModules, spec: AgentSpec, warn: Warn) -> "Made | None":
+    """Return an object of the class of an agent; None, with a warning, if the project does not have the class.
+
+    Raises:
+        ProjectError: the class cannot be instantiated.
+    """
+    written = spec.agent_class or ""
+    name = written.partition("(")[0].strip()
+    if name in _DEFAULTS:
+        return None
+    from jacaros.agents.python.customising import object_of  # here: most projects have no classes
+
+    try:
+        made = object_of(modules, written)
+    except (ProjectError, NotImported):
+        raise
+    except JacarosError as error:
+        raise _project_error(spec, str(error)) from error
+    if made is None:
+        warn(_java_class(spec, name))
+    return made
+
+
+def begin_as(spec: AgentSpec, mind: Mind, face: "Made") -> None:
+    """Connect a mind to an object of a class.
+
+    Raises:
+        ProjectError: its ``init`` fails.
+    """
+    from jacaros.agents.python import customising
+    from jacaros.agents.python.declaring import crash_text
+
+    try:
+        customising.begin_as(mind, face.made)
+        face.made.init(*face.arguments)
+    except JacarosError as error:
+        raise _project_error(spec, str(error)) from error
+    except Exception as error:
+        message = crash_text(f"agent {spec.name}", face.made.init, error)
+        raise _project_error(spec, message) from error
+
+
+def _project_error(spec: AgentSpec, message: str) -> ProjectError:
+    return ProjectError([Diagnostic("error", message, spec.span)])
+
+
+def _java_class(spec: AgentSpec, name: str) -> Diagnostic:
+    module, _, last = name.rpartition(".")
+    own = bool(module) and not name.startswith("jason.")
+    help = f"write `class {last}(jacaros.Agent)` in {module.replace('.', '/')}.py" if own else None
+    return Diagnostic("warning", f"the Java class `{name}` has no effect", spec.span, help)

@@ -9,8 +9,7 @@ from jacaros.agents.language.nodes import Literal
 from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, Timer
 from jacaros.agents.terms.values import String, atom, functor
 from jacaros.mas.console import Console
-from jacaros.mas.idleness import Activity, AgentTimer
-from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.scheduler import Activity, AgentTimer, Scheduler
 from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:
