@@ -48,22 +48,22 @@ class Status:
     values: dict[str, str] = field(default_factory=dict)
 
 
+@dataclass(eq=False)
 class AgentHealth:
     """Observes the queues of one agent.
 
-    Args:
+    Attributes:
         host: host of the agent.
     """
 
-    def __init__(self, host: AgentHost) -> None:
-        self._host = host
-        self._cycles = 0
-        self._waiting = 0
-        self._grown = 0
+    host: AgentHost
+    _cycles: int = 0
+    _waiting: int = 0
+    _grown: int = 0
 
     def look(self, seconds: float) -> Status:
         """Return its state, *seconds* after the last call."""
-        mind, name = self._host.mind, f"agent {self._host.name}"
+        mind, name = self.host.mind, f"agent {self.host.name}"
         if mind is None:
             return Status(name, OK, "Python agent")
         waiting = len(mind.events) + len(mind.incoming.messages) + len(mind.incoming.percepts)
@@ -83,31 +83,25 @@ class AgentHealth:
         return Status(name, OK, "reasoning" if mind.alive else "waiting for events", values)
 
 
+@dataclass(eq=False)
 class Diagnostics:
     """Publishes the state of a run.
 
-    Args:
+    Attributes:
         backend: the node of the run.
         clock: clock of the run.
         hosts: returns the current agents.
         error: returns the defect that ended the run, or None.
     """
 
-    def __init__(
-        self,
-        backend: "Backend",
-        clock: Clock,
-        hosts: Callable[[], Iterable[AgentHost]],
-        error: Callable[[], BaseException | None],
-    ) -> None:
-        self._backend = backend
-        self._clock = clock
-        self._hosts = hosts
-        self._error = error
-        self._health: dict[AgentHost, AgentHealth] = {}
-        self._publisher: Publisher | None = None
-        self._timer: Timer | None = None
-        self._lost = 0
+    backend: "Backend"
+    clock: Clock
+    hosts: Callable[[], Iterable[AgentHost]]
+    error: Callable[[], BaseException | None]
+    _health: dict[AgentHost, AgentHealth] = field(default_factory=dict)
+    _publisher: "Publisher | None" = None
+    _timer: Timer | None = None
+    _lost: int = 0
 
     def start(self) -> None:
         """Begin to publish.
@@ -115,9 +109,9 @@ class Diagnostics:
         Raises:
             UnknownInterface: ``diagnostic_msgs`` is not installed.
         """
-        self._publisher = self._backend.publisher(TOPIC, TYPE)
-        self._backend.on_connection(self._note_connection)
-        self._timer = self._clock.call_later(PERIOD, self._tick)
+        self._publisher = self.backend.publisher(TOPIC, TYPE)
+        self.backend.on_connection(self._note_connection)
+        self._timer = self.clock.call_later(PERIOD, self._tick)
 
     def close(self) -> None:
         """Publish the final state, and stop."""
@@ -128,11 +122,11 @@ class Diagnostics:
 
     def look(self) -> list[Status]:
         """Return the state of everything, `PERIOD` seconds after the last call."""
-        hosts = list(self._hosts())
+        hosts = list(self.hosts())
         for gone in set(self._health) - set(hosts):
             del self._health[gone]
         agents = [self._health.setdefault(host, AgentHealth(host)).look(PERIOD) for host in hosts]
-        backend, error = self._backend, self._error()
+        backend, error = self.backend, self.error()
         values = {"middleware": backend.name, "node": backend.node_name, "connection losses": str(self._lost)}
         level, text = (OK, "connected") if backend.connected else (WARN, "ROS graph unreachable")
         found = [Status("connection", level, text, values)]
@@ -145,11 +139,11 @@ class Diagnostics:
 
     def _tick(self) -> None:
         self._publish()
-        self._timer = self._clock.call_later(PERIOD, self._tick)
+        self._timer = self.clock.call_later(PERIOD, self._tick)
 
     def _publish(self) -> None:
         assert self._publisher is not None
-        prefix = self._backend.node_name.lstrip("/")
+        prefix = self.backend.node_name.lstrip("/")
         statuses = [
             {
                 "level": each.level,
@@ -160,7 +154,7 @@ class Diagnostics:
             }
             for each in self.look()
         ]
-        header = {"stamp": self._clock.now()}
+        header = {"stamp": self.clock.now()}
         self._publisher.publish(self._publisher.message(header=header, status=statuses))
 
 

@@ -91,7 +91,7 @@ class System:
             console = RosoutConsole(console, lambda: self.ros.joined)
         self.console: Console = HeardConsole(console)
         self.listen_to_log = self.console.listen
-        self.directory: Directory[AgentHost] = Directory()
+        self.directory: Directory = Directory()
         self.activity = Activity()
         self.idleness = Idleness(self.activity)
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 PATIENCE = 5.0
 """Seconds that coroutines and tasks of an agent have for their clean-up at the end of a run."""
+ADD_ENVIRONMENT = "add the line `environment: jacaros.Environment` to the project file"
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
@@ -65,6 +66,7 @@ class AgentHost:
         intercept: called first with each action. Returns whether it answers the action itself. For tests.
         intercept_stop: the same for the end of the run.
         system: its run.
+        verbose: the agent's option of this name.
         send: delivers a message. Returns False if the receiver is unknown.
         run: runs up to this number of cycles of the mind. Returns whether there is more to do.
     """
@@ -85,10 +87,12 @@ class AgentHost:
         "run",
         "send",
         "system",
+        "verbose",
     )
 
     def __init__(self, name: str, run: Run, seed: str) -> None:
         self.name = name
+        self.verbose = 1
         self.queued = False
         self.body: AgentBody | None = None
         self.make_body: Callable[[], AgentBody] | None = None
@@ -114,6 +118,7 @@ class AgentHost:
         """Set the mind."""
         self._mind = mind
         self.run = mind.run
+        self.verbose = mind.options.verbose
 
     def begin(self, goals: Sequence[Literal] | None) -> None:
         """Start the agent. As in JaCaMo, one that is given *goals* adopts them after it has perceived what it focuses."""
@@ -224,11 +229,6 @@ class AgentHost:
         if self.body is not None:
             self.body.resume_act(act_id)
 
-    @property
-    def verbose(self) -> int:
-        """The agent's option of this name."""
-        return self._mind.options.verbose
-
     def print(self, text: str) -> None:
         """Print a line of the program's output. An agent that has ended prints nothing."""
         if not self._ended:
@@ -236,10 +236,9 @@ class AgentHost:
 
     def log(self, level: str, text: str) -> None:
         """Log a line, subject to the agent's option ``verbose``."""
-        verbose = self.verbose
-        if verbose > 0 or level not in ("debug", "info"):
+        if self.verbose > 0 or level not in ("debug", "info"):
             # Details that an agent logs on request are shown, whatever the level of the console.
-            shown = "info" if level == "debug" and verbose > 1 else level
+            shown = "info" if level == "debug" and self.verbose > 1 else level
             self.system.console.log(f"[{self.name}] {level}: {text}", shown)
 
     def goal_lost(self) -> None:
@@ -264,10 +263,7 @@ def _no_turn(fuel: int) -> bool:
 
 def without_environment(act: Act) -> Completion:
     """Return the failure of an action in a project without an environment."""
-    text = (
-        f"unknown operation `{act.functor}`: the project has no environment "
-        "(add the line `environment: jacaros.Environment` to the project file)"
-    )
+    text = f"unknown operation `{act.functor}`: the project has no environment ({ADD_ENVIRONMENT})"
     reason = (_REASON, atom("no_environment"))
     return Completion(False, (), ((_ERROR_MSG, String(text)), reason))
 

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from jacaros.agents.language.diagnostics import Diagnostic
@@ -25,10 +25,11 @@ if TYPE_CHECKING:
     from jacaros.agents.python.customising import Made
 
 
+@dataclass(eq=False)
 class AgentLifecycle:
     """Creates and ends the agents of a run.
 
-    Args:
+    Attributes:
         run: port of the run for their hosts.
         directory: the directory of agents.
         programs: reads programs.
@@ -37,36 +38,22 @@ class AgentLifecycle:
         plain: run plans without generated code.
         situate: gives each agent its place in the environment: a body, or a function that creates one.
         when_made: called with every agent before it begins.
-
-    Attributes:
-        programs: reads programs.
         when_ended: called with every agent that ends before the run does.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        directory: Directory[AgentHost],
-        programs: Programs,
-        code: PythonCode,
-        seed: int,
-        plain: bool,
-        situate: Callable[[AgentHost, AgentSpec], None],
-        when_made: Callable[[AgentHost], None] | None = None,
-    ) -> None:
-        self.programs = programs
-        self._run = run
-        self._directory = directory
-        self._code = code
-        self._seed = seed
-        self._plain = plain
-        self._situate = situate
-        self._when_made = when_made
-        self.when_ended: Callable[[str], None] = lambda name: None
-        self._warned: set[str] = set()
-        self._specs: dict[str, AgentSpec] = {}
-        self._plans: dict[int, ProgramPlans] = {}
-        self._uncompiled: deque[ProgramPlans] = deque()
+    run: Run
+    directory: Directory
+    programs: Programs
+    code: PythonCode
+    seed: int
+    plain: bool
+    situate: Callable[[AgentHost, AgentSpec], None]
+    when_made: Callable[[AgentHost], None] | None = None
+    when_ended: Callable[[str], None] = lambda name: None
+    _warned: set[str] = field(default_factory=set)
+    _specs: dict[str, AgentSpec] = field(default_factory=dict)
+    _plans: dict[int, ProgramPlans] = field(default_factory=dict)
+    _uncompiled: deque[ProgramPlans] = field(default_factory=deque)
 
     def check(self, agents: Iterable[AgentSpec]) -> None:
         """Find the classes of agents, to report errors before anything runs.
@@ -74,12 +61,12 @@ class AgentLifecycle:
         Raises:
             ProjectError: all errors.
         """
-        check_classes(self._code.modules, agents, self._warn)
+        check_classes(self.code.modules, agents, self._warn)
 
     def _warn(self, warning: Diagnostic) -> None:
         if warning.message not in self._warned:
             self._warned.add(warning.message)
-            self._run.console.log(warning.render(), "warning")
+            self.run.console.log(warning.render(), "warning")
 
     def add(self, spec: AgentSpec, program: Program) -> AgentHost:
         """Create an agent. To start it, call `begin`.
@@ -89,32 +76,32 @@ class AgentLifecycle:
         """
         self._specs[spec.name] = spec
         host = self._make(spec, program)
-        self._directory.add(spec.name, host)
-        self._situate(host, spec)
-        if self._when_made is not None:
-            self._when_made(host)
+        self.directory.add(spec.name, host)
+        self.situate(host, spec)
+        if self.when_made is not None:
+            self.when_made(host)
         return host
 
     def _make(self, spec: AgentSpec, program: Program) -> AgentHost:
         """Return the host of an agent, with its mind."""
-        seed = f"{self._seed}/{spec.name}"
+        seed = f"{self.seed}/{spec.name}"
         if spec.is_python:
             from jacaros.mas.agents.python_agents import make_python_agent  # here: most projects have none
 
-            return make_python_agent(self._code.modules, spec, self._run, seed)
-        made = object_of_class(self._code.modules, spec, self._warn)
-        host = AgentHost(spec.name, self._run, seed)
+            return make_python_agent(self.code.modules, spec, self.run, seed)
+        made = object_of_class(self.code.modules, spec, self._warn)
+        host = AgentHost(spec.name, self.run, seed)
         kind = Mind
         if made is not None:
             from jacaros.agents.python.customising import CustomMind  # here: most projects have no classes
 
             kind = CustomMind
-        options = replace(mind_options(spec.options), plans_from_others=not self._code.restricted)
+        options = replace(mind_options(spec.options), plans_from_others=not self.code.restricted)
         # The goals of a situated agent come later: see `AgentHost.begin`.
         initial = replace(program, goals=()) if spec.is_situated else program
         plans = self.plans_of(program)
-        mind = kind(spec.name, initial, host, options, self._code.actions, plans)  # pyright: ignore[reportArgumentType]
-        self._code.serve(mind)
+        mind = kind(spec.name, initial, host, options, self.code.actions, plans)  # pyright: ignore[reportArgumentType]
+        self.code.serve(mind)
         host.set_mind(mind)
         if made is not None:
             begin_as(spec, mind, made)
@@ -128,7 +115,7 @@ class AgentLifecycle:
         """Return the plans of a program. Agents with the same program share them, compiled."""
         made = self._plans.get(id(program.plans))
         if made is None:
-            made = ProgramPlans(program.plans, new_engine(self._code.actions, self._plain))
+            made = ProgramPlans(program.plans, new_engine(self.code.actions, self.plain))
             self._plans[id(program.plans)] = made
             self._uncompiled.append(made)
         return made
@@ -149,10 +136,10 @@ class AgentLifecycle:
     def create(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
         """Create and start an agent for another one. Return its final name, or None after logging the reason."""
         wanted = source if source is not None else f"{name}.asl"
-        log = self._run.console.log
+        log = self.run.console.log
         try:
             path = self.programs.path.find(wanted)
-            free = self._directory.free_name(name)
+            free = self.directory.free_name(name)
             spec = AgentSpec(free, path, name, agent_class=classes.get("agentClass"))
             program = self.programs.load(spec)
             host = self.add(spec, program)
@@ -175,13 +162,13 @@ class AgentLifecycle:
 
         Return its final name, or None after logging the reason.
         """
-        host = self._directory.find(original)
+        host = self.directory.find(original)
         spec = self._specs.get(original)
         if host is None or spec is None or host.mind is None:
             message = f"error: agent {name}: cannot clone unknown agent `{original}`"
-            self._run.console.log(message, "error")
+            self.run.console.log(message, "error")
             return None
-        copy = self.add(replace(spec, name=self._directory.free_name(name)), host.mind.program)
+        copy = self.add(replace(spec, name=self.directory.free_name(name)), host.mind.program)
         assert copy.mind is not None
         copy_mind(host.mind, copy.mind)
         return copy.name
@@ -191,20 +178,20 @@ class AgentLifecycle:
 
         Return False if it is unknown or refuses.
         """
-        host = self._directory.find(name)
+        host = self.directory.find(name)
         if host is None or not host.accept_kill(killer):
             return False
         if delay > 0:
             host.shut_down_in(delay)
-            AgentTimer(self._run.clock, self._run.activity, delay, lambda: self.end(host))
+            AgentTimer(self.run.clock, self.run.activity, delay, lambda: self.end(host))
         else:
             self.end(host)
         return True
 
     def end(self, host: AgentHost) -> None:
         """End an agent."""
-        if self._directory.find(host.name) is host:
-            self._directory.remove(host.name)
+        if self.directory.find(host.name) is host:
+            self.directory.remove(host.name)
         host.halt()
         host.end()
         self.when_ended(host.name)

@@ -22,7 +22,7 @@ from jacaros.artifacts.presence.session import Session
 from jacaros.errors import JacarosError
 from jacaros.files.python_modules import UNSEEN, ModuleUnreadable, ProjectModules
 from jacaros.files.texts import suggestion
-from jacaros.mas.agents.host import PATIENCE, AgentHost, Run, without_exit
+from jacaros.mas.agents.host import ADD_ENVIRONMENT, PATIENCE, AgentHost, Run, without_exit
 from jacaros.mas.agents.options import mind_options
 from jacaros.mas.console import place_of_fault, places_of_fault
 from jacaros.mas.deployment import AgentSpec, ProjectError
@@ -51,7 +51,7 @@ class PythonAgentHost(AgentHost):
         self.task_activity = TaskActivity(run.activity, self._settled)
         waiting = self.task_activity.waiting
         self.mail = Messaging(spec.name, self.send, run.agent_names, run.clock, run.activity, waiting)
-        self._verbose = mind_options(spec.options).verbose
+        self.verbose = mind_options(spec.options).verbose
         self._agent = agent
         self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
         self._session: Session | None = None
@@ -63,11 +63,6 @@ class PythonAgentHost(AgentHost):
     @property
     def mind(self) -> None:
         """None: it has tasks instead."""
-
-    @property
-    def verbose(self) -> int:
-        """The agent's option of this name."""
-        return self._verbose
 
     def observe(self, observer: Observer) -> None:
         """Report to *observer*, from now on, the agent's ``run``, its operations, and the state of its trees."""
@@ -250,10 +245,7 @@ class PythonAgentHost(AgentHost):
         """
         if self._session is None:
             if self.open_session is None:
-                raise WorkspaceError(
-                    "the project has no environment (add the line `environment: jacaros.Environment` to the project "
-                    "file)"
-                )
+                raise WorkspaceError(f"the project has no environment ({ADD_ENVIRONMENT})")
             self._session = self.open_session()
             self._session.observer = self._observer
             self._handlers.listen(self._session)

@@ -9,6 +9,7 @@ import inspect
 import os
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -62,24 +63,24 @@ def check_beliefs(
     return [*check.misspelt(), *check.never_happening(), *check.from_wrong_source()]
 
 
+@dataclass(frozen=True)
 class _BeliefCheck:
     """The beliefs of a project."""
 
-    def __init__(
-        self,
-        found: Sequence[Beliefs],
-        types: "Callable[[], Sequence[type[Artifact]] | None]",
-        folders: tuple[Path, ...],
-    ) -> None:
-        self._found, self._types, self._folders = found, types, folders
-        self._said = {word for each in found for word in each.said} | _OF_THE_SYSTEM
+    found: Sequence[Beliefs]
+    types: "Callable[[], Sequence[type[Artifact]] | None]"
+    folders: tuple[Path, ...]
+
+    @cached_property
+    def _said(self) -> set[str]:
+        return {word for each in self.found for word in each.said} | _OF_THE_SYSTEM
 
     @cached_property
     def _observables(self) -> frozenset[str] | None:
         """The properties and signals of all artifacts; None if they are not known, because code computes their names."""
         from jacaros.artifacts.env.manual import described, own_classes, written_properties, written_signals
 
-        types = self._types()
+        types = self.types()
         names: set[str] = set()
         for artifact_type in types or ():
             if any(map(_works_names_out, own_classes(artifact_type))):
@@ -91,10 +92,10 @@ class _BeliefCheck:
 
     def misspelt(self) -> Iterator[Diagnostic]:
         """Return warnings about names that are nearly those of beliefs that are added."""
-        made = {name for each in self._found for name in each.made}
-        known = {name for each in self._found for name in each.mentioned} | made | _OF_THE_SYSTEM
+        made = {name for each in self.found for name in each.made}
+        known = {name for each in self.found for name in each.mentioned} | made | _OF_THE_SYSTEM
         asked: dict[str, list[nodes.Literal]] = {}
-        for each in self._found:
+        for each in self.found:
             for name, literals in each.asked.items():
                 if name not in known:
                     asked.setdefault(name, []).extend(filter(_is_own, literals))
@@ -115,24 +116,24 @@ class _BeliefCheck:
         """Return names that are another form of a word (``zone``, ``zones``) and have a fact that answers the query."""
         return [
             known
-            for each in self._found
+            for each in self.found
             for known, facts in each.facts.items()
             if is_slip_of(name, known) and any(is_fact_of(one, fact) for one in asked for fact in facts)
         ]
 
     def never_happening(self) -> Iterator[Diagnostic]:
         """Return warnings about plans for beliefs that only rules conclude, or that are added only with another arity."""
-        made = {key for each in self._found for key in each.made_as}
-        mentioned = {key for each in self._found for key in each.mentioned_as} | made
+        made = {key for each in self.found for key in each.made_as}
+        mentioned = {key for each in self.found for key in each.mentioned_as} | made
         never: list[tuple[nodes.Literal, Diagnostic]] = []
-        for each in self._found:
+        for each in self.found:
             for key, events in each.events.items():
                 name = key[0]
                 if name in self._said or key in mentioned or (name, 0) in mentioned:
                     continue
                 other = sorted(size for made_name, size in made if made_name == name)
                 rule = each.concluded.get(key)
-                if rule is None and (not other or any(key in one.concluded for one in self._found)):
+                if rule is None and (not other or any(key in one.concluded for one in self.found)):
                     continue
                 why, help = _why_never(key, rule, other)
                 never += [
@@ -149,9 +150,9 @@ class _BeliefCheck:
         """Return warnings about plans for beliefs from a source that they never have: percepts that only the agent adds,
         and notes that only artifacts publish.
         """
-        brought = {key for each in self._found for key in each.brought | set(each.concluded)}
+        brought = {key for each in self.found for key in each.brought | set(each.concluded)}
         wrong: list[tuple[str, nodes.Literal, bool]] = []
-        for each in self._found:
+        for each in self.found:
             for key, events in each.events.items():
                 if key in brought or (key[0], 0) in brought or key[0] in self._said:
                     continue
@@ -176,7 +177,7 @@ class _BeliefCheck:
             for name, literals in places.items()
             if name not in without
         }
-        for number, path in enumerate(_texts(self._folders) if own else ()):
+        for number, path in enumerate(_texts(self.folders) if own else ()):
             if number >= _MOST_FILES:
                 return frozenset()
             try:

@@ -407,9 +407,7 @@ def command_standstill(ros: RosGraph, options: RunOptions) -> None:
         guarded_by(ros.joined).stand_still()
 
 
-def not_paused(
-    directory: Directory[AgentHost], ros: RosGraph, options: RunOptions, clock: Clock
-) -> tuple[str, ...]:
+def not_paused(directory: Directory, ros: RosGraph, options: RunOptions, clock: Clock) -> tuple[str, ...]:
     """Return what continues during a pause, one line each."""
     lines = []
     if not clock.virtual:

@@ -7,14 +7,13 @@ from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import shape
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.plan_changes import outdated_plans, replace_plans, replace_rules
-from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory
 
 NOTHING = "no program has changed"
 
 
-def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) -> list[str]:
+def reload_programs(directory: Directory, lifecycle: AgentLifecycle) -> list[str]:
     """Read the programs of all agents again, and replace plans and rules of changed programs.
 
     Returns:

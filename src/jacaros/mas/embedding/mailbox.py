@@ -1,7 +1,7 @@
 """Streams of output and messages, and mailboxes: participants that exchange messages with agents."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, TypeVar
 
 from jacaros.agents.body.values import UNKEPT, to_term
@@ -146,20 +146,16 @@ class Mailbox(Stream[Message]):
         return f"<mailbox {self.name}, {len(self)} messages>"
 
 
-class PythonMailboxes:
+class PythonMailboxes(dict[str, Mailbox]):
     """The mailboxes of a run by name: its `jacaros.mas.directory.Participants`."""
 
-    def __init__(self) -> None:
-        self._boxes: dict[str, Mailbox] = {}
-        self.find: Callable[[str], Mailbox | None] = self._boxes.get
-
-    def add(self, mailbox: Mailbox) -> None:
-        """Add a mailbox."""
-        self._boxes[mailbox.name] = mailbox
+    def find(self, name: str) -> Mailbox | None:
+        """Return the mailbox of a name, or None."""
+        return self.get(name)
 
     def names(self) -> Sequence[str]:
         """Return their names, in the order of creation."""
-        return tuple(self._boxes)
+        return tuple(self)
 
 
 def term_of(content: object) -> Term:

@@ -231,7 +231,7 @@ class Mas(EmbeddedRun):
                     f"duplicate name `{name}`: an agent has it; choose another name for the mailbox"
                 )
             known = Mailbox(name, system.deliver, system.agent_names, waits)
-            self._mailboxes.add(known)
+            self._mailboxes[name] = known
         return known
 
     def output(self, agent: str | None = None) -> "Stream[PrintedLine]":

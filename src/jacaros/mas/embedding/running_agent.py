@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from typing import Any
 
 from jacaros.agents.body.values import to_value
@@ -53,13 +54,7 @@ class OpenMind:
         Raises:
             AslError: one is not a literal.
         """
-        terms = [literal(each) for each in literals]
-
-        def tell() -> None:
-            for term in terms:
-                belief_update.tell(self.mind, term)
-
-        self._do(tell)
+        self._change(belief_update.tell, *literals)
 
     def remove_belief(self, *literals: str) -> None:
         """Remove the agent's own notes (or those of the named source), the first match of each.
@@ -67,13 +62,7 @@ class OpenMind:
         Raises:
             AslError: one is not a literal.
         """
-        terms = [literal(each) for each in literals]
-
-        def untell() -> None:
-            for term in terms:
-                belief_update.untell(self.mind, term)
-
-        self._do(untell)
+        self._change(belief_update.untell, *literals)
 
     def replace_belief(self, written: str) -> None:
         """Replace the agent's own note with the same functor, as ``-+b`` does.
@@ -81,15 +70,7 @@ class OpenMind:
         Raises:
             AslError: it is not a literal.
         """
-        term = literal(written)
-
-        def replace() -> None:
-            symbol, _, annotations = parts(term)
-            if symbol is not None:
-                belief_update.delete_any(self.mind, symbol, annotations or BY_SELF)
-            belief_update.tell(self.mind, term)
-
-        self._do(replace)
+        self._change(_replace, written)
 
     def post_goal(self, written: str) -> None:
         """Add a goal, with an intention of its own.
@@ -97,8 +78,7 @@ class OpenMind:
         Raises:
             AslError: it is not a literal.
         """
-        goal = literal(written)
-        self._do(lambda: self.mind.post_goal(goal))
+        self._change(Mind.post_goal, written)
 
     def drop_goal(self, written: str) -> bool:
         """Drop the intentions and events of a goal, as ``.drop_desire`` does. Return whether there were any.
@@ -109,15 +89,21 @@ class OpenMind:
         goal = literal(written)
         found = bool(goals.intentions_for(self.mind, goal) or goals.goal_events(self.mind, goal))
         if found:
-            self._do(lambda: goals.drop_desire(self.mind, goal))
+            self._change(goals.drop_desire, written)
         return found
 
-    def _do(self, change: Callable[[], None]) -> None:
-        mind = self.mind
+    def _change(self, change: Callable[[Mind, Term], object], *literals: str) -> None:
+        """Change the mind by each literal; before its next step if it has its turn now."""
+        mind, terms = self.mind, [literal(each) for each in literals]
+
+        def make(_: object = None) -> None:
+            for term in terms:
+                change(mind, term)
+
         if mind.running:
-            mind.do_soon(lambda _: change())
+            mind.do_soon(make)
         else:
-            change()
+            make()
         mind.architecture.ready()
 
     def perceive(self, *literals: str) -> None:
@@ -155,11 +141,14 @@ class OpenMind:
         Raises:
             AslError: it is not a formula.
         """
+        return list(self._answers(formula))
+
+    def _answers(self, formula: str) -> Generator[dict[str, Any], None, None]:
         mind = self.mind
         term, names = question(formula)
         mark = len(mind.trail)
         try:
-            return [values_of(names) for _ in mind.context.answers(term)]
+            yield from (values_of(names) for _ in mind.context.answers(term))
         finally:
             undo(mind.trail, mark)
 
@@ -169,13 +158,8 @@ class OpenMind:
         Raises:
             AslError: it is not a formula.
         """
-        mind = self.mind
-        term, names = question(formula)
-        mark = len(mind.trail)
-        try:
-            return next((values_of(names) for _ in mind.context.answers(term)), None)
-        finally:
-            undo(mind.trail, mark)
+        with closing(self._answers(formula)) as found:
+            return next(found, None)
 
     def believes(self, formula: str) -> bool:
         """Return whether a formula holds."""
@@ -199,6 +183,13 @@ class OpenMind:
             for intention in self.mind.alive.values()
         ]
         return [stack for stack in stacks if stack]
+
+
+def _replace(mind: Mind, term: Term) -> None:
+    symbol, _, annotations = parts(term)
+    if symbol is not None:
+        belief_update.delete_any(mind, symbol, annotations or BY_SELF)
+    belief_update.tell(mind, term)
 
 
 def literal(written: str) -> Term:
@@ -244,8 +235,7 @@ class PursuedGoal:
     @property
     def reasons(self) -> list[Term]:
         """The reason terms of its failure."""
-        reason = self._watched.reason
-        return list(reason.terms) if reason is not None else []
+        return list(self._watched.reason.terms) if self._watched.reason is not None else []
 
     def __str__(self) -> str:
         why = f": {', '.join(map(text, self.reasons))}" if self.reasons else ""
@@ -287,7 +277,7 @@ class RunningAgent(OpenMind):
         self._waits.check()
         if self.ended:
             raise AgentEnded(f"agent {self.name} has ended")
-        if not isinstance(mind, Mind):
+        if mind is None:
             raise UsageError(f"agent {self.name} is a Python agent, which has no beliefs and goals")
         return mind
 
@@ -346,9 +336,10 @@ class RunningAgent(OpenMind):
     def _does_not_hold(self, formula: str) -> str:
         term, _ = question(formula)
         mentioned = {symbol.name for symbol in _functors(term)}
+        beliefs = self._host.mind.beliefs.literals() if self._host.mind is not None else ()
         believed = [
             text(bare(each))
-            for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Mind) else ())
+            for each in beliefs
             if any(symbol.name in mentioned for symbol in _functors(each))
         ]
         related = f"it believes {', '.join(believed[:5])}" if believed else "it has no related belief"

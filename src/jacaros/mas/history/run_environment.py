@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory, Mailboxes
@@ -34,7 +33,7 @@ class ObservedSystem(Protocol):
 
     clock: Clock
     scheduler: Scheduler
-    directory: Directory[AgentHost]
+    directory: Directory
     lifecycle: AgentLifecycle
     mailboxes: Mailboxes
     ros: RosGraph

@@ -164,7 +164,7 @@ class JcmReader(ProjectReader):
             known = [*(each for each in block.entries if each not in block.keys), *block.keys]
             help = suggestion(token.text, known, f"keys of {block.what}: {', '.join(known)}")
             cursor.report(f"unknown key `{token.text}` in {block.what}", cursor.span_of(token), help)
-            self._pieces()
+            self.pieces()
         if block.is_strict and cursor.token.kind not in ("}", "end", ",") and not self._at_end():
             cursor.fail(f"unexpected {cursor.token} in the value of `{token.text}`")
 
@@ -202,13 +202,13 @@ class JcmReader(ProjectReader):
             yield self.cursor.advance()
             self.cursor.accept(",")
 
-    def _names(self, *_: object) -> list[Written]:
+    def names(self, *_: object) -> list[Written]:
         """Return names."""
         return [(text_of(token), self.cursor.span_of(token)) for token in self._items(*NAME, "number", "*")]
 
-    def _some_names(self, key: Token) -> list[Written]:
+    def some_names(self, key: Token) -> list[Written]:
         """Return at least one name."""
-        found = self._names()
+        found = self.names()
         if not found:
             self.cursor.fail(f"expected a value after `{key.text}:`, found {self.cursor.token}")
         return found
@@ -222,7 +222,7 @@ class JcmReader(ProjectReader):
             self.cursor.fail(f"expected {missing}, found {self.cursor.token}")
         return found
 
-    def _pieces(self, *_: object) -> list[Written]:
+    def pieces(self, *_: object) -> list[Written]:
         """Return the pieces of a value, separated by commas or line ends, as written."""
         cursor = self.cursor
         found: list[Written] = []
@@ -300,20 +300,8 @@ class JcmReader(ProjectReader):
 
     # ---- the project
 
-    def _world(self, _: Token) -> None:
-        self.world()
-
-    def _source_paths(self, key: Token) -> None:
-        self.part.source_paths += [text for text, _ in self._some_names(key)]
-
-    def _code_paths(self, key: Token) -> None:
-        self.part.code_paths += [text for text, _ in self._some_names(key)]
-
-    def _mappings(self, key: Token) -> None:
-        self.part.mappings += self._some_names(key)
-
     def _java_path(self, key: Token) -> None:
-        self._some_names(key)
+        self.some_names(key)
         self.unsupported(PATHS, f"`{key.text}`", self.cursor.span_of(key))
 
     def _platforms(self, key: Token) -> None:
@@ -360,12 +348,6 @@ class JcmReader(ProjectReader):
             )
         self._read_block(_AGENT, agent)
 
-    def _beliefs(self, agent: AgentPart, _: Token) -> None:
-        agent.beliefs += self._pieces()
-
-    def _goals(self, agent: AgentPart, _: Token) -> None:
-        agent.goals += self._pieces()
-
     def _join(self, agent: AgentPart, _: Token) -> None:
         for token in self._items(*NAME):
             name = text_of(token)
@@ -384,7 +366,7 @@ class JcmReader(ProjectReader):
             agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, elsewhere))
 
     def _instances(self, agent: AgentPart, key: Token) -> None:
-        values = self._names()
+        values = self.names()
         text = values[0][0] if values else ""
         if len(values) == 1 and text.isdecimal() and 0 < len(text) < 7 and int(text) > 0:
             agent.instances = int(text)
@@ -415,7 +397,7 @@ class JcmReader(ProjectReader):
             self.class_of_agent(key.text, text, span)
 
     def _host_of_agent(self, agent: AgentPart, key: Token) -> None:
-        agent.host = " ".join(text for text, _ in self._names())
+        agent.host = " ".join(text for text, _ in self.names())
         self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", self.cursor.span_of(key))
 
     def _option(self, agent: AgentPart, key: Token) -> None:
@@ -431,7 +413,7 @@ class JcmReader(ProjectReader):
             message = f"unknown key `{key.text}`, kept as a parameter of the agent"
             cursor.warn(message, span, did_you_mean(meant[:1]))
         agent.option_places[key.text] = span
-        agent.options[key.text] = ", ".join(_unquoted(text) for text, _ in self._pieces())
+        agent.options[key.text] = ", ".join(_unquoted(text) for text, _ in self.pieces())
         if key.text == "debug":
             self.unsupported(INSPECTORS, f"`debug` of agent `{agent.name}`", span)
 
@@ -445,7 +427,7 @@ class JcmReader(ProjectReader):
         self._read_block(_WORKSPACE, workspace)
 
     def _agents(self, part: WorkspacePart | OrganisationPart, _: Token) -> None:
-        part.agents += self._names()
+        part.agents += self.names()
 
     def _parent(self, workspace: WorkspacePart, _: Token) -> None:
         parent = self.cursor.name("the name of a workspace")
@@ -460,7 +442,7 @@ class JcmReader(ProjectReader):
         self.unsupported(INSPECTORS, what, self.cursor.span_of(key))
 
     def _inspector_key(self, workspace: WorkspacePart, key: Token) -> None:
-        self._pieces()
+        self.pieces()
         self._inspector(workspace, key)
 
     def _artifact(self, workspace: WorkspacePart, _: Token) -> None:
@@ -517,9 +499,6 @@ class JcmReader(ProjectReader):
         # The agents that it mentions are those of the organisation.
         self._read_block(_GROUP if what == "group" else _SCHEME, replace(part, name=name.text))
 
-    def _workspaces(self, part: OrganisationPart, _: Token) -> None:
-        part.workspaces += self._names()
-
     def _players(self, group: OrganisationPart, _: Token) -> None:
         """``agent role``, any number of times."""
         cursor = self.cursor
@@ -535,17 +514,14 @@ class JcmReader(ProjectReader):
             self.unsupported(ROLES, f"the role `{role.text}` of `{agent.text}` in `{group.name}`", span)
             self._node_of(f"the role `{role.text}`")
 
-    def _nothing(self, *_: object) -> None:
-        """Read a keyword without a value."""
-
     readers: ClassVar = {
-        "asl-path": _source_paths,
+        "asl-path": lambda self, key: self.part.source_paths.extend(text for text, _ in self.some_names(key)),
         "org-path": _java_path,
-        "java-path": _code_paths,
+        "java-path": lambda self, key: self.part.code_paths.extend(text for text, _ in self.some_names(key)),
         "class-path": _java_path,
         "platform": _platforms,
-        "world": _world,
-        "mapping": _mappings,
+        "world": lambda self, _: self.world(),
+        "mapping": lambda self, key: self.part.mappings.extend(self.some_names(key)),
     }
     sections = ("agent", "workspace", "institution", "organisation", *readers)
 
@@ -564,8 +540,8 @@ _SECTIONS: Final = {
 _AGENT: Final = Block(
     "an agent",
     {
-        "beliefs": _R._beliefs,
-        "goals": _R._goals,
+        "beliefs": lambda self, agent, _: agent.beliefs.extend(self.pieces()),
+        "goals": lambda self, agent, _: agent.goals.extend(self.pieces()),
         "join": _R._join,
         "focus": _R._focus,
         "instances": _R._instances,
@@ -593,23 +569,26 @@ _WORKSPACE: Final = Block(
     {"artifact": _R._artifact, "debug": _R._inspector},
 )
 _OF_ARTIFACT: Final = Block("an artifact", {"focused-by": _R._focused_by})
-_PART, _DEBUG = _R._part_of_organisation, {"debug": _R._nothing}
+_PART, _DEBUG = _R._part_of_organisation, {"debug": lambda *_: None}
 _ORGANISATION: Final = Block(
     "an organisation",
-    {"agents": _R._agents, "situated": _R._pieces, "debug": _R._pieces},
+    {"agents": _R._agents, "situated": _R.pieces, "debug": _R.pieces},
     {"group": _PART, "scheme": _PART, **_DEBUG},
-    _R._pieces,
+    _R.pieces,
 )
 _INSTITUTION: Final = Block(
-    "an institution", {"workspaces": _R._workspaces, "debug": _R._pieces}, _DEBUG, _R._pieces
+    "an institution",
+    {"workspaces": lambda self, part, _: part.workspaces.extend(self.names()), "debug": _R.pieces},
+    _DEBUG,
+    _R.pieces,
 )
 _GROUP: Final = Block(
     "a group",
-    {"players": _R._players, "responsible-for": _R._pieces, "owner": _R._agents, "debug": _R._pieces},
+    {"players": _R._players, "responsible-for": _R.pieces, "owner": _R._agents, "debug": _R.pieces},
     {"group": _PART, **_DEBUG},
-    _R._pieces,
+    _R.pieces,
 )
-_SCHEME: Final = Block("a scheme", {"owner": _R._agents, "debug": _R._pieces}, _DEBUG, _R._pieces)
+_SCHEME: Final = Block("a scheme", {"owner": _R._agents, "debug": _R.pieces}, _DEBUG, _R.pieces)
 
 
 def _unquoted(text: str) -> str:
