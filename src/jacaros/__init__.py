@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
     from jacaros.mas.deployment import ProjectError
-    from jacaros.mas.embedding.mas import Mas
-    from jacaros.mas.embedding.run import run
+    from jacaros.mas.embedding.mas import Mas, run
     from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, RunEnded, UnknownAgent
     from jacaros.mas.options import RunOptions
 
@@ -70,8 +69,7 @@ _MODULES = {
     "jacaros.errors": "InternalError JacarosError UsageError",
     "jacaros.mas.deployment": "ProjectError",
     "jacaros.mas.embedding.waits": "AgentEnded GoalFailed RunEnded UnknownAgent",
-    "jacaros.mas.embedding.mas": "Mas",
-    "jacaros.mas.embedding.run": "run",
+    "jacaros.mas.embedding.mas": "Mas run",
     "jacaros.mas.options": "RunOptions",
     "jacaros.version": "__version__=VERSION",
 }

@@ -18,6 +18,7 @@ from jacaros.agents.python.declaring import FAULTS
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, Term, bare, is_list, make_list
 from jacaros.artifacts.env.values import Out, plain
+from jacaros.artifacts.kernel.faults import error_text
 from jacaros.errors import InternalError
 from jacaros.files.python_modules import ProjectModules
 
@@ -67,7 +68,7 @@ class _Classes:
             member = getattr(owner, name)
         except AttributeError:
             raise ActionError(f"unknown method `{name}` of {shown}") from None
-        given = [_value(each) for each in call[1:]] if isinstance(call, tuple) else []
+        given = [_bound(to_value(each)) for each in call[1:]] if isinstance(call, tuple) else []
         value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
         if not result or value is None:
             return True
@@ -99,7 +100,7 @@ class _Classes:
             raise
         except FAULTS as error:
             help = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
-            raise ActionError(f"unknown class `{name}`: {_error_text(error)}{help}") from error
+            raise ActionError(f"unknown class `{name}`: {error_text(error)}{help}") from error
 
 
 def _installed(name: str) -> Any:
@@ -129,22 +130,13 @@ def _call(what: str, function: Any, given: list[Any]) -> Any:
     except InternalError:
         raise
     except FAULTS as error:
-        raise ActionError(f"{what}: {_error_text(error)}") from error
-
-
-def _error_text(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise ActionError(f"{what}: {error_text(error)}") from error
 
 
 def _values(arguments: Term) -> list[Any]:
     if not is_list(bare(arguments)):
         raise ActionError(f"expected a list of arguments, found {text(arguments)}")
-    values: list[Any] = [_bound(value) for value in to_value(bare(arguments))]
-    return values
-
-
-def _value(term: Term) -> Any:
-    return _bound(to_value(term))
+    return [_bound(value) for value in to_value(bare(arguments))]
 
 
 def _bound(value: Any) -> Any:
@@ -191,7 +183,7 @@ def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
     try:
         items = list(value)
     except FAULTS as error:
-        raise ActionError(f"the items of {text(reference)}: {_error_text(error)}") from error
+        raise ActionError(f"the items of {text(reference)}: {error_text(error)}") from error
     return ctx.unify(result, make_list([to_term(item, UNKEPT) for item in items]))
 
 
