@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
-from jacaros.ros.backend import Backend, Subscription
+from jacaros.ros.backend import PARAMETERS, Backend, Subscription
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
 
@@ -33,17 +34,10 @@ class GraphTime:
 
     def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
         self._backend, self._log = backend, log
-        self._listening: Subscription | None = None
         self._asking: asyncio.Task[None] | None = None
         self._told = False
-
-    def watch(self) -> None:
-        """Begin to watch."""
-        from jacaros.ros.backend import PARAMETERS
-        from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
-
-        backend = self._backend
-        self._listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
+        listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
+        self._listening: Subscription | None = listening
         if backend.ros_version == 1 and PARAMETERS in backend.capabilities:
             backend.on_connection(self._connected)
             self._connected(backend.connected)
@@ -115,25 +109,15 @@ class EmptyGraph:
     """
 
     def __init__(self, backend: Backend, clock: Clock, graph: str, log: Callable[[str], None]) -> None:
-        self._backend, self._graph, self._log = backend, graph, log
-        self._task: asyncio.Task[None] | None = None
-        self._clock, self._begun = clock, clock.elapsed
-        self._missing = round(MISSING_AFTER / _STEP)
-        self._wait()
+        self._backend, self._clock, self._graph, self._log = backend, clock, graph, log
+        self._task = asyncio.get_running_loop().create_task(self._watch())
 
-    def _wait(self) -> None:
-        self._due = self._clock.elapsed + _STEP
-        self._timer = self._clock.call_later(_STEP, self._step)
-
-    def _step(self) -> None:
-        now = self._clock.elapsed
-        self._missing -= now - self._due < _LATE
-        if self._missing > 0 and now - self._begun < _AT_MOST:
-            self._wait()
-        else:
-            self._task = asyncio.get_running_loop().create_task(self._look())
-
-    async def _look(self) -> None:
+    async def _watch(self) -> None:
+        missing, begun = round(MISSING_AFTER / _STEP), self._clock.elapsed
+        while missing > 0 and self._clock.elapsed - begun < _AT_MOST:
+            due = self._clock.elapsed + _STEP
+            await self._clock.sleep(_STEP)
+            missing -= self._clock.elapsed - due < _LATE
         try:
             contents = await self._backend.contents(_ANSWER)
         except RosError:
@@ -146,9 +130,7 @@ class EmptyGraph:
 
     def close(self) -> None:
         """Stop watching."""
-        self._timer.cancel()
-        if self._task is not None:
-            self._task.cancel()
+        self._task.cancel()
 
 
 _FEW = 5

@@ -104,9 +104,7 @@ class RosGraph:
             else:
                 from jacaros.mas.graph_warnings import GraphTime  # here: only for real graphs
 
-                time = GraphTime(backend, self._log_ros)
-                time.watch()
-                self._watches.append(time.close)
+                self._watches.append(GraphTime(backend, self._log_ros).close)
             # Only on request: a project that names a world for practice also runs on the real robot.
             if self.options.world is not None:
                 self._start_world(backend)

@@ -10,7 +10,7 @@ from jacaros.mas.agents.programs import source_folders
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, Deployment, ProjectError
 from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.declarations import ArtifactPart, FocusPart, ProjectPart, WorkspacePart, condensed
-from jacaros.mas.project.resolving import ProjectAgents, ProjectPlaces, Remarks
+from jacaros.mas.project.resolving import Resolver
 
 _JCM: Final = ".jcm"
 _CODE_PATHS: Final = ("src", "src/env", "src/agt")
@@ -40,10 +40,10 @@ def read_project(path: Path) -> Reading:
     """
     files = _Files()
     part = files.read(path)
-    remarks = Remarks(files.diagnostics)
-    deployment = _deployment(path, part, remarks)
-    told = [*remarks.diagnostics, *condensed(part.unsupported)]
-    every = [*remarks.diagnostics, *(each.diagnostic() for each in part.unsupported)]
+    found = files.diagnostics
+    deployment = _deployment(path, part, found)
+    told = [*found, *condensed(part.unsupported)]
+    every = [*found, *(each.diagnostic() for each in part.unsupported)]
     used = frozenset(files.seen - {path.resolve()})
     return Reading(
         replace(deployment, ignored=tuple(sorted(told, key=_place))), sorted(every, key=_place), used
@@ -143,18 +143,17 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
         part.world, part.world_span = used.world, used.world_span
 
 
-def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
+def _deployment(path: Path, part: ProjectPart, diagnostics: list[Diagnostic]) -> Deployment:
     _add_mapped_artifacts(part)
-    places = ProjectPlaces(part, remarks)
-    agents = ProjectAgents(part, places, remarks)
-    instances = [each for agent in part.agents for each in agents.instances(agent)]
-    remarks.repeated([(agent.name, agent.span) for agent in instances], "agent")
+    resolver = Resolver(part, diagnostics)
+    instances = [each for agent in part.agents for each in resolver.instances(agent)]
+    resolver.repeated([(agent.name, agent.span) for agent in instances], "agent")
     cartago = (part.environment or "").partition("(")[0] in CARTAGO_ENVIRONMENTS
     return Deployment(
         name=part.name,
         base_path=path.parent,
         agents=tuple(instances),
-        workspaces=places.specs(),
+        workspaces=resolver.specs(),
         environment=part.environment,
         artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
         infrastructure=tuple(part.infrastructure),

@@ -28,11 +28,21 @@ _DEFAULT_NAMES = frozenset({"workspace", "blackboard", "console", "manrepo", "sy
 """The standard artifacts of every workspace."""
 
 
-class Remarks:
-    """Collects the diagnostics of a project. Several instances of an agent report each diagnostic only once."""
+class Resolver:
+    """Resolves the names of a project. Several instances of an agent report each diagnostic only once.
 
-    def __init__(self, diagnostics: list[Diagnostic]) -> None:
-        self.diagnostics = diagnostics
+    A workspace is named by its name, by its path below ``/main``, or by its full path.
+
+    Args:
+        part: the declarations of the project.
+        diagnostics: those found so far; more are added.
+    """
+
+    def __init__(self, part: ProjectPart, diagnostics: list[Diagnostic]) -> None:
+        self._part, self.diagnostics = part, diagnostics
+        self._paths: dict[str, WorkspacePart | None] = {_MAIN: None}
+        for workspace in part.workspaces:
+            self._add_workspace(workspace)
 
     def error(self, message: str, span: Span | None, help: str | None = None) -> None:
         self.add(Diagnostic("error", message, span, help))
@@ -54,30 +64,13 @@ class Remarks:
                 self.error(f"duplicate {what} `{name}`", span, help)
             seen.setdefault(name, span)
 
-
-class ProjectPlaces:
-    """Resolves the names of workspaces and artifacts in a project.
-
-    A workspace is named by its name, by its path below ``/main``, or by its full path.
-
-    Args:
-        part: the declarations of the project.
-        remarks: collects diagnostics.
-    """
-
-    def __init__(self, part: ProjectPart, remarks: Remarks) -> None:
-        self._part, self._remarks = part, remarks
-        self._paths: dict[str, WorkspacePart | None] = {_MAIN: None}
-        for workspace in part.workspaces:
-            self._add(workspace)
-
     # what is declared
 
-    def _add(self, workspace: WorkspacePart) -> None:
+    def _add_workspace(self, workspace: WorkspacePart) -> None:
         """Compute the full path of a workspace, and add it and the workspaces above it."""
         path = self._path(workspace, ())
         if self._paths.get(path) is not None:
-            self._remarks.error(f"duplicate workspace `{workspace.name}`", workspace.span)
+            self.error(f"duplicate workspace `{workspace.name}`", workspace.span)
             return
         above = path
         while (above := above.rpartition("/")[0]) and above not in self._paths:
@@ -98,11 +91,11 @@ class ProjectPlaces:
         for other in self._part.workspaces:
             if other.name == wanted or other.name.endswith(f"/{wanted}"):
                 if other.name in below:
-                    self._remarks.error(f"workspace `{workspace.name}` is its own ancestor", workspace.span)
+                    self.error(f"workspace `{workspace.name}` is its own ancestor", workspace.span)
                     return _MAIN
                 return self._path(other, below)
         help = suggestion(wanted, sorted({each.name for each in self._part.workspaces})) or None
-        self._remarks.error(f"unknown workspace `{wanted}`", workspace.parent_span, help)
+        self.error(f"unknown workspace `{wanted}`", workspace.parent_span, help)
         return _MAIN
 
     def specs(self) -> tuple[WorkspaceSpec, ...]:
@@ -139,20 +132,20 @@ class ProjectPlaces:
         focused_by = [(name, span) for each in workspace.artifacts for name, _, span in each.focused_by]
         for name, agent_span in (*workspace.agents, *focused_by):
             self._check_agent(name, agent_span, known)
-        self._remarks.repeated(artifacts, "artifact")
+        self.repeated(artifacts, "artifact")
         for name, span in artifacts:
             if name in _DEFAULT_NAMES:
                 message = f"`{name}` is a standard artifact of every workspace"
-                self._remarks.error(message, span, "choose another name")
+                self.error(message, span, "choose another name")
 
     def _check_agent(self, name: str, span: Span, known: set[str], is_error: bool = True) -> None:
         if name != "*" and name not in known:
-            report = self._remarks.error if is_error else self._remarks.warn
+            report = self.error if is_error else self.warn
             report(f"unknown agent `{name}`", span, suggestion(name, sorted(known)) or None)
 
     # what names lead to
 
-    def shortest_name(self, workspace: WorkspacePart) -> str:
+    def _shortest_name(self, workspace: WorkspacePart) -> str:
         """Return the name of a declared workspace, or its full path if the name is ambiguous."""
         return next((self._shortest(path) for path, part in self._paths.items() if part is workspace), _MAIN)
 
@@ -174,7 +167,7 @@ class ProjectPlaces:
             names = {path.rpartition("/")[2] for path in self._paths}
             what = "unknown"
             help = suggestion(name, sorted(names), f"declare it in the project: `workspace {name}`")
-        self._remarks.error(f"{what} workspace `{name}`", span, help)
+        self.error(f"{what} workspace `{name}`", span, help)
         return None
 
     def _named(self, name: str, span: Span, elsewhere: bool) -> str | None:
@@ -183,12 +176,12 @@ class ProjectPlaces:
             return None
         return self._lookup(name, span)
 
-    def join(self, wanted: JoinPart) -> str | None:
+    def _join(self, wanted: JoinPart) -> str | None:
         """Return the workspace that an agent joins, or None if it is not in this run."""
         path = self._named(wanted.workspace, wanted.span, wanted.elsewhere)
         return None if path is None else self._shortest(path)
 
-    def focus(self, wanted: FocusPart) -> FocusSpec | None:
+    def _focus(self, wanted: FocusPart) -> FocusSpec | None:
         """Return the artifact *wanted* with its workspace. Without a workspace, search all of them."""
         if wanted.workspace is None:
             return self._focus_anywhere(wanted)
@@ -197,7 +190,7 @@ class ProjectPlaces:
             return None
         known = self._declared(path) | _DEFAULT_NAMES
         if wanted.artifact not in known:
-            self._remarks.warn(
+            self.warn(
                 f"artifact `{wanted.artifact}` is not declared in workspace `{wanted.workspace}`",
                 wanted.span,
                 suggestion(wanted.artifact, sorted(known), "the agent focuses it as soon as it is created"),
@@ -211,10 +204,10 @@ class ProjectPlaces:
                 every = {name for path in self._paths for name in self._declared(path)}
                 created = f"if an agent creates it, name its workspace, too: `workspace.{wanted.artifact}`"
                 help = suggestion(wanted.artifact, sorted(every), created)
-                self._remarks.error(f"unknown artifact `{wanted.artifact}`", wanted.span, help)
+                self.error(f"unknown artifact `{wanted.artifact}`", wanted.span, help)
             return None
         if len(found) > 1:
-            self._remarks.warn(
+            self.warn(
                 f"ambiguous artifact `{wanted.artifact}`: it is in {len(found)} workspaces, and the first one is used",
                 wanted.span,
                 f"write `{self._shortest(found[0])}.{wanted.artifact}`",
@@ -240,25 +233,14 @@ class ProjectPlaces:
             self._part.unsupported.append(found)
         return True
 
-
-class ProjectAgents:
-    """Finds the programs of agents and expands agents to their instances.
-
-    Args:
-        part: the declarations of the project.
-        places: its workspaces and artifacts.
-        remarks: collects diagnostics.
-    """
-
-    def __init__(self, part: ProjectPart, places: ProjectPlaces, remarks: Remarks) -> None:
-        self._part, self._places, self._remarks = part, places, remarks
+    # agents
 
     def instances(self, agent: AgentPart) -> list[AgentSpec]:
         """Return one agent for each instance."""
         for option, value in agent.options.items():
             found = check_option(option, value, agent.option_places.get(option))
             if found is not None:
-                self._remarks.add(found)
+                self.add(found)
         first = AgentSpec(
             name=agent.name,
             source_path=self._source(agent),
@@ -280,7 +262,7 @@ class ProjectAgents:
         except FileNotFoundError as missing:
             file = written if written.endswith((".asl", ".py")) else f"{written}.asl"
             message = f"program of agent `{agent.name}` not found: {file}"
-            self._remarks.error(message, agent.source_span or agent.span, str(missing))
+            self.error(message, agent.source_span or agent.span, str(missing))
             return (agent.folders or (Path(),))[0] / file
 
     def _literals(self, written: list[Written], what: str) -> str:
@@ -292,19 +274,19 @@ class ProjectAgents:
                 first, _, rest = text.partition("\n")
                 shown = f"{first.rstrip()} ..." if rest else first
                 help = "write rules in the agent's program" if ":-" in text else None
-                self._remarks.error(f"invalid {what} `{shown}`: {error.diagnostics[0].message}", span, help)
+                self.error(f"invalid {what} `{shown}`: {error.diagnostics[0].message}", span, help)
             else:
                 if text.startswith("!") and what == "belief":
                     help = f"write `goals: {text[1:]}`"
-                    self._remarks.error(f"expected a belief, found the goal `{text}`", span, help)
+                    self.error(f"expected a belief, found the goal `{text}`", span, help)
         return ", ".join(_literal(text) for text, _ in written)
 
     def _situated(self, agent: AgentSpec, part: AgentPart) -> AgentSpec:
         """Return the instance *agent* of *part* with the workspaces it joins and the artifacts it focuses."""
-        join = [self._places.join(wanted) for wanted in part.join]
-        focus = [self._places.focus(wanted) for wanted in part.focus]
+        join = [self._join(wanted) for wanted in part.join]
+        focus = [self._focus(wanted) for wanted in part.focus]
         for workspace in self._part.workspaces:
-            name = self._places.shortest_name(workspace)
+            name = self._shortest_name(workspace)
             if any(_means(written, agent) for written, _ in workspace.agents):
                 join.append(name)
             for artifact in workspace.artifacts:
