@@ -9,6 +9,7 @@ requests to another process are sent, and lookups are answered from local knowle
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from functools import cached_property
 from typing import Protocol
 
 from jacaros.agents.mind.mind import Mind
@@ -205,15 +206,12 @@ class ServiceDirectory:
     def __init__(self, make: Callable[[], Mind], deliver: Callable[[SpeechAct], bool]) -> None:
         self._make = make
         self._deliver = deliver
-        self._agent: Mind | None = None
         self._watchers: list[Watcher] = []
 
-    @property
+    @cached_property
     def agent(self) -> Mind:
-        """Return the agent, created on first use."""
-        if self._agent is None:
-            self._agent = self._make()
-        return self._agent
+        """The agent, created on first use."""
+        return self._make()
 
     def register(self, name: str, service: str) -> None:
         """Register an agent as provider of a service, and notify the subscribers."""

@@ -232,7 +232,6 @@ def types_of(
 
 
 def _where(type_name: str) -> str:
-    """Return the help for an unknown type."""
     package, _, name = type_name.rpartition(".")
     file = f"{package.replace('.', '/')}.py or artifacts.py" if package else "artifacts.py"
     return f"write `class {name}(Artifact)` in {file} beside the project file"

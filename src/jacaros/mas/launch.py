@@ -109,7 +109,7 @@ def launch(
     deployment = mapped(
         project if isinstance(project, Deployment) else load_deployment(project), options.mappings
     )
-    clock = _clock(options, console)
+    clock = chosen_clock(options, console)
 
     async def main() -> int:
         mas = System(deployment, clock, console, options)
@@ -139,12 +139,13 @@ def launch(
             watchdog.stop()
 
 
-def _clock(options: RunOptions, console: Console) -> Clock:
+def chosen_clock(options: RunOptions, console: Console, other: Clock | None = None) -> Clock:
+    """Return the clock that the options ask for: that of the ROS graph, or else *other*, or a new one."""
     if options.ros_clock:
         from jacaros.ros.ros_clock import RosClock  # here: only for simulators on a real graph
 
         return RosClock(lambda text: console.log(f"[ros] {text}"))
-    return VirtualClock() if options.fast else WallClock()
+    return other or (VirtualClock() if options.fast else WallClock())
 
 
 def _escaped(mas: System, context: dict[str, Any]) -> None:
@@ -235,7 +236,6 @@ class Interruption:
                 self._alarm.set(THREADS, AGAIN)
 
     def _notice(self, number: int, frame: FrameType | None) -> None:
-        """Handle a signal, in its handler."""
         if self._over:
             return  # nothing is left to interrupt
         again, self.exit_code = self.exit_code != 0, 128 + number

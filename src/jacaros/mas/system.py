@@ -123,7 +123,6 @@ class System:
         self.kill_agent = self.lifecycle.kill
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
-        self._ending = False
         self.lost_goals = 0
         self.exit_code: int | None = None
         self.error: BaseException | None = None
@@ -252,11 +251,7 @@ class System:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self.ros.watch_parameters()
         self.idleness.look()
-        if self.clock.virtual:
-            self._warn_of_real_time()
-
-    def _warn_of_real_time(self) -> None:
-        if files := self._modules.loaded_files():
+        if self.clock.virtual and (files := self._modules.loaded_files()):
             from jacaros.mas.agents.python_code import readings  # here: few projects have Python code
 
             for warning in readings(files):
@@ -277,7 +272,7 @@ class System:
     def _has_workspace_setup(self) -> bool:
         """Return whether the environment is created at the start, also to report errors in the project's own artifacts."""
         declared = self.deployment.environment or self.deployment.workspaces
-        situated = any(agent.join or agent.focus for agent in self.deployment.agents)
+        situated = any(agent.is_situated for agent in self.deployment.agents)
         return bool(declared) or situated or has_own_artifacts(self.deployment.base_path)
 
     def run_environment(self) -> "RunEnvironment":
@@ -335,14 +330,13 @@ class System:
 
         With the option ``fail_on_lost_goal``, exit code 0 becomes 1 if a goal was lost.
         """
-        if self._ending:
+        if self.exit_code is not None:
             return
         if exit_code == 0 and self.options.fail_on_lost_goal and self.lost_goals:
             exit_code = 1
             goals = "1 goal was" if self.lost_goals == 1 else f"{self.lost_goals} goals were"
             self.console.log(f"error: {goals} lost (--fail-on-lost-goal)", "error")
         self.ros.ending()
-        self._ending = True
         self.exit_code = exit_code
         self.scheduler.stop()
         self.idleness.stop()

@@ -126,7 +126,6 @@ def _in_turn(frame: FrameType | None) -> Iterator[FrameType]:
 
 
 def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
-    """Iterate over the frames of a thread, the innermost first."""
     while frame is not None:
         yield frame
         frame = frame.f_back
@@ -151,13 +150,11 @@ def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
 
 
 def _host(frame: FrameType) -> AgentHost | None:
-    """Return the host of the agent whose cycle a frame runs."""
     mind = frame.f_locals.get("agent") if frame.f_code is Mind.run.__code__ else None
     return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 
 def _plan_at(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
-    """Return the plan that contains a step."""
     for plan in plans:
         span = plan.node.span
         if span is not None and span.file.name == file and span.line <= line <= span.end_line:

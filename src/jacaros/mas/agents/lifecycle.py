@@ -83,7 +83,6 @@ class AgentLifecycle:
         return host
 
     def _make(self, spec: AgentSpec, program: Program) -> AgentHost:
-        """Return the host of an agent, with its mind."""
         seed = f"{self.seed}/{spec.name}"
         if spec.is_python:
             from jacaros.mas.agents.python_agents import make_python_agent  # here: most projects have none

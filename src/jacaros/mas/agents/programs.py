@@ -120,7 +120,14 @@ class Programs:
         return program
 
     def _checked(self, path: Path, written: str, chooses: bool) -> nodes.Program:
-        program, warnings = self._parse(path, written)
+        try:
+            program, warnings = load_program(
+                name_of(path), written, self.path.include, self._code.functions, self._code.actions
+            )
+        except AslError as wrong:
+            raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
+        if errors := self._code.take_errors():  # in the modules that it names
+            raise AslError(errors)
         if self._prepare is not None:
             program = self._prepare(program, self._code)
         found = check_for_run(program, KnownActions(self._code.actions, self._code.help))
@@ -128,19 +135,6 @@ class Programs:
             if concerns_author(warning, path) and not (chooses and warning.code == NEVER_SELECTED):
                 self._warn(warning.render())
         return program
-
-    def _parse(self, path: Path, written: str) -> tuple[nodes.Program, list[Diagnostic]]:
-        """Parse a program, and import the project's modules that it names."""
-        try:
-            program, warnings = load_program(
-                name_of(path), written, self.path.include, self._code.functions, self._code.actions
-            )
-        except AslError as wrong:
-            raise AslError([*wrong.diagnostics, *self._code.take_errors()]) from wrong
-        errors = self._code.take_errors()
-        if errors:
-            raise AslError(errors)
-        return program, warnings
 
     def list_files(self, folder: str, base: Path) -> list[str]:
         """Return the files below a folder, sorted, as paths that begin with *folder*. *base* is the project's folder.

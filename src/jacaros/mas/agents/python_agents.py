@@ -269,7 +269,6 @@ def _beliefs(spec: AgentSpec) -> tuple[Literal, ...]:
 
 
 def _fault_lines(error: BaseException) -> list[str]:
-    """Return the exception, the line of the user's code that raised it, and the lines that led there."""
     if isinstance(error.__cause__, SystemExit):
         error = error.__cause__
     places = places_of_fault(error)

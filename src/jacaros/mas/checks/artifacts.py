@@ -71,7 +71,6 @@ def check_artifacts(
 def _unknown_operations(
     programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
 ) -> Iterator[Diagnostic]:
-    """Return warnings about operations that no artifact has."""
     if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
         return
     offered = _Offered(types)
@@ -189,7 +188,6 @@ class _NamedType(NamedTuple):
 def _unknown_types(
     named: Iterable[_NamedType], folders: Sequence[Path], find_type: "FindType"
 ) -> Iterator[Diagnostic]:
-    """Return warnings about artifact types that programs name but that do not exist."""
     for each in named:
         try:
             find_type(each.name)

@@ -198,7 +198,6 @@ def _by_name(literals: Iterable[nodes.Literal]) -> Mapping[str, Sequence[nodes.L
 
 
 def _why_never(key: tuple[str, int], rule: nodes.Rule | None, other: Sequence[int]) -> tuple[str, str]:
-    """Return why a belief is never added, and the help."""
     name, size = key
     if rule is None:
         return f"belief `{name}/{size}` is never added", did_you_mean(f"{name}/{each}" for each in other)
@@ -209,7 +208,6 @@ def _why_never(key: tuple[str, int], rule: nodes.Rule | None, other: Sequence[in
 
 
 def _why_wrong(name: str, is_percept: bool) -> tuple[str, str]:
-    """Return why a belief does not have a source, and the help."""
     if is_percept:
         help = "the agent adds it itself: write `[source(self)]`, or omit the source"
         return f"no artifact has `{name}`, so its source is never `percept`", help
@@ -242,7 +240,6 @@ def _works_names_out(artifact_class: type) -> bool:
 
 
 def _texts(folders: Iterable[Path]) -> Iterator[Path]:
-    """Return the files of a project in which a name may appear."""
     for folder in dict.fromkeys(each.resolve() for each in folders):
         for place, inner, files in os.walk(folder):
             depth = len(Path(place).relative_to(folder).parts)

@@ -197,7 +197,6 @@ def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: 
 
 
 def _check_python_agent(path: Path, findings: Findings) -> None:
-    """Check that the class of a lone Python agent exists."""
     findings.files.add(path.resolve())
     agent = AgentSpec(path.stem, path, path.stem)
     _Checked(Deployment(path.stem, path.parent, (agent,)), (path.parent,), findings).check_classes()
@@ -334,7 +333,6 @@ class _Checked:
 
 
 def _check_world(deployment: Deployment, findings: Findings) -> None:
-    """Check the world that a project names."""
     if deployment.world is None:
         return
     from jacaros.mas.ros_graph import NO_WORLD  # here: most projects name none

@@ -262,19 +262,18 @@ def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
         AslError: a trigger or condition has errors.
         UsageError: the data does not describe a breakpoint.
     """
-    agent = at.get("agent")
     try:
-        if "line" in at:
-            return LineBreakpoint(str(at["line"]["file"]), int(at["line"]["line"]))
-        if "plan" in at:
-            plan = at["plan"]
-            return PlanBreakpoint(str(plan["plan"]), plan.get("agent"))
-        if "event" in at:
-            return EventBreakpoint(str(at["event"]), agent)
-        if "condition" in at:
-            if agent is None:
+        match at:
+            case {"line": {"file": file, "line": line}}:
+                return LineBreakpoint(str(file), int(line))
+            case {"plan": {"plan": label} as plan}:
+                return PlanBreakpoint(str(label), plan.get("agent"))
+            case {"event": pattern}:
+                return EventBreakpoint(str(pattern), at.get("agent"))
+            case {"condition": condition, "agent": str(agent)}:
+                return ConditionBreakpoint(str(condition), agent)
+            case {"condition": _}:
                 raise UsageError("expected the name of an agent for a condition")
-            return ConditionBreakpoint(str(at["condition"]), str(agent))
-    except (KeyError, TypeError, ValueError, AttributeError) as wrong:
+    except (TypeError, ValueError) as wrong:
         raise UsageError(f"invalid breakpoint: {dict(at)!r}") from wrong
     raise UsageError(f"invalid breakpoint: {dict(at)!r}; expected line, plan, event or condition")

@@ -125,7 +125,12 @@ class Debugger:
         if self.paused:
             return self._state
         found: asyncio.Future[DebugState] = asyncio.get_running_loop().create_future()
-        end = self.listen(lambda state: found.set_result(state) if _is_news(state, found) else None)
+
+        def notice(state: DebugState) -> None:
+            if state.state == "paused" and not found.done():
+                found.set_result(state)
+
+        end = self.listen(notice)
         try:
             return await asyncio.wait_for(found, timeout)
         finally:
@@ -388,10 +393,6 @@ class Debugger:
         why = self._met(mind, lambda each: isinstance(each, ConditionBreakpoint) and each.becomes_true(mind))
         if why:
             self._stop(DebugState("paused", why, agent=mind.name))
-
-
-def _is_news(state: DebugState, found: "asyncio.Future[DebugState]") -> bool:
-    return state.state == "paused" and not found.done()
 
 
 def _mind_of(agent: Runnable) -> Mind | None:

@@ -17,7 +17,7 @@ from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.embedding.waits import RunEnded, UnknownAgent, Waits
 from jacaros.mas.history.explanation import Explanation
-from jacaros.mas.launch import load_deployment, mapped
+from jacaros.mas.launch import chosen_clock, load_deployment, mapped
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.runtime.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
@@ -173,13 +173,9 @@ class Mas:
         if self._begun is not None:
             raise UsageError("this Mas has already run; create another one")
         loop = asyncio.get_running_loop()
-        clock: Clock = clock_of(loop)
-        options = replace(self._options, fast=clock.virtual)
+        options = replace(self._options, fast=clock_of(loop).virtual)
         options.check()
-        if options.ros_clock:
-            from jacaros.ros.ros_clock import RosClock  # here: only for simulators on a real graph
-
-            clock = RosClock(lambda text: self._console.log(f"[ros] {text}"))
+        clock = chosen_clock(options, self._console, clock_of(loop))
         system = System(self._deployment, clock, self._console, options)
         waits = Waits(clock)
         self._begun = system, waits

@@ -49,7 +49,6 @@ class Token:
     first: bool
 
     def __str__(self) -> str:
-        """Return the token as messages show it."""
         return (
             "end of file" if self.kind == "end" else self.text if self.kind == "string" else f"`{self.text}`"
         )

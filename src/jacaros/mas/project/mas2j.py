@@ -85,7 +85,6 @@ class Mas2jReader(ProjectReader):
                 self._to_next_agent()
 
     def _to_next_agent(self) -> None:
-        """Skip to the token after the next ';', after an error."""
         while self.cursor.token.kind != "end" and not self.at_next_section():
             if self.cursor.advance().kind == ";":
                 return

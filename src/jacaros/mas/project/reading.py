@@ -82,7 +82,6 @@ class _Files:
         return part
 
     def _map(self, path: Path, part: ProjectPart) -> None:
-        """Read the mapping files that a project names."""
         if not part.mappings:
             return
         from jacaros.mas.mappings import MAIN, read_mapping_file  # here: most projects name none
@@ -164,7 +163,6 @@ def _deployment(path: Path, part: ProjectPart, diagnostics: list[Diagnostic]) ->
 
 
 def _add_mapped_artifacts(part: ProjectPart) -> None:
-    """Add the mapped artifacts to workspace ``main``."""
     if not part.mapped:
         return
     named = (each for each in part.workspaces if each.name in ("main", "/main") and not each.parent)

@@ -255,7 +255,6 @@ class Resolver:
         return [self._situated(replace(first, name=name), agent) for name in agent.instance_names()]
 
     def _source(self, agent: AgentPart) -> Path:
-        """Return the file of an agent's program."""
         written = agent.source or agent.name
         try:
             return SourcePath(agent.folders).find(written)

@@ -98,7 +98,6 @@ class _Reader:
 
 
 def _initial(file: str, text: str) -> set[str]:
-    """Return the initial beliefs and goals of a program, each by name and arity."""
     program, _ = read_program(SourceFile(file, text))
     beliefs = {_literal_key(each) for each in program.beliefs if isinstance(each, nodes.Literal)}
     return beliefs | {f"!{_literal_key(each)}" for each in program.goals}

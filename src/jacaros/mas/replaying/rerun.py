@@ -228,7 +228,6 @@ def _ignore(*_: str) -> None:
 
 
 def _answers(answer: Input, question: SpeechAct) -> bool:
-    """Return whether a recorded answer belongs to a question of the rerun."""
     asked = answer.question
     return (
         asked.get("to") == question.receiver
