@@ -22,8 +22,8 @@ from jacaros.inspector.page import replay_html
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import RobotView
-from jacaros.mas.checking import check_files
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.checks.files import check_files
+from jacaros.mas.launch import load_deployment
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.parameter import checked_value
 from jacaros.ros.protocols.rosbridge_messages import Translator

@@ -16,7 +16,7 @@ from typing import Any
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.storage import NotStorable, restore, stored
 from jacaros.cli.main import main
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 
 CHANCE = 0.2
 """Probability of restoring a mind after a few cycles."""
@@ -54,7 +54,7 @@ def exchange(host: AgentHost, old: Mind) -> None:
         alarm.timer.cancel()
     new = Mind(old.name, old.program, host, old.options, old.engine.actions)
     new.observers, new.functions.project = old.observers, old.functions.project  # given by the host
-    host.mind = new
+    host.set_mind(new)
     restore(new, json.loads(text), same_host=True)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from jacaros.agents.mind.mind import Mind
 from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.cli.main import main
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.ros.drivers.ros1.connections import InletTransport
 from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
 from jacaros.ros.drivers.ros1.topics import Ros1Publisher

@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.values import Atom, Out, Structure
     from jacaros.errors import InternalError, JacarosError, UsageError
     from jacaros.mas.deployment import ProjectError
-    from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
-    from jacaros.mas.embedding.mas import Mas
-    from jacaros.mas.embedding.run import run
+    from jacaros.mas.embedding.mas import Mas, run
+    from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, RunEnded, UnknownAgent
     from jacaros.mas.options import RunOptions
 
 __version__: str
@@ -69,9 +68,8 @@ _MODULES = {
     "jacaros.artifacts.env.values": "Atom Out Structure",
     "jacaros.errors": "InternalError JacarosError UsageError",
     "jacaros.mas.deployment": "ProjectError",
-    "jacaros.mas.embedding.errors": "AgentEnded GoalFailed RunEnded UnknownAgent",
-    "jacaros.mas.embedding.mas": "Mas",
-    "jacaros.mas.embedding.run": "run",
+    "jacaros.mas.embedding.waits": "AgentEnded GoalFailed RunEnded UnknownAgent",
+    "jacaros.mas.embedding.mas": "Mas run",
     "jacaros.mas.options": "RunOptions",
     "jacaros.version": "__version__=VERSION",
 }

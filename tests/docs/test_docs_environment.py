@@ -17,7 +17,7 @@ from jacaros.artifacts.env.environment import (
 from jacaros.artifacts.env.operation import OPERATION
 from jacaros.artifacts.tools import Barrier, Clock, Latch
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.python_objects import actions
+from jacaros.mas.agents.python_objects import actions
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 from jacaros.mas.mappings import with_mappings
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph

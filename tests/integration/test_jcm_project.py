@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 from jacaros.testing import run_project
 
 FILES = {

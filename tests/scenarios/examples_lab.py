@@ -10,8 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import launch, load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.sim import Event, GroundTruth, Sample

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, run, spoilt
 
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 from jacaros.sim.files.world import load_world
 from jacaros.testing import run_project
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.cli.main import call
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 
 ROOT = Path(__file__).parents[2]
 

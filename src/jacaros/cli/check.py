@@ -13,7 +13,7 @@ from jacaros.cli.files import existing, no_programs
 from jacaros.cli.reports import as_json, as_sarif
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file, suggestion
-from jacaros.mas.checking import Findings, check_files
+from jacaros.mas.checks.files import Findings, check_files
 from jacaros.runtime.output import beneath
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")

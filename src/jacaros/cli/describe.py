@@ -16,7 +16,7 @@ from jacaros.errors import UsageError
 from jacaros.files.python_modules import UNSEEN, NotImported, ProjectModules
 from jacaros.files.texts import is_file
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 
 PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 

@@ -16,8 +16,8 @@ from jacaros.cli.files import existing, no_programs
 from jacaros.cli.usage import examples, usage_error
 from jacaros.errors import InternalError
 from jacaros.files import texts
-from jacaros.mas.checking import files_below
-from jacaros.mas.programs import text_of
+from jacaros.mas.agents.programs import text_of
+from jacaros.mas.checks.files import files_below
 
 _STANDARD_INPUT = Path("-")
 

@@ -8,7 +8,7 @@ from urllib.parse import quote
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, Span
 from jacaros.cli.version import version_of
 from jacaros.files.texts import printable
-from jacaros.mas.checking import Findings
+from jacaros.mas.checks.files import Findings
 
 Object = dict[str, Any]
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

@@ -28,11 +28,10 @@ from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.variables import VariableOption, settled, variables
 from jacaros.cli.view_options import ViewCommand, view_options
 from jacaros.files.texts import is_file
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import StandardConsole
 from jacaros.mas.deployment import Deployment
-from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import launch, load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.runtime.output import CLOSING, PATIENCE

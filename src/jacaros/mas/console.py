@@ -3,10 +3,16 @@
 import contextlib
 import os
 import sys
+import sysconfig
+import traceback
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Protocol, TextIO
 
 from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, Stream
+
+_NOT_OF_USERS = (str(Path(__file__).parents[1]), sysconfig.get_path("stdlib"), "<")
+"""Beginnings of the names of files that are not the user's code."""
 
 LEVELS = ("debug", "info", "warning", "error")
 
@@ -132,3 +138,19 @@ class HeardConsole:
 def line_of(agent: str, text: str) -> str:
     """Return the line for an agent's output. Line ends in the text are kept."""
     return f"[{agent}] {text}\n"
+
+
+def places_of_fault(error: BaseException) -> list[str]:
+    """Return the lines of the user's code in the traceback of an exception, the innermost last."""
+    frames = ((frame.f_code, line) for frame, line in traceback.walk_tb(error.__traceback__))
+    return [
+        f"{code.co_filename}:{line}, in {code.co_name}"
+        for code, line in frames
+        if not code.co_filename.startswith(_NOT_OF_USERS)
+    ]
+
+
+def place_of_fault(error: BaseException) -> str:
+    """Return the innermost line of the user's code in the traceback, in brackets; empty without one."""
+    places = places_of_fault(error)
+    return f" ({places[-1]})" if places else ""

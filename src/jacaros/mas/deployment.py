@@ -71,6 +71,11 @@ class AgentSpec:
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
+    def is_situated(self) -> bool:
+        """Whether it joins workspaces or focuses artifacts at its start."""
+        return bool(self.join or self.focus)
+
+    @property
     def is_python(self) -> bool:
         """Whether it is a Python agent."""
         return self.python_class is not None or str(self.source_path).endswith(".py")

@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from jacaros.agents.mind.mind import Mind
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer
@@ -49,24 +48,24 @@ class Status:
     values: dict[str, str] = field(default_factory=dict)
 
 
+@dataclass(eq=False)
 class AgentHealth:
     """Observes the queues of one agent.
 
-    Args:
+    Attributes:
         host: host of the agent.
     """
 
-    def __init__(self, host: AgentHost) -> None:
-        self._host = host
-        self._cycles = 0
-        self._waiting = 0
-        self._grown = 0
+    host: AgentHost
+    _cycles: int = 0
+    _waiting: int = 0
+    _grown: int = 0
 
     def look(self, seconds: float) -> Status:
         """Return its state, *seconds* after the last call."""
-        mind = self._host.mind
-        if not isinstance(mind, Mind):
-            return Status(f"agent {self._host.name}", OK, "Python agent")
+        mind, name = self.host.mind, f"agent {self.host.name}"
+        if mind is None:
+            return Status(name, OK, "Python agent")
         waiting = len(mind.events) + len(mind.incoming.messages) + len(mind.incoming.percepts)
         self._grown = self._grown + 1 if waiting > self._waiting else 0
         rate = (mind.counts.cycles - self._cycles) / seconds
@@ -80,36 +79,29 @@ class AgentHealth:
         }
         if self._grown >= GROWING and waiting > MANY:
             text = f"{waiting} events, messages and percepts are waiting, and arrive faster than the agent processes them"
-            return Status(f"agent {self._host.name}", WARN, text, values)
-        doing = "reasoning" if mind.alive else "waiting for events"
-        return Status(f"agent {self._host.name}", OK, doing, values)
+            return Status(name, WARN, text, values)
+        return Status(name, OK, "reasoning" if mind.alive else "waiting for events", values)
 
 
+@dataclass(eq=False)
 class Diagnostics:
     """Publishes the state of a run.
 
-    Args:
+    Attributes:
         backend: the node of the run.
         clock: clock of the run.
         hosts: returns the current agents.
         error: returns the defect that ended the run, or None.
     """
 
-    def __init__(
-        self,
-        backend: "Backend",
-        clock: Clock,
-        hosts: Callable[[], Iterable[AgentHost]],
-        error: Callable[[], BaseException | None],
-    ) -> None:
-        self._backend = backend
-        self._clock = clock
-        self._hosts = hosts
-        self._error = error
-        self._health: dict[AgentHost, AgentHealth] = {}
-        self._publisher: Publisher | None = None
-        self._timer: Timer | None = None
-        self._lost = 0
+    backend: "Backend"
+    clock: Clock
+    hosts: Callable[[], Iterable[AgentHost]]
+    error: Callable[[], BaseException | None]
+    _health: dict[AgentHost, AgentHealth] = field(default_factory=dict)
+    _publisher: "Publisher | None" = None
+    _timer: Timer | None = None
+    _lost: int = 0
 
     def start(self) -> None:
         """Begin to publish.
@@ -117,9 +109,9 @@ class Diagnostics:
         Raises:
             UnknownInterface: ``diagnostic_msgs`` is not installed.
         """
-        self._publisher = self._backend.publisher(TOPIC, TYPE)
-        self._backend.on_connection(self._note_connection)
-        self._timer = self._clock.call_later(PERIOD, self._tick)
+        self._publisher = self.backend.publisher(TOPIC, TYPE)
+        self.backend.on_connection(self._note_connection)
+        self._timer = self.clock.call_later(PERIOD, self._tick)
 
     def close(self) -> None:
         """Publish the final state, and stop."""
@@ -130,39 +122,28 @@ class Diagnostics:
 
     def look(self) -> list[Status]:
         """Return the state of everything, `PERIOD` seconds after the last call."""
-        hosts = list(self._hosts())
+        hosts = list(self.hosts())
         for gone in set(self._health) - set(hosts):
             del self._health[gone]
         agents = [self._health.setdefault(host, AgentHealth(host)).look(PERIOD) for host in hosts]
-        return [self._connection(), *self._defect(), *agents]
-
-    def _connection(self) -> Status:
-        backend = self._backend
-        values = {
-            "middleware": backend.name,
-            "node": backend.node_name,
-            "connection losses": str(self._lost),
-        }
-        if backend.connected:
-            return Status("connection", OK, "connected", values)
-        return Status("connection", WARN, "ROS graph unreachable", values)
-
-    def _defect(self) -> list[Status]:
-        error = self._error()
-        if error is None:
-            return []
-        return [Status("run", ERROR, f"internal error: {type(error).__name__}: {error}")]
+        backend, error = self.backend, self.error()
+        values = {"middleware": backend.name, "node": backend.node_name, "connection losses": str(self._lost)}
+        level, text = (OK, "connected") if backend.connected else (WARN, "ROS graph unreachable")
+        found = [Status("connection", level, text, values)]
+        if error is not None:
+            found.append(Status("run", ERROR, f"internal error: {type(error).__name__}: {error}"))
+        return [*found, *agents]
 
     def _note_connection(self, connected: bool) -> None:
         self._lost += not connected
 
     def _tick(self) -> None:
         self._publish()
-        self._timer = self._clock.call_later(PERIOD, self._tick)
+        self._timer = self.clock.call_later(PERIOD, self._tick)
 
     def _publish(self) -> None:
         assert self._publisher is not None
-        prefix = self._backend.node_name.lstrip("/")
+        prefix = self.backend.node_name.lstrip("/")
         statuses = [
             {
                 "level": each.level,
@@ -173,12 +154,9 @@ class Diagnostics:
             }
             for each in self.look()
         ]
-        header = {"stamp": self._clock.now()}
+        header = {"stamp": self.clock.now()}
         self._publisher.publish(self._publisher.message(header=header, status=statuses))
 
-
-if TYPE_CHECKING:
-    from jacaros.ros.backend import Backend
 
 LEVELS = {"debug": "debug", "info": "info", "warning": "warn", "error": "error"}
 """From a console's levels to those of ROS's log."""

@@ -9,7 +9,8 @@ requests to another process are sent, and lookups are answered from local knowle
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from typing import Generic, Protocol, TypeVar
+from functools import cached_property
+from typing import Protocol
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import belief_update
@@ -18,6 +19,7 @@ from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.collections import detached, holds_collection
 from jacaros.agents.terms.substitution import is_ground, rename
 from jacaros.agents.terms.values import BY_SELF, Annotated, String, Term, atom, functor
+from jacaros.mas.agents.host import AgentHost
 
 
 class Mailbox(Protocol):
@@ -43,10 +45,7 @@ class Participants(Protocol):
         """Return the mailbox of a name, or None if it is not among the `names`."""
 
 
-H = TypeVar("H")
-
-
-class Directory(Generic[H]):
+class Directory:
     """The agents of a run, in the order of creation, and then its other participants.
 
     Attributes:
@@ -54,20 +53,20 @@ class Directory(Generic[H]):
     """
 
     def __init__(self) -> None:
-        self._hosts: dict[str, H] = {}
+        self._hosts: dict[str, AgentHost] = {}
         self._names: tuple[str, ...] | None = ()
         self._others: list[Participants] = []
         self._watchers: list[Callable[[str, bool], None]] = []
-        self.find: Callable[[str], H | None] = self._hosts.get
+        self.find: Callable[[str], AgentHost | None] = self._hosts.get
 
-    def add(self, name: str, host: H) -> None:
+    def add(self, name: str, host: AgentHost) -> None:
         """Add an agent. Its name must be free."""
         if self._is_taken(name):
             raise ValueError(f"duplicate agent name `{name}`")
         self._hosts[name] = host
         self._changed(name, True)
 
-    def remove(self, name: str) -> H | None:
+    def remove(self, name: str) -> AgentHost | None:
         """Remove an agent and return it, or None if it is unknown."""
         host = self._hosts.pop(name, None)
         if host is not None:
@@ -116,7 +115,7 @@ class Directory(Generic[H]):
     def _is_taken(self, name: str) -> bool:
         return name in self._hosts or self.find_other(name) is not None
 
-    def __iter__(self) -> Iterator[H]:
+    def __iter__(self) -> Iterator[AgentHost]:
         """Iterate over the agents of this run."""
         return iter(list(self._hosts.values()))
 
@@ -207,15 +206,12 @@ class ServiceDirectory:
     def __init__(self, make: Callable[[], Mind], deliver: Callable[[SpeechAct], bool]) -> None:
         self._make = make
         self._deliver = deliver
-        self._agent: Mind | None = None
         self._watchers: list[Watcher] = []
 
-    @property
+    @cached_property
     def agent(self) -> Mind:
-        """Return the agent, created on first use."""
-        if self._agent is None:
-            self._agent = self._make()
-        return self._agent
+        """The agent, created on first use."""
+        return self._make()
 
     def register(self, name: str, service: str) -> None:
         """Register an agent as provider of a service, and notify the subscribers."""

@@ -2,25 +2,22 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.agents.body.body import AgentBody
 from jacaros.agents.body.values import PerceptWriter, References
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.mind.mind import Mind
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import OperationFailed, UnknownArtifactType
 from jacaros.artifacts.env.ports import Workspace, ignore_made
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kernel.acceptance import Unsuitable
 from jacaros.artifacts.kernel.declaration import Parameter
-from jacaros.artifacts.presence.presence import Presence
+from jacaros.artifacts.presence.presence import Account, Presence
 from jacaros.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.files.texts import close_matches
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import Console
 from jacaros.mas.deployment import (
     AgentSpec,
@@ -31,7 +28,7 @@ from jacaros.mas.deployment import (
     WorkspaceSpec,
     has_own_artifacts,
 )
-from jacaros.mas.idleness import Activity
+from jacaros.mas.scheduler import Activity
 from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:
@@ -53,6 +50,27 @@ class Resources(Mapping[str, object]):
 
     def __len__(self) -> int:
         return len(self._makers)
+
+
+class OperationAccount(Account):
+    """Counts the running operations of Python code. Its waits do not concern the agents.
+
+    Args:
+        activity: counts what the agents wait for.
+        settled: called whenever an operation has ended.
+    """
+
+    def __init__(self, activity: Activity, settled: Callable[[], None]) -> None:
+        self._activity, self._settled = activity, settled
+
+    def begin(self) -> None:
+        """An operation, or something else with an end, has begun."""
+        self._activity.begin()
+
+    def end(self) -> None:
+        """It has ended."""
+        self._activity.end()
+        self._settled()
 
 
 class TypeFinder:
@@ -136,7 +154,7 @@ class RunEnvironment:
     def make_body(self, host: AgentHost) -> AgentBody:
         """Return a body for an agent, in ``/main``."""
         mind = host.mind
-        assert isinstance(mind, Mind)
+        assert mind is not None
         return AgentBody(host.name, mind, self.environment, self._writer, host.print, self._activity)
 
     def situate(self, presence: Presence, spec: AgentSpec) -> None:
@@ -144,22 +162,19 @@ class RunEnvironment:
 
         An artifact that does not exist is focused as soon as it is created. Other errors are logged.
         """
-        steps = [partial(self._join, presence, workspace) for workspace in spec.join]
-        steps += [partial(self._focus, presence, wanted) for wanted in spec.focus]
-        for step in steps:
+        wishes: tuple[str | FocusSpec, ...] = (*spec.join, *spec.focus)
+        for wanted in wishes:
             try:
-                step()
+                if isinstance(wanted, str):
+                    presence.join(self.environment.workspace(path_of(self.environment, wanted)))
+                else:
+                    self._focus(presence, wanted)
             except OperationFailed as failure:
                 self._console.log(f"[{spec.name}] error: {failure.message}", "error")
 
-    def _join(self, presence: Presence, workspace: str) -> None:
-        presence.join(self.environment.workspace(path_of(self.environment, workspace)))
-
     def _focus(self, presence: Presence, wanted: FocusSpec) -> None:
-        if wanted.workspace is None:
-            path = artifact_of(self.environment, wanted).workspace
-        else:
-            path = path_of(self.environment, wanted.workspace)
+        known = wanted.workspace
+        path = path_of(self.environment, known) if known else artifact_of(self.environment, wanted).workspace
         if not presence.workspaces.has_joined(path):
             presence.join(self.environment.workspace(path))
         here = presence.workspaces.at(path)
@@ -168,37 +183,24 @@ class RunEnvironment:
     async def set_up(self, deployment: Deployment) -> None:
         """Create the workspaces and artifacts that the project declares.
 
+        The artifacts have no creator, so no agent prefers them as its own.
+
         Raises:
-            ProjectError: one cannot be created.
+            ProjectError: all unknown types, before anything is created; or all failures of creation.
         """
-        await set_up_workspaces(self.environment, deployment.workspaces, self.types)
-
-
-async def set_up_workspaces(
-    environment: Environment,
-    workspaces: Sequence[WorkspaceSpec],
-    find_type: "Callable[[str], type[Artifact]]",
-) -> None:
-    """Create workspaces and their artifacts.
-
-    The artifacts have no creator, so no agent prefers them as its own.
-
-    Raises:
-        ProjectError: all unknown types, before anything is created; or all failures of creation.
-    """
-    artifacts = [artifact for workspace in workspaces for artifact in workspace.artifacts]
-    types = types_of(artifacts, find_type)
-    wrong: list[Diagnostic] = []
-    for spec in workspaces:
-        workspace = _workspace(environment, spec)
-        for artifact in spec.artifacts:
-            fitting = replace(artifact, arguments=fitted(artifact.arguments, types[artifact.type_name]))
-            try:
-                await workspace.make_artifact(fitting.name, fitting.type_name, fitting.arguments)
-            except OperationFailed as failure:
-                wrong.append(Diagnostic("error", failure.message, artifact.span))
-    if wrong:
-        raise ProjectError(wrong)
+        artifacts = [artifact for workspace in deployment.workspaces for artifact in workspace.artifacts]
+        types = types_of(artifacts, self.types)
+        wrong: list[Diagnostic] = []
+        for spec in deployment.workspaces:
+            workspace = _workspace(self.environment, spec)
+            for artifact in spec.artifacts:
+                arguments = fitted(artifact.arguments, types[artifact.type_name])
+                try:
+                    await workspace.make_artifact(artifact.name, artifact.type_name, arguments)
+                except OperationFailed as failure:
+                    wrong.append(Diagnostic("error", failure.message, artifact.span))
+        if wrong:
+            raise ProjectError(wrong)
 
 
 def types_of(
@@ -229,7 +231,6 @@ def types_of(
 
 
 def _where(type_name: str) -> str:
-    """Return the help for an unknown type."""
     package, _, name = type_name.rpartition(".")
     file = f"{package.replace('.', '/')}.py or artifacts.py" if package else "artifacts.py"
     return f"write `class {name}(Artifact)` in {file} beside the project file"
@@ -246,29 +247,23 @@ def fitted(arguments: tuple[object, ...], artifact_type: "type[Artifact]") -> tu
     signature = init.signature
     places: list[Parameter | None] = [*signature.parameters]
     places += [signature.rest] * (len(arguments) - len(places))
-    return tuple(
-        _fitting(argument, parameter)
-        for argument, parameter in zip(arguments, places[: len(arguments)], strict=True)
-    )
+    return tuple(map(_fitting, arguments, places))
 
 
 def _fitting(argument: object, parameter: Parameter | None) -> object:
     if parameter is None or not isinstance(argument, str) or isinstance(argument, Atom):
         return argument
-    if _suits(argument, parameter):
-        return argument
     return next((value for value in _readings(argument) if _suits(value, parameter)), argument)
 
 
-def _readings(text: str) -> list[object]:
-    """Return other values that a string may stand for."""
+def _readings(text: str) -> Iterator[object]:
+    """Return the values that a string may stand for."""
+    yield text
     if text in ("true", "false"):
-        return [text == "true"]
-    found: list[object] = []
+        yield text == "true"
     for kind in (int, float):
         with suppress(ValueError):
-            found.append(kind(text))
-    return found
+            yield kind(text)
 
 
 def _suits(argument: object, parameter: Parameter) -> bool:
@@ -280,12 +275,11 @@ def _suits(argument: object, parameter: Parameter) -> bool:
 
 
 def _workspace(environment: Environment, spec: WorkspaceSpec) -> Workspace:
-    above = environment.workspace(path_of(environment, spec.parent)) if spec.parent else None
-    path = f"{above.path if above is not None else '/main'}/{spec.name}"
-    if spec.name == "main" and above is None:
+    if spec.name == "main" and not spec.parent:
         return environment.workspace("/main")
+    above = path_of(environment, spec.parent) if spec.parent else "/main"
     try:
-        return environment.create_workspace(path)
+        return environment.create_workspace(f"{above}/{spec.name}")
     except OperationFailed as failure:
         raise ProjectError([Diagnostic("error", failure.message, spec.span)]) from failure
 

@@ -5,14 +5,14 @@ declares a given parameter.
 """
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
-from jacaros.ros.backend import Backend, Subscription
+from jacaros.ros.backend import PARAMETERS, Backend, Subscription
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.parameter import GivenParameters
+from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
 
@@ -34,17 +34,10 @@ class GraphTime:
 
     def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
         self._backend, self._log = backend, log
-        self._listening: Subscription | None = None
         self._asking: asyncio.Task[None] | None = None
         self._told = False
-
-    def watch(self) -> None:
-        """Begin to watch."""
-        from jacaros.ros.backend import PARAMETERS
-        from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
-
-        backend = self._backend
-        self._listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
+        listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
+        self._listening: Subscription | None = listening
         if backend.ros_version == 1 and PARAMETERS in backend.capabilities:
             backend.on_connection(self._connected)
             self._connected(backend.connected)
@@ -116,25 +109,15 @@ class EmptyGraph:
     """
 
     def __init__(self, backend: Backend, clock: Clock, graph: str, log: Callable[[str], None]) -> None:
-        self._backend, self._graph, self._log = backend, graph, log
-        self._task: asyncio.Task[None] | None = None
-        self._clock, self._begun = clock, clock.elapsed
-        self._missing = round(MISSING_AFTER / _STEP)
-        self._wait()
+        self._backend, self._clock, self._graph, self._log = backend, clock, graph, log
+        self._task = asyncio.get_running_loop().create_task(self._watch())
 
-    def _wait(self) -> None:
-        self._due = self._clock.elapsed + _STEP
-        self._timer = self._clock.call_later(_STEP, self._step)
-
-    def _step(self) -> None:
-        now = self._clock.elapsed
-        self._missing -= now - self._due < _LATE
-        if self._missing > 0 and now - self._begun < _AT_MOST:
-            self._wait()
-        else:
-            self._task = asyncio.get_running_loop().create_task(self._look())
-
-    async def _look(self) -> None:
+    async def _watch(self) -> None:
+        missing, begun = round(MISSING_AFTER / _STEP), self._clock.elapsed
+        while missing > 0 and self._clock.elapsed - begun < _AT_MOST:
+            due = self._clock.elapsed + _STEP
+            await self._clock.sleep(_STEP)
+            missing -= self._clock.elapsed - due < _LATE
         try:
             contents = await self._backend.contents(_ANSWER)
         except RosError:
@@ -147,58 +130,15 @@ class EmptyGraph:
 
     def close(self) -> None:
         """Stop watching."""
-        self._timer.cancel()
-        if self._task is not None:
-            self._task.cancel()
+        self._task.cancel()
 
-
-_DECLARING = 3.0
-"""Seconds of the run's clock: agents also create artifacts with their first steps."""
 
 _FEW = 5
 """Maximum number of names in a message: a file for all nodes of a robot may have hundreds."""
 
 
-class UndeclaredParameters:
-    """Logs which of the given parameters are not declared `_DECLARING` seconds after the start.
-
-    A run that ends before that logs it at its end.
-
-    Args:
-        names: names of the given parameters.
-        given: returns the parameters of our node; None without a node.
-        clock: measures the seconds.
-        log: takes one line.
-    """
-
-    def __init__(
-        self,
-        names: Iterable[str],
-        given: "Callable[[], GivenParameters | None]",
-        clock: Clock,
-        log: Callable[[str], None],
-    ) -> None:
-        self._names, self._given, self._log = sorted(names), given, log
-        self._is_told = False
-        self._timer = clock.call_later(_DECLARING, self.tell)
-
-    def tell(self) -> None:
-        """Log it, unless it has been logged."""
-        if self._is_told:
-            return
-        self.close()
-        given = self._given()
-        unknown, known = (self._names, []) if given is None else (given.untaken(), given.known())
-        if unknown:
-            self._log(_text(unknown, known))
-
-    def close(self) -> None:
-        """Stop watching."""
-        self._is_told = True
-        self._timer.cancel()
-
-
-def _text(unknown: Sequence[str], known: Sequence[str]) -> str:
+def undeclared(unknown: Sequence[str], known: Sequence[str]) -> str:
+    """Return the warning about given parameters that nothing declares."""
     several = len(unknown) > 1
     listed = ", ".join(unknown[:_FEW]) + (f" and {len(unknown) - _FEW} more" if len(unknown) > _FEW else "")
     near = dict.fromkeys(each for name in unknown for each in close_matches(name, known))

@@ -1,4 +1,4 @@
-"""Launch a project in a process: clock, event loop, signals, garbage collector.
+"""Load a project, and launch it in a process: clock, event loop, signals, garbage collector.
 
 Ctrl+C, SIGTERM, SIGHUP and, on Windows, SIGBREAK (Ctrl+Break) end a run in any state. `jacaros.ros.lifetime` handles
 the signals: it stops the robots and then calls this module. The event loop handles a signal between two callbacks. A
@@ -9,16 +9,18 @@ import asyncio
 import gc
 import sys
 import warnings
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn
 
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.files.texts import is_file
+from jacaros.mas.agents.programs import PROJECTS, source_folders
 from jacaros.mas.console import Console
-from jacaros.mas.deployment import Deployment
-from jacaros.mas.loading import load_deployment, mapped
+from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.mas.watchdog import Watchdog
@@ -35,6 +37,48 @@ SWITCH_INTERVAL = 0.0005
 
 Python's default of 5 ms is longer than a message otherwise takes to become a command.
 """
+
+
+def load_deployment(path: str | Path) -> Deployment:
+    """Return what the project file *path* declares. A lone `.asl` or `.py` file is a system of one agent with its name.
+
+    Raises:
+        ProjectError: all errors of the file, including missing programs of agents.
+    """
+    path = Path(path)
+    if path.suffix in (".asl", ".py"):
+        return _lone_agent(path)
+    if path.suffix not in PROJECTS:
+        raise ProjectError(
+            [Diagnostic("error", f"unsupported file type: {path} (expected .mas2j, .jcm, .asl or .py)")]
+        )
+    from jacaros.mas.project.reading import read_project  # here: a lone program starts sooner without it
+
+    deployment = read_project(path).deployment
+    if any(diagnostic.severity == "error" for diagnostic in deployment.ignored):
+        raise ProjectError(deployment.ignored)
+    return deployment
+
+
+def mapped(deployment: Deployment, names: Sequence[str | Path]) -> Deployment:
+    """Return the deployment with the artifacts of mapping files. A lone program focuses all of them.
+
+    Raises:
+        ProjectError: all errors in the files.
+    """
+    if not names:
+        return deployment
+    from jacaros.mas.mappings import with_mappings  # here: most runs have none
+
+    return with_mappings(deployment, tuple(map(str, names)))
+
+
+def _lone_agent(path: Path) -> Deployment:
+    if not is_file(path):
+        raise ProjectError([Diagnostic("error", f"file not found: {path}")])
+    agent = AgentSpec(path.stem, path, path.stem)
+    base = path.parent
+    return Deployment(path.stem, base, (agent,), artifact_environment=True, source_paths=source_folders(base))
 
 
 def launch(
@@ -65,7 +109,7 @@ def launch(
     deployment = mapped(
         project if isinstance(project, Deployment) else load_deployment(project), options.mappings
     )
-    clock = _clock(options, console)
+    clock = chosen_clock(options, console)
 
     async def main() -> int:
         mas = System(deployment, clock, console, options)
@@ -95,12 +139,13 @@ def launch(
             watchdog.stop()
 
 
-def _clock(options: RunOptions, console: Console) -> Clock:
+def chosen_clock(options: RunOptions, console: Console, other: Clock | None = None) -> Clock:
+    """Return the clock that the options ask for: that of the ROS graph, or else *other*, or a new one."""
     if options.ros_clock:
         from jacaros.ros.ros_clock import RosClock  # here: only for simulators on a real graph
 
         return RosClock(lambda text: console.log(f"[ros] {text}"))
-    return VirtualClock() if options.fast else WallClock()
+    return other or (VirtualClock() if options.fast else WallClock())
 
 
 def _escaped(mas: System, context: dict[str, Any]) -> None:
@@ -191,7 +236,6 @@ class Interruption:
                 self._alarm.set(THREADS, AGAIN)
 
     def _notice(self, number: int, frame: FrameType | None) -> None:
-        """Handle a signal, in its handler."""
         if self._over:
             return  # nothing is left to interrupt
         again, self.exit_code = self.exit_code != 0, 128 + number

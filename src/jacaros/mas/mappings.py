@@ -57,11 +57,9 @@ def _diagnostic(source: SourceFile, problem: Problem, wrong: str) -> Diagnostic:
         end = problem.column + max(1, len(word))
     span = Span(source, problem.line, problem.column, problem.line, end)
     # The robot's own middleware may know more types than JaCaROS.
-    uncertain = UNCERTAIN in problem.message and "did you mean" not in problem.help
-    level, code = ("warning", UNKNOWN_TYPE) if uncertain else ("error", wrong)
-    return Diagnostic(
-        "warning" if level == "warning" else "error", problem.message, span, problem.help or None, code
-    )
+    if UNCERTAIN in problem.message and "did you mean" not in problem.help:
+        return Diagnostic("warning", problem.message, span, problem.help or None, UNKNOWN_TYPE)
+    return Diagnostic("error", problem.message, span, problem.help or None, wrong)
 
 
 def check_mapping_file(path: Path) -> list[Diagnostic]:
@@ -96,41 +94,21 @@ def with_mappings(deployment: Deployment, names: Sequence[str]) -> Deployment:
         found, errors = read_mapping_file(name, (Path(), deployment.base_path))
         artifacts += found
         wrong += errors
-    wrong += _repeated(deployment, artifacts)
+    spaces = list(deployment.workspaces)
+    mains = [each for each in spaces if each.name == MAIN and each.parent is None]
+    main = mains[0] if mains else WorkspaceSpec(MAIN)
+    seen = {artifact.name for artifact in main.artifacts}
+    for artifact in artifacts:
+        if artifact.name in seen:
+            help = "name the artifacts of a file under `artifacts:`"
+            wrong.append(Diagnostic("error", f"duplicate artifact `{artifact.name}`", None, help))
+        seen.add(artifact.name)
     if wrong:
         raise ProjectError(wrong)
     agents = deployment.agents
     if len(agents) == 1 and agents[0].span is None:
         focus = tuple(FocusSpec(artifact.name, MAIN) for artifact in artifacts)
         agents = (replace(agents[0], focus=(*agents[0].focus, *focus)),)
-    return replace(
-        deployment,
-        agents=agents,
-        workspaces=added(deployment.workspaces, artifacts),
-        artifact_environment=True,
-    )
-
-
-def _repeated(deployment: Deployment, artifacts: Sequence[ArtifactSpec]) -> list[Diagnostic]:
-    seen = {each.name for space in deployment.workspaces if space.name == MAIN for each in space.artifacts}
-    found = []
-    for artifact in artifacts:
-        if artifact.name in seen:
-            help = "name the artifacts of a file under `artifacts:`"
-            found.append(Diagnostic("error", f"duplicate artifact `{artifact.name}`", None, help))
-        seen.add(artifact.name)
-    return found
-
-
-def added(
-    workspaces: Sequence[WorkspaceSpec], artifacts: Sequence[ArtifactSpec]
-) -> tuple[WorkspaceSpec, ...]:
-    """Return the workspaces with more artifacts in ``main``."""
-    if not any(space.name == MAIN and space.parent is None for space in workspaces):
-        workspaces = (WorkspaceSpec(MAIN), *workspaces)
-    return tuple(
-        replace(space, artifacts=(*artifacts, *space.artifacts))
-        if space.name == MAIN and space.parent is None
-        else space
-        for space in workspaces
-    )
+    filled = replace(main, artifacts=(*artifacts, *main.artifacts))
+    spaces = [filled if each is main else each for each in (spaces if mains else [main, *spaces])]
+    return replace(deployment, agents=agents, workspaces=tuple(spaces), artifact_environment=True)

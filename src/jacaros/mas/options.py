@@ -99,12 +99,9 @@ class RunOptions(GraphAddress):
                 "--guard needs a real ROS graph (--ros ros1, ros2 or rosbridge): in the in-process graph, agents and "
                 "robot end together"
             )
-        if self.real_graph or self._names_the_graph():
+        given = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))
+        names = self.namespace or self.remap or self.parameters or any(each is not None for each in given)
+        if self.real_graph or names:
             GraphAddress.check(self)  # with slots, super() refers to an older class
         if self.seconds is not None and self.seconds < 0:
             raise UsageError("expected a non-negative number of seconds as --for")
-
-    def _names_the_graph(self) -> bool:
-        options = (self.node_name, *(self._given(kind) for kind in MIDDLEWARES.values()))
-        names = self.namespace or self.remap or self.parameters
-        return bool(names or any(option is not None for option in options))

@@ -13,19 +13,17 @@ from jacaros.agents.language.nodes import Program
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Services
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.agent_classes import AgentClasses
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle, begin
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.agents.lifecycle import AgentLifecycle
+from jacaros.mas.agents.programs import Programs, asks_why
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.console import Console, HeardConsole
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.mas.directory import Directory, Mailboxes, ServiceDirectory
-from jacaros.mas.idleness import Activity, AgentTimer, Idleness
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import Programs, asks_why
-from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import RosGraph
-from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.scheduler import Activity, AgentTimer, Idleness, Scheduler
 from jacaros.runtime.clock import Clock, of_run
 
 if TYPE_CHECKING:
@@ -64,8 +62,12 @@ class System:
         idleness: detects when the run is idle.
         lifecycle: creates and ends agents.
         mailboxes: delivers messages between agents.
-        deliver: delivers a message. Returns False if the receiver is unknown.
+        deliver, agent_names, create_agent, clone_agent, kill_agent: requests of agents.
         lost_goals: number of failed goals without a plan for their failure, and of Python agents that an exception ended.
+        exit_code: exit code of the run; None while it is running.
+        error: the defect of JaCaROS that ended the run, or None.
+        listen_to_log: calls a function with text and level of each line that is logged from now on. Returns a function that
+            ends this.
         services: the directory facilitator. May be replaced before the run starts.
     """
 
@@ -81,10 +83,15 @@ class System:
     ) -> None:
         self.deployment = deployment
         self.clock = clock
-        self.console: Console = console
-        self.options = options or RunOptions()
-        self.options.check()
-        self.directory: Directory[AgentHost] = Directory()
+        self.options = options = options or RunOptions()
+        options.check()
+        if options.wants_rosout:
+            from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
+
+            console = RosoutConsole(console, lambda: self.ros.joined)
+        self.console: Console = HeardConsole(console)
+        self.listen_to_log = self.console.listen
+        self.directory: Directory = Directory()
         self.activity = Activity()
         self.idleness = Idleness(self.activity)
         self.scheduler = Scheduler(clock, self.idleness.look, self.fail, idle_work=self._compile_ahead)
@@ -97,65 +104,31 @@ class System:
         self._keeps_history = False
         self._debugger: Debugger | None = None
         self._diagnostics: Diagnostics | None = None
-        self.ros = self._find_graph()
+        source, span, log = deployment.world, deployment.world_span, self.console.log
+        self.ros = RosGraph(options, clock, deployment.name, source, log, self.scheduler.hurry, span)
         self._modules = ProjectModules(deployment.base_path, *deployment.source_paths)
-        if self.options.until_idle or when_idle is not None:
+        if options.until_idle or when_idle is not None:
             self.idleness.watch(when_idle or (lambda: self.end(0)))
         self.mailboxes = Mailboxes(self.directory.find, self.directory.find_other)
-        self.deliver = self.mailboxes.deliver
+        self.deliver, self.agent_names = self.mailboxes.deliver, self.directory.names
         self.services: Services = ServiceDirectory(self._make_directory_agent, self.deliver)
         self._has_environment = deployment.artifact_environment or bool(deployment.workspaces)
-        self._seed = self.options.seed if self.options.seed is not None else Random().getrandbits(64)
-        self.lifecycle = self._found(prepare, when_made)
+        self._seed = options.seed if options.seed is not None else Random().getrandbits(64)
+        code = PythonCode(self._modules, options.restricted)
+        programs = Programs(deployment.source_paths, lambda text: log(text, "warning"), code, prepare)
+        self.lifecycle = AgentLifecycle(
+            self, self.directory, programs, code, self._seed, options.plain, self._situate, when_made
+        )
+        self.create_agent, self.clone_agent = self.lifecycle.create, self.lifecycle.clone
+        self.kill_agent = self.lifecycle.kill
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
-        self._ending = False
         self.lost_goals = 0
-        self._exit_code: int | None = None
-        self._error: BaseException | None = None
+        self.exit_code: int | None = None
+        self.error: BaseException | None = None
 
     def _compile_ahead(self) -> bool:
         return self.lifecycle.compile_ahead()
-
-    def _find_graph(self) -> RosGraph:
-        deployment, options = self.deployment, self.options
-        if options.wants_rosout:
-            from jacaros.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
-
-            self.console = RosoutConsole(self.console, lambda: self.ros.joined)
-        self.console = self._log = HeardConsole(self.console)
-        return RosGraph(
-            options,
-            self.clock,
-            deployment.name,
-            deployment.world,
-            self.console.log,
-            self.scheduler.hurry,
-            deployment.world_span,
-        )
-
-    def _found(
-        self,
-        prepare: Callable[[Program, PythonCode], Program] | None,
-        when_made: Callable[[AgentHost], None] | None,
-    ) -> AgentLifecycle:
-        def warn(text: str) -> None:
-            self.console.log(text, "warning")
-
-        deployment, code = self.deployment, PythonCode(self._modules, self.options.restricted)
-        programs = Programs(deployment.source_paths, warn, code, prepare)
-        classes = AgentClasses(self._modules, lambda warning: warn(warning.render()))
-        return AgentLifecycle(
-            self,
-            self.directory,
-            programs,
-            classes,
-            code,
-            self._seed,
-            self.options.plain,
-            self._situate,
-            when_made,
-        )
 
     async def run(self, when_started: Callable[[], None] | None = None) -> int:
         """Run the project until it ends. Return the exit code.
@@ -174,8 +147,8 @@ class System:
             code = await self.ended()
         finally:
             await self.close()
-        if self._error is not None:
-            raise self._error
+        if self.error is not None:
+            raise self.error
         return code
 
     @property
@@ -201,10 +174,6 @@ class System:
 
         return end
 
-    def listen_to_log(self, callback: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *callback* with text and level of each line that is logged from now on. Return a function that ends this."""
-        return self._log.listen(callback)
-
     @property
     def debugger(self) -> "Debugger":
         """Pauses and steps the run. Created on first use."""
@@ -212,13 +181,8 @@ class System:
             from jacaros.mas.debugging.debugger import Debugger  # here: most runs are not debugged
 
             self._debugger = Debugger(self)
-            self._debugger.listen(lambda _: self._look())
+            self._debugger.listen(lambda _: self._history.look() if self._history is not None else None)
         return self._debugger
-
-    def _look(self) -> None:
-        """Let the history, if any, record the state of the agents."""
-        if self._history is not None:
-            self._history.look()
 
     def history(self) -> "History":
         """Return the history of the run, for recordings, views and explanations. Created on first use."""
@@ -278,22 +242,17 @@ class System:
         if self._has_environment and self._has_workspace_setup():
             await self.run_environment().set_up(self.deployment)
         await self.ros.guard()
-        agents = list(zip(self.deployment.agents, programs, strict=True))
-        hosts = [lifecycle.add(spec, program) for spec, program in agents]
+        hosts = list(map(lifecycle.add, self.deployment.agents, programs))
         if self.options.explain or any(map(asks_why, programs)):
             self.keep_history()
-        for host, (spec, program) in zip(hosts, agents, strict=True):
-            begin(host, spec, program)
+        for host, program in zip(hosts, programs, strict=True):
+            lifecycle.begin(host, program)
         if self.options.seconds is not None:
             self.clock.call_later(self.options.seconds, lambda: self.end(0))
         self.ros.watch_parameters()
         self.idleness.look()
-        if self.clock.virtual:
-            self._warn_of_real_time()
-
-    def _warn_of_real_time(self) -> None:
-        if files := self._modules.loaded_files():
-            from jacaros.mas.time_of_day import readings  # here: few projects have Python code
+        if self.clock.virtual and (files := self._modules.loaded_files()):
+            from jacaros.mas.agents.python_code import readings  # here: few projects have Python code
 
             for warning in readings(files):
                 self.console.log(warning.render(), "warning")
@@ -302,7 +261,7 @@ class System:
         from jacaros.mas.diagnostics import Diagnostics  # here: only for runs on a real graph
         from jacaros.ros.errors import UnknownInterface
 
-        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self._error)
+        diagnostics = Diagnostics(self.ros.backend(), self.clock, lambda: self.directory, lambda: self.error)
         try:
             diagnostics.start()
         except UnknownInterface as missing:
@@ -313,7 +272,7 @@ class System:
     def _has_workspace_setup(self) -> bool:
         """Return whether the environment is created at the start, also to report errors in the project's own artifacts."""
         declared = self.deployment.environment or self.deployment.workspaces
-        situated = any(agent.join or agent.focus for agent in self.deployment.agents)
+        situated = any(agent.is_situated for agent in self.deployment.agents)
         return bool(declared) or situated or has_own_artifacts(self.deployment.base_path)
 
     def run_environment(self) -> "RunEnvironment":
@@ -342,11 +301,10 @@ class System:
     def _situate(self, host: AgentHost, spec: AgentSpec) -> None:
         if spec.is_python:
             if self._has_environment:
-                from jacaros.mas.python_agents.situation import (
-                    situate,  # here: most projects have no such agent
-                )
+                from jacaros.mas.agents.python_agents import PythonAgentHost  # here: most projects have none
 
-                situate(host, spec, self.run_environment())
+                assert isinstance(host, PythonAgentHost)
+                host.situate(spec, self.run_environment())
             return
         if self._has_environment:
             host.make_body = lambda: self.run_environment().make_body(host)
@@ -360,11 +318,10 @@ class System:
         host = self.directory.find(DIRECTORY_NAME)
         if host is None:
             host = AgentHost(DIRECTORY_NAME, self, f"{self._seed}/{DIRECTORY_NAME}")
-            host.mind = Mind(DIRECTORY_NAME, Program(), host)  # pyright: ignore[reportArgumentType]
+            host.set_mind(Mind(DIRECTORY_NAME, Program(), host))  # pyright: ignore[reportArgumentType]
             self.directory.add(DIRECTORY_NAME, host)
-        mind = host.mind
-        assert isinstance(mind, Mind)
-        return mind
+        assert host.mind is not None
+        return host.mind
 
     # ---- the end
 
@@ -373,15 +330,14 @@ class System:
 
         With the option ``fail_on_lost_goal``, exit code 0 becomes 1 if a goal was lost.
         """
-        if self._ending:
+        if self.exit_code is not None:
             return
         if exit_code == 0 and self.options.fail_on_lost_goal and self.lost_goals:
             exit_code = 1
             goals = "1 goal was" if self.lost_goals == 1 else f"{self.lost_goals} goals were"
             self.console.log(f"error: {goals} lost (--fail-on-lost-goal)", "error")
         self.ros.ending()
-        self._ending = True
-        self._exit_code = exit_code
+        self.exit_code = exit_code
         self.scheduler.stop()
         self.idleness.stop()
         for host in self.directory:
@@ -402,16 +358,6 @@ class System:
         """Wait for the end of the run. Return the exit code."""
         assert self._ended is not None, "the run has not been started"
         return await asyncio.shield(self._ended)
-
-    @property
-    def exit_code(self) -> int | None:
-        """The exit code of the run; None while it is running."""
-        return self._exit_code
-
-    @property
-    def error(self) -> BaseException | None:
-        """The defect of JaCaROS that ended the run, or None."""
-        return self._error
 
     def goal_lost(self) -> None:
         """Count a failed goal without a plan for its failure."""
@@ -440,8 +386,8 @@ class System:
         if isinstance(error, MemoryError):
             self.out_of_memory()
             return
-        if self._error is None:
-            self._error = error
+        if self.error is None:
+            self.error = error
         self.end(1)
 
     def close_last(self, closer: Callable[[], Awaitable[None]]) -> None:
@@ -472,36 +418,14 @@ class System:
 
     # ---- requests of agents
 
-    def agent_names(self) -> Sequence[str]:
-        """Return the names of all agents, in the order of creation."""
-        return self.directory.names()
-
     def stop_system(self, delay: float, exit_code: int) -> None:
         """End the run after *delay* seconds, after announcing it to the agents."""
         if delay > 0:
             for host in self.directory:
-                host.mind.shut_down_in(delay * 1000)
+                host.shut_down_in(delay)
             AgentTimer(self.clock, self.activity, delay, lambda: self.end(exit_code))
         else:
             self.end(exit_code)
-
-    def create_agent(self, name: str, source: str | None, classes: Mapping[str, str]) -> str | None:
-        """Create and start an agent. Return its final name, or None after logging the reason."""
-        return self.lifecycle.create(name, source, classes)
-
-    def clone_agent(self, original: str, name: str) -> str | None:
-        """Create an agent with a copy of the mind of *original*.
-
-        Return its final name, or None after logging the reason.
-        """
-        return self.lifecycle.clone(original, name)
-
-    def kill_agent(self, name: str, delay: float, killer: str) -> bool:
-        """Kill an agent on behalf of another, *delay* seconds after announcing it.
-
-        Return False if it is unknown or refuses.
-        """
-        return self.lifecycle.kill(name, delay, killer)
 
     def end_agent(self, name: str) -> None:
         """End an agent immediately, without asking it. Unknown names have no effect."""

@@ -16,7 +16,7 @@ from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.add_im import Selection
 from jacaros.agents.mind.rules.body_steps import Step
 from jacaros.agents.mind.state.plan import FAILED, Plan
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 
 INTERVAL = 1.0
 """Seconds between two checks."""
@@ -52,7 +52,6 @@ class Watchdog:
         self._end.set()
 
     def _watch(self) -> None:
-
         while not self._end.wait(self._interval):
             frame = sys._current_frames().get(self._watched)
             if self._is_too_long(task_of(frame)):
@@ -109,7 +108,7 @@ def current_step(frame: FrameType | None) -> str:
     place = "{}:{}".format(*places[0]) if places else _place_of_python(frames)
     if host is None:
         return place
-    plan = _plan_at(host, *places[-1]) if places else None
+    plan = _plan_at(host.mind.library.plans, *places[-1]) if places and host.mind is not None else None
     doing = f", plan {format_term(plan.node.trigger)}" if plan is not None else ""
     called = _own_python(frames) if places else None
     inside = f", in {_place(called)}" if called is not None else ""
@@ -127,7 +126,6 @@ def _in_turn(frame: FrameType | None) -> Iterator[FrameType]:
 
 
 def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
-    """Iterate over the frames of a thread, the innermost first."""
     while frame is not None:
         yield frame
         frame = frame.f_back
@@ -152,22 +150,15 @@ def _place_in_program(frame: FrameType) -> tuple[str, int] | None:
 
 
 def _host(frame: FrameType) -> AgentHost | None:
-    """Return the host of the agent whose cycle a frame runs."""
     mind = frame.f_locals.get("agent") if frame.f_code is Mind.run.__code__ else None
     return mind.architecture if mind is not None and isinstance(mind.architecture, AgentHost) else None
 
 
-def _plan_at(host: AgentHost, file: str, line: int) -> Plan | None:
-    """Return the plan that contains a step."""
-    mind = host.mind
-    return _covering(mind.library.plans, file, line) if isinstance(mind, Mind) else None
-
-
-def _covering(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
+def _plan_at(plans: Sequence[Plan], file: str, line: int) -> Plan | None:
     for plan in plans:
         span = plan.node.span
         if span is not None and span.file.name == file and span.line <= line <= span.end_line:
-            return _covering(plan.subplans, file, line) or plan
+            return _plan_at(plan.subplans, file, line) or plan
     return None
 
 
@@ -182,21 +173,17 @@ def _own_python(frames: Sequence[FrameType]) -> FrameType | None:
 
 
 def _place_of_python(frames: Sequence[FrameType]) -> str:
-    own = next((frame for frame in frames if not _is_library(frame)), None)
-    if own is None:
-        own = frames[0] if frames else None
-    return _place(own) if own is not None else "an unknown place"
+    own = [frame for frame in frames if not _is_library(frame)] or frames
+    return _place(own[0]) if own else "an unknown place"
 
 
 def _is_library(frame: FrameType) -> bool:
     """Return whether a frame belongs to JaCaROS, Python or an installed package."""
     file = frame.f_code.co_filename
     module = str(frame.f_globals.get("__name__", ""))
-    return file.startswith("<") or module.partition(".")[0] in ("jacaros", "asyncio") or _is_installed(file)
-
-
-def _is_installed(file: str) -> bool:
-    return "site-packages" in file or "dist-packages" in file or file.startswith(_STANDARD)
+    if module.partition(".")[0] in ("jacaros", "asyncio") or file.startswith(("<", _STANDARD)):
+        return True
+    return "site-packages" in file or "dist-packages" in file
 
 
 def _place(frame: FrameType) -> str:

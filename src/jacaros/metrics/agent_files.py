@@ -9,10 +9,9 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.action_check import artifact_types
-from jacaros.mas.programs import Programs
-from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_path import TEST_LIBRARY, SourcePath
+from jacaros.mas.agents.programs import TEST_LIBRARY, Programs, SourcePath
+from jacaros.mas.agents.python_code import PythonCode
+from jacaros.mas.checks.artifacts import artifact_types
 from jacaros.metrics.agentspeak import clauses_of, identifiers_of, names_of
 from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.sources import Sources

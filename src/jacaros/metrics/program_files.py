@@ -10,12 +10,12 @@ from jacaros.artifacts.registry import type_finder
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import is_file
 from jacaros.files.yaml import plain_values
-from jacaros.mas.checking import MAPPINGS, PROJECTS, files_below
+from jacaros.mas.agents.programs import source_folders
+from jacaros.mas.checks.files import MAPPINGS, PROJECTS, files_below
 from jacaros.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.mas.mappings import diagnostics_of
 from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.reading import Reading, read_project
-from jacaros.mas.source_path import source_folders
 from jacaros.metrics import python_source, yaml_source
 from jacaros.metrics.agent_files import AgentFiles, AgentProgram, counted_agents, read_agent
 from jacaros.metrics.comments import between

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
 from jacaros.files.texts import file_bytes
-from jacaros.mas.programs import text_of
+from jacaros.mas.agents.programs import text_of
 from jacaros.metrics import agentspeak, python_source
 from jacaros.metrics.comments import Stretch
 from jacaros.metrics.counted_file import CountedFile

@@ -32,11 +32,10 @@ from jacaros.agents.mind.state.budget import Options
 from jacaros.errors import UsageError
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import file_text
-from jacaros.mas.coroutines import Ended, without_exit
-from jacaros.mas.embedding.running_agent import PursuedGoal
-from jacaros.mas.open_mind import OpenMind, literal
-from jacaros.mas.programs import Programs
-from jacaros.mas.python_code import PythonCode
+from jacaros.mas.agents.host import Ended, without_exit
+from jacaros.mas.agents.programs import Programs
+from jacaros.mas.agents.python_code import PythonCode
+from jacaros.mas.embedding.running_agent import OpenMind, PursuedGoal, literal
 from jacaros.runtime.clock import Timer, VirtualClock, run
 from jacaros.testing.recorded import Action, RecordedAct, SentMessage, matches
 

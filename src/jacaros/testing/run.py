@@ -17,13 +17,11 @@ from jacaros.agents.language.nodes import rebuilt
 from jacaros.errors import JacarosError, UsageError
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import file_text, help_line, is_file
+from jacaros.mas.agents.programs import PROJECTS, Programs, SourcePath, project_folders, source_folders
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
-from jacaros.mas.launch import launch
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import launch, load_deployment
 from jacaros.mas.options import RunOptions
-from jacaros.mas.programs import Programs
-from jacaros.mas.python_code import PythonCode
-from jacaros.mas.source_path import PROJECTS, SourcePath, project_folders, source_folders
 from jacaros.mas.system import System
 from jacaros.testing.assertions import UNTESTED, Assertion
 

@@ -20,11 +20,11 @@ from jacaros.agents.mind.state.intention import PLAN, STEP, Intention
 from jacaros.agents.mind.state.pending import is_action
 from jacaros.agents.terms.text import text
 from jacaros.errors import InternalError, JacarosError
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.deployment import Deployment, ProjectError
-from jacaros.mas.loading import mapped
+from jacaros.mas.launch import mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run

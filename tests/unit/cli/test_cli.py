@@ -210,7 +210,12 @@ NOT_FOR_A_LONE_PROGRAM = (
         "jacaros.artifacts",
         "jacaros.agents.python",
     ),
-    *("jacaros.inspector", "jacaros.mas.checking", "jacaros.mas.project.jcm", "jacaros.mas.project.mas2j"),
+    *(
+        "jacaros.inspector",
+        "jacaros.mas.checks.files",
+        "jacaros.mas.project.jcm",
+        "jacaros.mas.project.mas2j",
+    ),
     *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.artifacts.streams"),
     *("jacaros.testing",),
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime

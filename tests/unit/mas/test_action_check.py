@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 
 ARTIFACTS = """
 from jacaros.artifacts import Artifact, Out, operation

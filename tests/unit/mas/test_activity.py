@@ -1,6 +1,6 @@
 """Timers of agents."""
 
-from jacaros.mas.idleness import Activity, AgentTimer
+from jacaros.mas.scheduler import Activity, AgentTimer
 from jacaros.runtime.clock import VirtualClock, run
 
 

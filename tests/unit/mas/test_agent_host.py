@@ -4,9 +4,8 @@ from jacaros.agents.mind.state.act import Act, Completion, Percept, SpeechAct
 from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Term, atom, functor
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.idleness import Activity
-from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.scheduler import Activity, Scheduler
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -89,7 +88,7 @@ class FakeRun:
 def host_and_mind() -> tuple[AgentHost, Mind, FakeRun]:
     run_ = FakeRun()
     host, mind = AgentHost("ann", run_, "1"), Mind()
-    host.mind = mind
+    host.set_mind(mind)
     return host, mind, run_
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.agents.checks.beliefs import is_misspelt
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 
 ARTIFACTS = """
 from jacaros.artifacts import Artifact, operation

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.agents.mind.mind import Mind
 from jacaros.mas.console import Console
 from jacaros.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentHealth
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 from jacaros.mas.options import RunOptions
 from jacaros.mas.system import System
 from jacaros.ros.open import open_backend

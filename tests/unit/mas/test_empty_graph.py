@@ -1,7 +1,6 @@
 """The warning about a graph without other nodes."""
 
 import asyncio
-from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -58,23 +57,24 @@ def test_other_nodes_or_an_unknown_graph_are_not_reported(contents: GraphContent
 
 
 class LateClock:
-    """A clock whose timers ring late, as those of a loop that is busy with something else."""
+    """A clock whose sleepers wake up late, as those of a loop that is busy with something else."""
 
     def __init__(self) -> None:
         self.elapsed = 0.0
-        self._timer: tuple[float, Callable[[], None]] | None = None
+        self._sleepers: list[tuple[float, asyncio.Future[None]]] = []
 
-    def call_later(self, delay: float, callback: Callable[[], None]) -> Any:
-        self._timer = self.elapsed + delay, callback
-        return SimpleNamespace(cancel=lambda: None)
+    async def sleep(self, delay: float) -> None:
+        self._sleepers.append((self.elapsed + delay, asyncio.get_running_loop().create_future()))
+        await self._sleepers[-1][1]
 
     async def ring(self, late: float) -> None:
-        """Fire the timer this number of seconds late."""
-        if self._timer is not None:
-            (when, callback), self._timer = self._timer, None
-            self.elapsed = when + late
-            callback()
+        """Wake the sleeper this number of seconds late."""
+        for _ in range(3):
             await asyncio.sleep(0)
+        for when, sleeper in self._sleepers:
+            self.elapsed = when + late
+            sleeper.set_result(None)
+        self._sleepers.clear()
 
 
 @pytest.mark.parametrize(("late", "seconds"), [(0.0, 3), (0.05, 30)])

@@ -51,7 +51,6 @@ def told(graph: Any, clock_comes: bool = False) -> list[str]:
 
     async def main() -> None:
         time = GraphTime(graph, lines.append)
-        time.watch()
         await clock.sleep(1)
         assert graph.asked == 0
         for present in (True, False, True):

@@ -7,9 +7,9 @@ import pytest
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.nodes import Literal
 from jacaros.files.python_modules import ProjectModules
+from jacaros.mas.agents.programs import Programs
+from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.deployment import AgentSpec
-from jacaros.mas.programs import Programs
-from jacaros.mas.python_code import PythonCode
 
 
 def programs(*folders: Path) -> Programs:

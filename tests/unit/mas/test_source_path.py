@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.loading import load_deployment
-from jacaros.mas.source_path import SourcePath, source_folders
+from jacaros.mas.agents.programs import SourcePath, source_folders
+from jacaros.mas.launch import load_deployment
 
 
 def write(folder: Path, *names: str, text: str = "p.") -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.errors import InternalError
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.system import System
 from jacaros.runtime.clock import VirtualClock
 from jacaros.testing import RunResult, run_project

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.checking import check_files
-from jacaros.mas.source_path import SourcePath
+from jacaros.mas.agents.programs import SourcePath
+from jacaros.mas.checks.files import check_files
 from jacaros.runtime import clock
 from jacaros.testing.run import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite

@@ -17,7 +17,7 @@ from jacaros.agents.terms.text import excerpt, text
 from jacaros.agents.terms.values import Term, Var
 from jacaros.inspector.live.commands import LONGEST, Command, Given, Refused, choice_in, text_in
 from jacaros.inspector.live.time_limit import within
-from jacaros.mas.open_mind import OpenMind, question
+from jacaros.mas.embedding.running_agent import OpenMind, question
 from jacaros.mas.system import System
 
 YOU = "you"

@@ -1,12 +1,14 @@
 """Breakpoints: where a debugger stops a run, before an event is handled or a step is run."""
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.loader import parse_trigger
-from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.language.loader import parse_formula, parse_trigger
+from jacaros.agents.language.lowering import Names, lower, lower_value
 from jacaros.agents.language.nodes import nodes_in
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.agents.mind.rules.context import reading
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     EVENT_ANNOTATIONS,
@@ -23,27 +25,36 @@ from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import annotations_of, functor_of
 from jacaros.errors import UsageError
-from jacaros.mas.debugging.condition import Condition
+
+MOST_STEPS = 1_000
+"""Maximum number of steps of one evaluation of a condition, see `jacaros.agents.mind.rules.context.reading`."""
 
 
-class Breakpoint(Protocol):
-    """A condition for stopping a run."""
+class Breakpoint:
+    """A condition for stopping a run.
 
-    @property
-    def text(self) -> str:
-        """Its text, such as ``patrol.asl:14``, unique among the breakpoints of a debugger."""
+    Attributes:
+        text: its text, such as ``patrol.asl:14``, unique among the breakpoints of a debugger.
+    """
+
+    text: str
 
     def data(self) -> dict[str, Any]:
         """Return plain data that describes it, for `breakpoint_at`."""
+        raise NotImplementedError
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
         """Return whether the run stops before *agent* selects a plan for *event*."""
+        del agent, event
+        return False
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
         """Return whether the run stops before *agent* runs the next step of *intention*."""
+        del agent, intention
+        return False
 
 
-class LineBreakpoint:
+class LineBreakpoint(Breakpoint):
     """Stops before the first step on a line of a program. On the line where a plan begins, it stops before its first step.
 
     Args:
@@ -56,13 +67,7 @@ class LineBreakpoint:
         self.text = f"{file}:{line}"
 
     def data(self) -> dict[str, Any]:
-        """Return plain data that describes it."""
         return {"line": {"file": self.file, "line": self.line}}
-
-    def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Return False: only steps are on lines."""
-        del agent, event
-        return False
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
         """Return whether it is the first step of its plan on the line."""
@@ -78,7 +83,7 @@ class LineBreakpoint:
         return file == self.file or file.endswith(f"/{self.file}")
 
 
-class PlanBreakpoint:
+class PlanBreakpoint(Breakpoint):
     """Stops before the first step of a plan.
 
     Args:
@@ -91,13 +96,7 @@ class PlanBreakpoint:
         self.text = f"@{self.label}" + (f" of {agent}" if agent is not None else "")
 
     def data(self) -> dict[str, Any]:
-        """Return plain data that describes it."""
         return {"plan": {"plan": self.label, "agent": self.agent}}
-
-    def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Return False: the plan has not been selected yet."""
-        del agent, event
-        return False
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
         """Return whether it is the first step of the plan."""
@@ -109,7 +108,7 @@ class PlanBreakpoint:
         )
 
 
-class EventBreakpoint:
+class EventBreakpoint(Breakpoint):
     """Stops before a plan is selected for an event that unifies with a pattern.
 
     Args:
@@ -136,7 +135,6 @@ class EventBreakpoint:
         self.text = pattern + (f" of {agent}" if agent is not None else "")
 
     def data(self) -> dict[str, Any]:
-        """Return plain data that describes it."""
         return {"event": self.pattern, "agent": self.agent}
 
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
@@ -160,13 +158,8 @@ class EventBreakpoint:
         finally:
             undo(trail, 0)
 
-    def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Return False: the event has been handled."""
-        del agent, intention
-        return False
 
-
-class ConditionBreakpoint:
+class ConditionBreakpoint(Breakpoint):
     """Stops when a condition of an agent becomes true. It is evaluated before each of the agent's events and steps.
 
     Args:
@@ -179,30 +172,37 @@ class ConditionBreakpoint:
     """
 
     def __init__(self, condition: str, agent: str) -> None:
-        self._condition = Condition(condition)
+        self._formula = parse_formula(condition)
+        for call in nodes_in(nodes.InternalAction, self._formula):
+            action = STANDARD.get(call.name)
+            if action is not None and not action.pure:
+                raise UsageError(f"condition `{condition}` calls `{call.name}`, which may have effects")
         self.condition, self.agent = condition, agent
         self.text = f"{condition} of {agent}"
         self._held: bool | None = None
 
     def data(self) -> dict[str, Any]:
-        """Return plain data that describes it."""
         return {"condition": self.condition, "agent": self.agent}
 
     def becomes_true(self, agent: Circumstance) -> bool:
         """Return whether the condition holds, and did not at the last evaluation. At the first one, return False."""
         if agent.name != self.agent:
             return False
-        before, self._held = self._held, self._condition.holds(agent)
+        before, self._held = self._held, self._holds(agent)
         return self._held and before is False
 
+    def _holds(self, agent: Circumstance) -> bool:
+        """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
+        try:
+            with reading(agent, MOST_STEPS) as view:
+                return any(True for _ in view.answers(lower(self._formula, Names().__getitem__)))
+        except Exception:
+            return False
+
     def meets_event(self, agent: Circumstance, event: Event) -> bool:
-        """Return whether the condition has become true."""
-        del event
         return self.becomes_true(agent)
 
     def meets_step(self, agent: Circumstance, intention: Intention) -> bool:
-        """Return whether the condition has become true."""
-        del intention
         return self.becomes_true(agent)
 
 
@@ -225,12 +225,9 @@ def first_line(frame: Frame) -> int:
         return 0
     steps: dict[str, StepInfo] = getattr(step, "steps", frame[PLAN].steps)
     # A loop has one step for its beginning and one for its rounds, at the same location.
-    first = min((each for each in steps.values() if step_line(each) == line), key=_column)
+    at_line = (each for each in steps.values() if step_line(each) == line)
+    first = min(at_line, key=lambda each: each.node.span.column if each.node.span is not None else 0)
     return line if first is info else 0
-
-
-def _column(info: StepInfo) -> int:
-    return 0 if info.node.span is None else info.node.span.column
 
 
 def head_lines(plan: Plan) -> range:
@@ -265,19 +262,18 @@ def breakpoint_at(at: Mapping[str, Any]) -> Breakpoint:
         AslError: a trigger or condition has errors.
         UsageError: the data does not describe a breakpoint.
     """
-    agent = at.get("agent")
     try:
-        if "line" in at:
-            return LineBreakpoint(str(at["line"]["file"]), int(at["line"]["line"]))
-        if "plan" in at:
-            plan = at["plan"]
-            return PlanBreakpoint(str(plan["plan"]), plan.get("agent"))
-        if "event" in at:
-            return EventBreakpoint(str(at["event"]), agent)
-        if "condition" in at:
-            if agent is None:
+        match at:
+            case {"line": {"file": file, "line": line}}:
+                return LineBreakpoint(str(file), int(line))
+            case {"plan": {"plan": label} as plan}:
+                return PlanBreakpoint(str(label), plan.get("agent"))
+            case {"event": pattern}:
+                return EventBreakpoint(str(pattern), at.get("agent"))
+            case {"condition": condition, "agent": str(agent)}:
+                return ConditionBreakpoint(str(condition), agent)
+            case {"condition": _}:
                 raise UsageError("expected the name of an agent for a condition")
-            return ConditionBreakpoint(str(at["condition"]), str(agent))
-    except (KeyError, TypeError, ValueError, AttributeError) as wrong:
+    except (TypeError, ValueError) as wrong:
         raise UsageError(f"invalid breakpoint: {dict(at)!r}") from wrong
     raise UsageError(f"invalid breakpoint: {dict(at)!r}; expected line, plan, event or condition")

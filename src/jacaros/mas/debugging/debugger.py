@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
 from jacaros.errors import UsageError
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
@@ -22,10 +22,13 @@ from jacaros.mas.debugging.breakpoints import (
     step_line,
 )
 from jacaros.mas.debugging.reload import reload_programs
-from jacaros.mas.debugging.unpaused import command_standstill, not_paused
+from jacaros.mas.directory import Directory
 from jacaros.mas.history.run_environment import ObservedSystem
+from jacaros.mas.options import RunOptions
+from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Runnable
-from jacaros.runtime.clock import WallClock, outside_run
+from jacaros.ros.guarded import guarded_by
+from jacaros.runtime.clock import Clock, WallClock, outside_run
 
 Step = Literal["cycle", "step", "event"]
 """The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
@@ -122,7 +125,12 @@ class Debugger:
         if self.paused:
             return self._state
         found: asyncio.Future[DebugState] = asyncio.get_running_loop().create_future()
-        end = self.listen(lambda state: found.set_result(state) if _is_news(state, found) else None)
+
+        def notice(state: DebugState) -> None:
+            if state.state == "paused" and not found.done():
+                found.set_result(state)
+
+        end = self.listen(notice)
         try:
             return await asyncio.wait_for(found, timeout)
         finally:
@@ -166,7 +174,7 @@ class Debugger:
         self._hook()
         self._stepping = (what, agent)
         self._stepped_from = {
-            host.name: mind.counts.cycles for host, mind in self._minds() if mind.held is not None
+            mind.name: mind.counts.cycles for mind in self._minds() if mind.held is not None
         }
         self.resume()
 
@@ -224,14 +232,14 @@ class Debugger:
         self._hook()
         if isinstance(known, ConditionBreakpoint):
             host = self._system.directory.find(known.agent)
-            if host is not None and isinstance(host.mind, Mind):
+            if host is not None and host.mind is not None:
                 known.becomes_true(host.mind)
         self._change(self._state)
         return known
 
     def _refuse_useless(self, made: LineBreakpoint) -> None:
         """Reject a line without a step. A file that no agent runs may be used later."""
-        plans = [plan for _, mind in self._minds() for plan in mind.library.plans if made.is_in(plan.file)]
+        plans = [plan for mind in self._minds() for plan in mind.library.plans if made.is_in(plan.file)]
         lines = {line for plan in plans for line in lines_that_stop(plan)}
         if lines and made.line not in lines:
             after = min((line for line in lines if line > made.line), default=None)
@@ -344,14 +352,14 @@ class Debugger:
             for listener in self._listeners:
                 listener(self._state)
 
-    def _minds(self) -> list[tuple[AgentHost, Mind]]:
-        return [(host, host.mind) for host in self._system.directory if isinstance(host.mind, Mind)]
+    def _minds(self) -> list[Mind]:
+        return [host.mind for host in self._system.directory if host.mind is not None]
 
     def _hook(self) -> None:
         """Observe all agents, including future ones."""
-        self._system.scheduler.pauses = _Turns(self)
-        for host, _ in self._minds():
-            self._hook_agent(host)
+        self._system.scheduler.pauses = self
+        for mind in self._minds():
+            self._observe(mind)
         if not self._watches:
             self._watches = True
             self._system.directory.watch(self._agent_came)
@@ -359,35 +367,13 @@ class Debugger:
     def _agent_came(self, name: str, present: bool) -> None:
         host = self._system.directory.find(name)
         if present and host is not None and (self._breakpoints or self._stepping or self.paused):
-            self._hook_agent(host)
+            self._observe(host.mind)
 
-    def _hook_agent(self, host: AgentHost) -> None:
-        mind = host.mind
-        if not isinstance(mind, Mind):
-            return
-        if mind.observers.step is not self:
+    def _observe(self, mind: Mind | None) -> None:
+        if mind is not None and mind.observers.step is not self:
             observe_steps(mind, self)
 
-    def turn_ended(self, agent: Circumstance) -> None:
-        """Evaluate conditions after a turn, too: a percept that no plan handles is followed by no step."""
-        if self.paused:
-            return
-        why = self._met(
-            agent, lambda each: isinstance(each, ConditionBreakpoint) and each.becomes_true(agent)
-        )
-        if why:
-            self._stop(DebugState("paused", why, agent=agent.name))
-
-
-def _is_news(state: DebugState, found: "asyncio.Future[DebugState]") -> bool:
-    return state.state == "paused" and not found.done()
-
-
-class _Turns:
-    """The scheduler's interface for turns that the debugger may interrupt."""
-
-    def __init__(self, debugger: Debugger) -> None:
-        self._debugger = debugger
+    # ---- called by the scheduler, see `jacaros.mas.scheduler.Pauses`
 
     def cycles(self, agent: Runnable) -> int:
         """Return the number of reasoning cycles of an agent so far."""
@@ -400,12 +386,43 @@ class _Turns:
         return mind is not None and mind.held is not None
 
     def turn_ended(self, agent: Runnable) -> None:
-        """Let the debugger check an agent after its turn."""
+        """Evaluate conditions after a turn, too: a percept that no plan handles is followed by no step."""
         mind = _mind_of(agent)
-        if mind is not None:
-            self._debugger.turn_ended(mind)
+        if self.paused or mind is None:
+            return
+        why = self._met(mind, lambda each: isinstance(each, ConditionBreakpoint) and each.becomes_true(mind))
+        if why:
+            self._stop(DebugState("paused", why, agent=mind.name))
 
 
 def _mind_of(agent: Runnable) -> Mind | None:
-    mind = agent.mind if isinstance(agent, AgentHost) else None
-    return mind if isinstance(mind, Mind) else None
+    return agent.mind if isinstance(agent, AgentHost) else None
+
+
+def command_standstill(ros: RosGraph, options: RunOptions) -> None:
+    """Command zero velocity to the robots that our artifacts drive on a real graph.
+
+    The embedded world is itself paused: its robots then continue as if nothing had happened.
+    """
+    if options.ros != "memory" and ros.joined is not None:
+        guarded_by(ros.joined).stand_still()
+
+
+def not_paused(directory: Directory, ros: RosGraph, options: RunOptions, clock: Clock) -> tuple[str, ...]:
+    """Return what continues during a pause, one line each."""
+    lines = []
+    if not clock.virtual:
+        lines += [
+            f"agent {host.name} (Python): it continues until it waits for the run's clock or for an operation"
+            for host in directory
+            if host.mind is None
+        ]
+    if options.ros != "memory" and ros.joined is not None:
+        lines.append(f"the ROS graph ({options.ros}): other nodes and real robots continue")
+        lines += [
+            f"action {name}: a goal that its server has accepted continues"
+            for name, _ in guarded_by(ros.joined).actions
+        ]
+    if options.ros_clock:
+        lines.append("/clock: the simulator continues")
+    return tuple(lines)

@@ -7,14 +7,13 @@ from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import shape
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.plan_changes import outdated_plans, replace_plans, replace_rules
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
+from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.directory import Directory
 
 NOTHING = "no program has changed"
 
 
-def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) -> list[str]:
+def reload_programs(directory: Directory, lifecycle: AgentLifecycle) -> list[str]:
     """Read the programs of all agents again, and replace plans and rules of changed programs.
 
     Returns:
@@ -26,7 +25,7 @@ def reload_programs(directory: Directory[AgentHost], lifecycle: AgentLifecycle) 
     agents = [
         (host.mind, spec)
         for host in directory
-        if isinstance(host.mind, Mind)
+        if host.mind is not None
         and (spec := lifecycle.spec(host.name)) is not None
         and spec.source_path.suffix == ".asl"
         and not spec.is_python

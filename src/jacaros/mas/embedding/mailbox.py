@@ -1,8 +1,8 @@
-"""Mailboxes of Python code: participants that exchange messages with agents."""
+"""Streams of output and messages, and mailboxes: participants that exchange messages with agents."""
 
 import asyncio
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypeVar
 
 from jacaros.agents.body.values import UNKEPT, to_term
 from jacaros.agents.language.loader import parse_term
@@ -12,14 +12,49 @@ from jacaros.agents.python.agent import Message
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Term, bare, is_list, list_items
-from jacaros.errors import UsageError
-from jacaros.mas.embedding.errors import UnknownAgent
-from jacaros.mas.embedding.stream import Stream
-from jacaros.mas.embedding.waits import Waits
-from jacaros.mas.open_mind import question, values_of
+from jacaros.mas.embedding.running_agent import question, values_of
+from jacaros.mas.embedding.waits import RunEnded, Waits
+from jacaros.mas.messaging import Arrivals, Correspondent, Names, Send
 
-Send = Callable[[SpeechAct], bool]
-"""Delivers a message. Returns False if the receiver is unknown."""
+T = TypeVar("T")
+
+
+class Stream(Arrivals[T]):
+    """An asynchronous iterator over items as they arrive. It ends with the run, once all items have been read.
+
+    Args:
+        waits: waits of the run.
+        what: what is missing while there is no item, for errors.
+    """
+
+    def __init__(self, waits: Waits, what: str) -> None:
+        super().__init__()
+        self._waits = waits
+        self._what = what
+
+    async def get(self, timeout: float | None = None) -> T:
+        """Return the next item, waiting until it arrives.
+
+        Args:
+            timeout: time limit in seconds of the run's clock. None: no limit.
+
+        Raises:
+            TimeoutError: no item arrived in time.
+            RunEnded: the run has ended, so no item will arrive.
+        """
+        return await self.next(lambda arrival: self._waits.wait(arrival, lambda: self._what, timeout))
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __aiter__(self) -> "Stream[T]":
+        return self
+
+    async def __anext__(self) -> T:
+        try:
+            return await self.get()
+        except RunEnded:
+            raise StopAsyncIteration from None
 
 
 class Mailbox(Stream[Message]):
@@ -38,13 +73,10 @@ class Mailbox(Stream[Message]):
         name: its name for agents.
     """
 
-    def __init__(self, name: str, send: Send, names: Callable[[], Sequence[str]], waits: Waits) -> None:
+    def __init__(self, name: str, send: Send, names: Names, waits: Waits) -> None:
         super().__init__(waits, f"no message for {name}")
         self.name = name
-        self._send = send
-        self._names = names
-        self._count = 0
-        self._asked: dict[str, asyncio.Future[SpeechAct]] = {}
+        self._sender = Correspondent(name, send, names)
 
     def send(
         self, receiver: str, performative: str, content: object, reply_to: Message | None = None
@@ -61,14 +93,8 @@ class Mailbox(Stream[Message]):
             UnknownAgent: no participant has this name.
             AslError: the text is not a term.
         """
-        self._say(receiver, performative, term_of(content), reply_to.id if reply_to is not None else None)
-
-    def _say(self, receiver: str, performative: str, content: Term, in_reply_to: str | None = None) -> str:
-        self._count += 1
-        message = SpeechAct(performative, self.name, receiver, content, self._count, in_reply_to)
-        if not self._send(message):
-            raise UnknownAgent(receiver, self._names())
-        return message.id
+        answered = reply_to.id if reply_to is not None else None
+        self._sender.say(receiver, performative, term_of(content), answered)
 
     async def ask(self, receiver: str, literal: str, timeout: float | None = None) -> dict[str, Any] | None:
         """Ask an agent for one answer (``askOne``), and wait for it.
@@ -99,17 +125,12 @@ class Mailbox(Stream[Message]):
         self, performative: str, receiver: str, literal: str, timeout: float | None
     ) -> list[dict[str, Any]]:
         asked, names = question(literal)
-        answer: asyncio.Future[SpeechAct] = asyncio.get_running_loop().create_future()
-        number = self._say(receiver, performative, rename(asked))
-        self._asked[number] = answer
-        try:
-            message = await self._waits.wait(
-                answer, lambda: f"agent {receiver} did not answer {literal}", timeout, receiver
-            )
-        finally:
-            del self._asked[number]
-        if message.performative == "undelivered":
-            raise UnknownAgent(receiver, self._names())
+
+        def wait(answer: "asyncio.Future[SpeechAct]") -> Any:
+            missing = f"agent {receiver} did not answer {literal}"
+            return self._waits.wait(answer, lambda: missing, timeout, receiver)
+
+        message = await self._sender.question(receiver, performative, rename(asked), wait)
         if message.performative == "untell":
             return []
         content = message.content
@@ -118,30 +139,23 @@ class Mailbox(Stream[Message]):
 
     def receive(self, message: SpeechAct) -> None:
         """Receive a message. Called by the run."""
-        waiting = self._asked.get(message.in_reply_to or "")
-        if waiting is None:
+        if not self._sender.takes_answer(message):
             self.put(Message(message))
-        elif not waiting.done():
-            waiting.set_result(message)
 
     def __repr__(self) -> str:
         return f"<mailbox {self.name}, {len(self)} messages>"
 
 
-class PythonMailboxes:
+class PythonMailboxes(dict[str, Mailbox]):
     """The mailboxes of a run by name: its `jacaros.mas.directory.Participants`."""
 
-    def __init__(self) -> None:
-        self._boxes: dict[str, Mailbox] = {}
-        self.find: Callable[[str], Mailbox | None] = self._boxes.get
-
-    def add(self, mailbox: Mailbox) -> None:
-        """Add a mailbox."""
-        self._boxes[mailbox.name] = mailbox
+    def find(self, name: str) -> Mailbox | None:
+        """Return the mailbox of a name, or None."""
+        return self.get(name)
 
     def names(self) -> Sequence[str]:
         """Return their names, in the order of creation."""
-        return tuple(self._boxes)
+        return tuple(self)
 
 
 def term_of(content: object) -> Term:
@@ -162,13 +176,3 @@ def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:
         return values_of(names) if unify(bare(asked), bare(rename(told)), trail) else None
     finally:
         undo(trail, 0)
-
-
-def check_name(name: str) -> None:
-    """Check the name of a participant.
-
-    Raises:
-        UsageError: it is empty.
-    """
-    if not name:
-        raise UsageError("the name of a participant must not be empty")

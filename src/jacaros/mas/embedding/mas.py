@@ -1,21 +1,26 @@
 """Agents, artifacts and robots in a Python program."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import asyncio
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeVar
 
 from jacaros.agents.mind.storage import restore
+from jacaros.artifacts.kernel.faults import error_text
 from jacaros.errors import UsageError
-from jacaros.mas.agent_lifecycle import begin
+from jacaros.mas.agents.programs import source_folders
+from jacaros.mas.console import StandardConsole, place_of_fault
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec
-from jacaros.mas.embedding.errors import UnknownAgent
-from jacaros.mas.embedding.run import EmbeddedRun
 from jacaros.mas.embedding.running_agent import RunningAgent
-from jacaros.mas.embedding.stream import OnLog, OnPrint, PrintedLine, Stream
-from jacaros.mas.loading import load_deployment, mapped
+from jacaros.mas.embedding.waits import RunEnded, UnknownAgent, Waits
+from jacaros.mas.history.explanation import Explanation
+from jacaros.mas.launch import chosen_clock, load_deployment, mapped
 from jacaros.mas.options import RunOptions
-from jacaros.mas.source_path import source_folders
+from jacaros.mas.system import System
+from jacaros.runtime.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
 
 if TYPE_CHECKING:
     from jacaros.agents.python.python_agent import PythonAgent
@@ -24,16 +29,86 @@ if TYPE_CHECKING:
     from jacaros.artifacts.env.errors import ArtifactId
     from jacaros.artifacts.env.ports import Workspace
     from jacaros.artifacts.presence.session import Session
-    from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes
+    from jacaros.mas.debugging.debugger import Debugger
+    from jacaros.mas.embedding.mailbox import Mailbox, PythonMailboxes, Stream
     from jacaros.mas.environment import RunEnvironment
     from jacaros.ros.backend import Backend
     from jacaros.sim import World
 
+T = TypeVar("T")
 _PYTHON = "python"
 """Default sender of messages."""
 
 
-class Mas(EmbeddedRun):
+class PrintedLine(NamedTuple):
+    """A line of an agent's output.
+
+    Attributes:
+        agent: name of the agent.
+        text: the line, without the name.
+    """
+
+    agent: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"[{self.agent}] {self.text}"
+
+
+OnPrint = Callable[[str, str], None]
+"""Called with the name of an agent and its output."""
+
+OnLog = Callable[[str, str], None]
+"""Called with a line of the log and its level: ``debug``, ``info``, ``warning`` or ``error``."""
+
+
+class PrintedConsole:
+    """The console of an embedded system.
+
+    Args:
+        on_print: prints the output of agents. Default: print ``[agent] text`` to standard output.
+        on_log: logs lines. Default: standard error.
+    """
+
+    def __init__(self, on_print: OnPrint | None, on_log: OnLog | None) -> None:
+        # Looks up the standard streams on each write: tests and notebooks replace them.
+        self._standard = StandardConsole()
+        self._on_print = on_print or self._standard.print
+        self._on_log = on_log or self._standard.log
+        self._listeners: list[OnPrint] = []
+
+    def listen(self, callback: OnPrint) -> Callable[[], None]:
+        """Also call *callback* with all output from now on. Return a function that ends this."""
+        self._listeners.append(callback)
+        return lambda: self._listeners.remove(callback) if callback in self._listeners else None
+
+    def print(self, agent: str, text: str) -> None:
+        """Print a line of an agent's output."""
+        for callback in (self._on_print, *self._listeners):
+            try:
+                callback(agent, text)
+            except Exception as error:
+                self.log(
+                    f"error: an on_print callback raised {error_text(error)}{place_of_fault(error)}",
+                    "error",
+                )
+
+    def log(self, text: str, level: str = "info") -> None:
+        """Log a line."""
+        try:
+            self._on_log(text, level)
+        except Exception as error:
+            self._standard.log(text, level)
+            self._standard.log(
+                f"error: an on_log callback raised {error_text(error)}{place_of_fault(error)}", "error"
+            )
+
+    def close(self) -> None:
+        """Write what waits for a slow reader."""
+        self._standard.close()
+
+
+class Mas:
     """A multi-agent system in a Python program.
 
     It runs inside ``async with``, on the event loop of the program. Whenever the program awaits something, the agents
@@ -78,11 +153,182 @@ class Mas(EmbeddedRun):
         on_log: OnLog | None = None,
         **changes: Any,
     ) -> None:
-        options = replace(options or RunOptions(), **changes)
+        self._options = replace(options or RunOptions(), **changes)
         base = Path(folder) if folder is not None else Path.cwd()
-        super().__init__(_deployment(project, name, base, options.mappings), options, on_print, on_log)
+        self._deployment = _deployment(project, name, base, self._options.mappings)
+        self._options.check()
+        self._console = PrintedConsole(on_print, on_log)
+        self._begun: tuple[System, Waits] | None = None
+        self._stop_watching: Callable[[], None] = lambda: None
+        self._at_end: list[Callable[[], None]] = []
         self._agents: dict[str, RunningAgent] = {}
         self._mailboxes: PythonMailboxes | None = None
+
+    async def __aenter__(self) -> Self:
+        """Create what the project declares, and start its agents.
+
+        Raises:
+            JacarosError: the system cannot start. The text says why.
+        """
+        if self._begun is not None:
+            raise UsageError("this Mas has already run; create another one")
+        loop = asyncio.get_running_loop()
+        options = replace(self._options, fast=clock_of(loop).virtual)
+        options.check()
+        clock = chosen_clock(options, self._console, clock_of(loop))
+        system = System(self._deployment, clock, self._console, options)
+        waits = Waits(clock)
+        self._begun = system, waits
+        system.lifecycle.when_ended = waits.agent_ended
+        try:
+            await system.start()
+        except BaseException:
+            await system.close()
+            waits.run_ended("the run could not be started")
+            raise
+        system.when_ended(lambda code: waits.run_ended(f"the run ended with exit code {code}"))
+        if isinstance(loop, VirtualEventLoop):
+            self._stop_watching = loop.when_stuck(waits.stuck)
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        system, waits = self._running
+        self._stop_watching()
+        waits.run_ended("the run has ended")
+        for close in self._at_end:
+            close()
+        system.end(0)
+        try:
+            await system.close()
+        finally:
+            self._console.close()
+        if system.error is not None and (error is None or isinstance(error, RunEnded)):
+            raise system.error
+
+    @property
+    def _running(self) -> tuple[System, Waits]:
+        if self._begun is None:
+            raise RunEnded("the system is not running: use it inside `async with Mas(...) as mas:`")
+        self._begun[1].check_thread()
+        return self._begun
+
+    @property
+    def system(self) -> System:
+        """The run itself, for what this class does not offer. Its interface may change with every version.
+
+        Raises:
+            RunEnded: the run has not begun.
+        """
+        return self._running[0]
+
+    def explain(
+        self, question: str, at: float | None = None, agent: str = "", robot: str = ""
+    ) -> Explanation:
+        """Answer a question about the run, such as ``stopped``, ``+alarm(_)`` or ``plan @low``.
+
+        The history begins with the first question, or with the run if the option ``explain`` is set or a program
+        mentions ``.why``.
+
+        Args:
+            question: as for `jacaros why`.
+            at: seconds since the history began. Default: now.
+            agent, robot: restrict the answer to this agent or robot.
+
+        Raises:
+            UsageError: the question is not understood.
+            RunEnded: the run has not begun.
+        """
+        return self._running[0].answer(question, at, agent, robot)
+
+    @property
+    def _open(self) -> System:
+        """The running system.
+
+        Raises:
+            RunEnded: it is not running.
+        """
+        system, _ = self._running
+        if system.exit_code is not None:
+            raise RunEnded("the run has ended")
+        return system
+
+    def stop(self, exit_code: int = 0) -> None:
+        """End the run, as ``.stopMAS`` does. The block continues, but no agent has another turn."""
+        self._running[0].end(exit_code)
+
+    async def ended(self) -> int:
+        """Wait until the run ends (by ``.stopMAS`` or `stop`). Return its exit code.
+
+        Raises:
+            InternalError: a defect of JaCaROS ended it.
+        """
+        system, _ = self._running
+        code = await system.ended()
+        if system.error is not None:
+            raise system.error
+        return code
+
+    @property
+    def exit_code(self) -> int | None:
+        """The exit code of the run; None while it is running."""
+        return self._begun[0].exit_code if self._begun is not None else None
+
+    async def until_idle(self, timeout: float | None = None) -> None:
+        """Wait until all agents are idle and no operation is running.
+
+        Worlds, batteries and processes of artifacts do not count: they never end.
+
+        Args:
+            timeout: time limit in seconds of the run's clock. None: no limit.
+
+        Raises:
+            TimeoutError: agents were still busy after the time limit.
+            RunEnded: the run ended first.
+        """
+        system, waits = self._running
+        idle: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        stop = system.idleness.watch(lambda: None if idle.done() else idle.set_result(None))
+        if system.scheduler.idle:
+            system.idleness.look()
+        try:
+            await waits.wait(idle, lambda: "the agents did not become idle", timeout)
+        finally:
+            stop()
+
+    # ---- debugging
+
+    @property
+    def debugger(self) -> "Debugger":
+        """Pauses and steps the run, and sets breakpoints."""
+        return self._open.debugger
+
+    def reload(self) -> list[str]:
+        """Read changed programs again, and replace plans and rules. See `jacaros.mas.debugging.Debugger.reload`.
+
+        Raises:
+            AslError: a program has errors; nothing has been replaced.
+        """
+        return self._open.debugger.reload()
+
+    # ---- time
+
+    @property
+    def clock(self) -> Clock:
+        """The run's clock: that of the event loop, or of the ROS graph (``ros_clock``)."""
+        return self._running[0].clock
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait for this number of seconds of the run's clock."""
+        await self.clock.sleep(seconds)
+
+    def __repr__(self) -> str:
+        if self._begun is None:
+            return f"<Mas {self._deployment.name}, not begun>"
+        code = self.exit_code
+        how = "running" if code is None else f"ended with exit code {code}"
+        return f"<Mas {self._deployment.name}, {how}>"
 
     # ---- agents
 
@@ -153,7 +399,7 @@ class Mas(EmbeddedRun):
         host = system.lifecycle.add(spec, tree)
         agent = self.agent(spec.name)
         if stored is None:
-            begin(host, spec, tree)
+            system.lifecycle.begin(host, tree)
         else:
             try:
                 restore(agent.mind, dict(stored))
@@ -233,15 +479,17 @@ class Mas(EmbeddedRun):
                     f"duplicate name `{name}`: an agent has it; choose another name for the mailbox"
                 )
             known = Mailbox(name, system.deliver, system.agent_names, waits)
-            self._mailboxes.add(known)
+            self._mailboxes[name] = known
         return known
 
-    def output(self, agent: str | None = None) -> Stream[PrintedLine]:
+    def output(self, agent: str | None = None) -> "Stream[PrintedLine]":
         """Return the output of agents from now on, as an asynchronous iterator that ends with the run.
 
         Args:
             agent: only the output of this agent.
         """
+        from jacaros.mas.embedding.mailbox import Stream
+
         _, waits = self._running
         stream: Stream[PrintedLine] = Stream(waits, f"{agent or 'no agent'} printed nothing")
 
@@ -343,11 +591,11 @@ class Mas(EmbeddedRun):
             OperationFailed: the workspace does not exist.
         """
         from jacaros.artifacts.presence.session import Session
-        from jacaros.mas.embedding.session_account import SessionAccount
+        from jacaros.mas.environment import OperationAccount
 
         environment = self.environment
         system = self._open
-        account = SessionAccount(system.activity, system.idleness)
+        account = OperationAccount(system.activity, system.idleness.look)
         session = Session(environment, name, _workspace(environment, workspace).path, account)
         self._at_end.append(session.close)
         return session
@@ -392,3 +640,39 @@ def _workspace(environment: "Environment", name: str) -> "Workspace":
     from jacaros.mas.environment import path_of
 
     return environment.workspace(path_of(environment, name))
+
+
+def run(main: Coroutine[Any, Any, T], *, clock: Literal["real", "fast"] = "real") -> T:
+    """Run a coroutine to its end, as `asyncio.run` does, on an event loop with its own clock. Return its result.
+
+    Args:
+        main: the coroutine, such as ``main()``.
+        clock: ``real`` for real time; ``fast`` for the virtual clock, which jumps to the next timer as soon as all tasks
+            wait. Then ``asyncio.sleep`` and time limits take no real time either.
+
+    Raises:
+        UsageError: an event loop is already running, as in a notebook (``await`` the coroutine there); or the clock is
+            unknown.
+    """
+    chosen: Clock
+    try:
+        if clock not in ("real", "fast"):
+            raise UsageError(f"unknown clock `{clock}`; expected `real` or `fast`")
+        if _is_running():
+            raise UsageError(
+                "an event loop is already running (a notebook?); await the coroutine instead of calling jacaros.run"
+            )
+    except UsageError:
+        main.close()
+        raise
+    chosen = VirtualClock() if clock == "fast" else WallClock()
+    with asyncio.Runner(loop_factory=partial(new_event_loop, chosen)) as runner:
+        return runner.run(main)
+
+
+def _is_running() -> bool:
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True

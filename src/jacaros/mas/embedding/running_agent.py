@@ -1,26 +1,211 @@
-"""An agent of a running system, for the Python code around it."""
+"""An agent of a running system, for the Python code around it: literals, goals and formulae are text."""
 
 import asyncio
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from typing import Any
 
 from jacaros.agents.body.values import to_value
-from jacaros.agents.language.loader import parse_term
-from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.language.loader import parse_formula, parse_literal, parse_term
+from jacaros.agents.language.lowering import Names, lower_value
 from jacaros.agents.mind.mind import Mind
-from jacaros.agents.mind.rules import goals
+from jacaros.agents.mind.rules import belief_update, goals
 from jacaros.agents.mind.rules.failure import told
 from jacaros.agents.mind.rules.failure_reason import loss_of
 from jacaros.agents.mind.rules.goals import WatchedCondition, WatchedGoal
-from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.mind.state.act import Percept, SpeechAct
+from jacaros.agents.mind.state.belief_base import parts
 from jacaros.agents.mind.storage import stored
+from jacaros.agents.terms.order import annotation_set
+from jacaros.agents.terms.substitution import is_ground, resolve
 from jacaros.agents.terms.text import text
-from jacaros.agents.terms.values import Functor, String, Term, bare, deref
+from jacaros.agents.terms.unifier import undo
+from jacaros.agents.terms.values import (
+    BY_SELF,
+    SOURCE_PERCEPT,
+    Functor,
+    String,
+    Term,
+    annotations_of,
+    bare,
+    deref,
+)
 from jacaros.errors import UsageError
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.embedding.errors import AgentEnded, GoalFailed
-from jacaros.mas.embedding.waits import Waits
-from jacaros.mas.open_mind import OpenMind, literal, question, values_of
+from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, Waits
+
+
+class OpenMind:
+    """Changes and queries a mind.
+
+    Changes reach the mind immediately; in the middle of a step (for example when an agent prints), before its next one.
+    """
+
+    @property
+    def mind(self) -> Mind:
+        """The agent itself, for what this class does not offer."""
+        raise NotImplementedError
+
+    # ---- changes
+
+    def add_belief(self, *literals: str) -> None:
+        """Add beliefs, as the agent's own notes unless a literal names a source. The events are external.
+
+        Raises:
+            AslError: one is not a literal.
+        """
+        self._change(belief_update.tell, *literals)
+
+    def remove_belief(self, *literals: str) -> None:
+        """Remove the agent's own notes (or those of the named source), the first match of each.
+
+        Raises:
+            AslError: one is not a literal.
+        """
+        self._change(belief_update.untell, *literals)
+
+    def replace_belief(self, written: str) -> None:
+        """Replace the agent's own note with the same functor, as ``-+b`` does.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        self._change(_replace, written)
+
+    def post_goal(self, written: str) -> None:
+        """Add a goal, with an intention of its own.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        self._change(Mind.post_goal, written)
+
+    def drop_goal(self, written: str) -> bool:
+        """Drop the intentions and events of a goal, as ``.drop_desire`` does. Return whether there were any.
+
+        Raises:
+            AslError: it is not a literal.
+        """
+        goal = literal(written)
+        found = bool(goals.intentions_for(self.mind, goal) or goals.goal_events(self.mind, goal))
+        if found:
+            self._change(goals.drop_desire, written)
+        return found
+
+    def _change(self, change: Callable[[Mind, Term], object], *literals: str) -> None:
+        """Change the mind by each literal; before its next step if it has its turn now."""
+        mind, terms = self.mind, [literal(each) for each in literals]
+
+        def make(_: object = None) -> None:
+            for term in terms:
+                change(mind, term)
+
+        if mind.running:
+            mind.do_soon(make)
+        else:
+            make()
+        mind.architecture.ready()
+
+    def perceive(self, *literals: str) -> None:
+        """Add percepts that last: beliefs with ``source(percept)``.
+
+        Raises:
+            AslError: one is not a literal.
+            ValueError: one has variables.
+        """
+        self._perceive("add", literals)
+
+    def perceive_no_more(self, *literals: str) -> None:
+        """Remove percepts that were added by `perceive`, written in the same way."""
+        self._perceive("remove", literals)
+
+    def signal(self, *literals: str) -> None:
+        """Add percepts that do not last: events without beliefs."""
+        self._perceive("signal", literals)
+
+    def _perceive(self, kind: str, literals: Sequence[str]) -> None:
+        percepts = []
+        for written in literals:
+            term = literal(written)
+            if not is_ground(term):
+                raise ValueError(f"a percept must be ground: {written}")
+            annotations = annotation_set((*annotations_of(term), SOURCE_PERCEPT))
+            percepts.append(Percept(kind, bare(term), annotations))
+        self.mind.perceive(percepts)
+
+    # ---- queries
+
+    def answers(self, formula: str) -> list[dict[str, Any]]:
+        """Return all answers of a formula (``battery(L) & L < 20``): plain values by variable name.
+
+        Raises:
+            AslError: it is not a formula.
+        """
+        return list(self._answers(formula))
+
+    def _answers(self, formula: str) -> Generator[dict[str, Any], None, None]:
+        mind = self.mind
+        term, names = question(formula)
+        mark = len(mind.trail)
+        try:
+            yield from (values_of(names) for _ in mind.context.answers(term))
+        finally:
+            undo(mind.trail, mark)
+
+    def ask(self, formula: str) -> dict[str, Any] | None:
+        """Return the first answer of a formula, or None if it does not hold.
+
+        Raises:
+            AslError: it is not a formula.
+        """
+        with closing(self._answers(formula)) as found:
+            return next(found, None)
+
+    def believes(self, formula: str) -> bool:
+        """Return whether a formula holds."""
+        return self.ask(formula) is not None
+
+    @property
+    def beliefs(self) -> list[str]:
+        """Return all beliefs with their annotations, as text."""
+        return [text(each) for each in self.mind.beliefs.literals()]
+
+    @property
+    def goals(self) -> list[str]:
+        """Return all goals that it pursues or is about to pursue, as text without annotations."""
+        return [text(bare(goal)) for goal, _ in goals.desires(self.mind)]
+
+    @property
+    def intentions(self) -> list[list[str]]:
+        """Return the goals of each intention, the first one first, as text without annotations."""
+        stacks = [
+            [text(bare(goal)) for goal in reversed(goals.goal_literals(intention))]
+            for intention in self.mind.alive.values()
+        ]
+        return [stack for stack in stacks if stack]
+
+
+def _replace(mind: Mind, term: Term) -> None:
+    symbol, _, annotations = parts(term)
+    if symbol is not None:
+        belief_update.delete_any(mind, symbol, annotations or BY_SELF)
+    belief_update.tell(mind, term)
+
+
+def literal(written: str) -> Term:
+    """Parse a literal."""
+    return lower_value(parse_literal(written))
+
+
+def question(formula: str) -> tuple[Term, Names]:
+    """Parse a formula. Return its term and its variables by name."""
+    names = Names()
+    return lower_value(parse_formula(formula), names.__getitem__), names
+
+
+def values_of(names: Names) -> dict[str, Any]:
+    """Return the current values of variables, by name."""
+    return {name: to_value(resolve(value)) for name, value in names.items() if name[0] != "_"}
 
 
 class PursuedGoal:
@@ -50,8 +235,7 @@ class PursuedGoal:
     @property
     def reasons(self) -> list[Term]:
         """The reason terms of its failure."""
-        reason = self._watched.reason
-        return list(reason.terms) if reason is not None else []
+        return list(self._watched.reason.terms) if self._watched.reason is not None else []
 
     def __str__(self) -> str:
         why = f": {', '.join(map(text, self.reasons))}" if self.reasons else ""
@@ -93,7 +277,7 @@ class RunningAgent(OpenMind):
         self._waits.check()
         if self.ended:
             raise AgentEnded(f"agent {self.name} has ended")
-        if not isinstance(mind, Mind):
+        if mind is None:
             raise UsageError(f"agent {self.name} is a Python agent, which has no beliefs and goals")
         return mind
 
@@ -152,9 +336,10 @@ class RunningAgent(OpenMind):
     def _does_not_hold(self, formula: str) -> str:
         term, _ = question(formula)
         mentioned = {symbol.name for symbol in _functors(term)}
+        beliefs = self._host.mind.beliefs.literals() if self._host.mind is not None else ()
         believed = [
             text(bare(each))
-            for each in (self._host.mind.beliefs.literals() if isinstance(self._host.mind, Mind) else ())
+            for each in beliefs
             if any(symbol.name in mentioned for symbol in _functors(each))
         ]
         related = f"it believes {', '.join(believed[:5])}" if believed else "it has no related belief"

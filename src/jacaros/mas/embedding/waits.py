@@ -1,15 +1,63 @@
-"""Waits of Python code in a run. Each ends with its result, its time limit, its agent or the run."""
+"""Waits of Python code in a run. Each ends with its result, or with an error:
+
+JacarosError
+├── UnknownAgent        no participant has this name
+├── AgentEnded          the agent has ended, so the call is not possible
+├── RunEnded            the run has ended, or has not begun
+└── GoalFailed          an awaited goal failed, or was dropped
+"""
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
-from jacaros.errors import UsageError
-from jacaros.mas.embedding.errors import AgentEnded, RunEnded
+from jacaros.errors import JacarosError, UsageError
+from jacaros.files.texts import suggestion
 from jacaros.runtime.clock import Clock
 
 T = TypeVar("T")
+
+
+class UnknownAgent(JacarosError):
+    """No participant has this name. The text suggests similar names."""
+
+    def __init__(self, name: str, known: Iterable[str]) -> None:
+        names = list(known)
+        listed = ", ".join(names[:10]) + (", …" if len(names) > 10 else "")
+        help = suggestion(name, names, f"agents: {listed}" if names else "", 3)
+        super().__init__(f"unknown agent `{name}`{'; ' * bool(help)}{help}")
+        self.name = name
+
+
+class AgentEnded(JacarosError):
+    """The agent has ended."""
+
+
+class RunEnded(JacarosError):
+    """The run has ended, or has not begun."""
+
+
+class GoalFailed(JacarosError):
+    """An awaited goal failed without a plan for its failure, or was dropped.
+
+    Attributes:
+        goal: the goal as it was given.
+        message: the message of the failure.
+        reasons: its terms as plain values (see `jacaros.artifacts.env.values`), such as ``error(no_relevant)``.
+    """
+
+    def __init__(self, text: str, goal: str, message: str = "", reasons: tuple[object, ...] = ()) -> None:
+        super().__init__(text)
+        self.goal, self.message, self.reasons = goal, message, reasons
+
+    def reason(self, functor: str) -> object:
+        """Return the argument of the first reason with this functor (a tuple of several), or None."""
+        for term in self.reasons:
+            if getattr(term, "functor", None) == functor:
+                arguments: tuple[object, ...] = term.arguments  # type: ignore[attr-defined]
+                return arguments[0] if len(arguments) == 1 else arguments
+        return None
 
 
 class Waits:
@@ -51,7 +99,7 @@ class Waits:
         timer = None
         if timeout is not None:
             late = f" within {timeout:g} s"
-            timer = self._clock.call_later(timeout, lambda: _fail(future, TimeoutError(missing() + late)))
+            timer = self._clock.call_later(timeout, lambda: fail(future, TimeoutError(missing() + late)))
         try:
             return await future
         finally:
@@ -86,21 +134,22 @@ class Waits:
         """End the waits for an agent that has ended."""
         for future, (agent, missing) in tuple(self._open.items()):
             if agent == name:
-                _fail(future, AgentEnded(f"{missing()}: agent {name} has ended"))
+                fail(future, AgentEnded(f"{missing()}: agent {name} has ended"))
 
     def stuck(self) -> bool:
         """End all waits, because all agents are idle. Return whether there were any."""
         for future, (_, missing) in tuple(self._open.items()):
-            _fail(future, TimeoutError(f"{missing()}, and never will: all agents are idle"))
+            fail(future, TimeoutError(f"{missing()}, and never will: all agents are idle"))
         return bool(self._open)
 
     def run_ended(self, how: str) -> None:
         """End all waits, because the run has ended."""
         self._over = how
         for future, (_, missing) in tuple(self._open.items()):
-            _fail(future, RunEnded(f"{missing()}: {how}"))
+            fail(future, RunEnded(f"{missing()}: {how}"))
 
 
-def _fail(future: asyncio.Future[Any], error: Exception) -> None:
+def fail(future: "asyncio.Future[Any]", error: Exception) -> None:
+    """End a wait with an error, unless it has ended."""
     if not future.done():
         future.set_exception(error)

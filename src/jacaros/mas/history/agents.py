@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from jacaros.agents.mind.mind import Mind
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.deliberations import IN_ALL, Allowance
 from jacaros.mas.history.goals import GoalRecords
@@ -16,7 +16,7 @@ from jacaros.mas.history.run_environment import ObservedSystem
 from jacaros.runtime.trace import Cause
 
 if TYPE_CHECKING:
-    from jacaros.mas.python_agents.host import PythonAgentHost
+    from jacaros.mas.agents.python_agents import PythonAgentHost
 
 Tell = Callable[[str, Mapping[str, Any]], None]
 
@@ -84,13 +84,15 @@ class AgentRecords:
         if isinstance(mind, Mind):
             self._ends[host.name] = self._observe_mind(host, mind)
             return
-        from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
+        from jacaros.mas.agents.python_agents import (
+            PythonAgentHost,  # here: most runs have no agent in Python
+        )
 
         if isinstance(host, PythonAgentHost):
             self._ends[host.name] = self._observe_inbox(host)
 
     def _observe_inbox(self, host: "PythonAgentHost") -> Callable[[], None]:
-        inbox = host.mail.inbox
+        inbox = host.mail
         inbox.when_read = self._records.messages.read
 
         def end() -> None:

@@ -9,7 +9,7 @@ from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import observe_goals
 from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.substitution import is_ground
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.history.words import named
 
 Tell = Callable[[dict[str, object]], None]
@@ -57,7 +57,9 @@ class GoalRecords:
         if isinstance(host.mind, Mind):
             observe_goals(host.mind, partial(self, host.name))
             return
-        from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
+        from jacaros.mas.agents.python_agents import (
+            PythonAgentHost,  # here: most runs have no agent in Python
+        )
 
         if isinstance(host, PythonAgentHost):
             host.observe(_Work(self, host.name))

@@ -4,8 +4,7 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
-from jacaros.mas.agent_host import AgentHost
-from jacaros.mas.agent_lifecycle import AgentLifecycle
+from jacaros.mas.agents.lifecycle import AgentLifecycle
 from jacaros.mas.deployment import Deployment
 from jacaros.mas.directory import Directory, Mailboxes
 from jacaros.mas.history.causes import CauseRecords
@@ -34,7 +33,7 @@ class ObservedSystem(Protocol):
 
     clock: Clock
     scheduler: Scheduler
-    directory: Directory[AgentHost]
+    directory: Directory
     lifecycle: AgentLifecycle
     mailboxes: Mailboxes
     ros: RosGraph

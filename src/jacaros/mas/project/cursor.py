@@ -49,7 +49,6 @@ class Token:
     first: bool
 
     def __str__(self) -> str:
-        """Return the token as messages show it."""
         return (
             "end of file" if self.kind == "end" else self.text if self.kind == "string" else f"`{self.text}`"
         )
@@ -106,11 +105,15 @@ class ProjectCursor:
             self.fail(f"expected `{text}`, found {token}", help=help)
         return token
 
-    def name(self, what: str) -> Token:
-        """Consume a name, or fail. *what* says in messages what it names."""
-        if self.token.kind != "word":
-            self.fail(f"expected {what}, found {self.token}")
+    def take(self, what: str, *kinds: str, help: str | None = None) -> Token:
+        """Consume a token of one of these kinds, or fail. *what* says in messages what it is."""
+        if self.token.kind not in kinds:
+            self.fail(f"expected {what}, found {self.token}", help=help)
         return self.advance()
+
+    def name(self, what: str) -> Token:
+        """Consume a name, or fail."""
+        return self.take(what, "word")
 
     def lower_name(self, what: str) -> Token:
         """Consume a name. Report one that does not begin with a lower-case letter."""

@@ -6,14 +6,11 @@ from typing import Final
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.files.texts import file_text, is_file
-from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, AgentSpec, Deployment, ProjectError
-from jacaros.mas.project.agents import ProjectAgents
+from jacaros.mas.agents.programs import source_folders
+from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, Deployment, ProjectError
 from jacaros.mas.project.cursor import ProjectCursor
-from jacaros.mas.project.parts import ArtifactPart, FocusPart, ProjectPart, WorkspacePart
-from jacaros.mas.project.places import ProjectPlaces
-from jacaros.mas.project.remarks import Remarks
-from jacaros.mas.project.unsupported import condensed, each
-from jacaros.mas.source_path import source_folders
+from jacaros.mas.project.declarations import ArtifactPart, FocusPart, ProjectPart, WorkspacePart, condensed
+from jacaros.mas.project.resolving import Resolver
 
 _JCM: Final = ".jcm"
 _CODE_PATHS: Final = ("src", "src/env", "src/agt")
@@ -43,27 +40,22 @@ def read_project(path: Path) -> Reading:
     """
     files = _Files()
     part = files.read(path)
-    remarks = Remarks(files.diagnostics)
-    deployment = _deployment(path, part, remarks)
-    told = sorted([*remarks.diagnostics, *condensed(part.unsupported)], key=_place)
+    found = files.diagnostics
+    deployment = _deployment(path, part, found)
+    told = [*found, *condensed(part.unsupported)]
+    every = [*found, *(each.diagnostic() for each in part.unsupported)]
+    used = frozenset(files.seen - {path.resolve()})
     return Reading(
-        replace(deployment, ignored=tuple(told)),
-        sorted([*remarks.diagnostics, *each(part.unsupported)], key=_place),
-        files.seen - {path.resolve()},
+        replace(deployment, ignored=tuple(sorted(told, key=_place))), sorted(every, key=_place), used
     )
 
 
 class _Files:
-    """Reads a project file and the files that it uses, each once."""
+    """Reads a project file and the files that it uses, each once. ``seen`` are all files that were read."""
 
     def __init__(self) -> None:
         self.diagnostics: list[Diagnostic] = []
-        self._read: set[Path] = set()
-
-    @property
-    def seen(self) -> frozenset[Path]:
-        """Return all files that were read."""
-        return frozenset(self._read)
+        self.seen: set[Path] = set()
 
     def read(self, path: Path, using: tuple[Path, ...] = ()) -> ProjectPart:
         """Return the declarations of one file, preceded by those of the files it uses.
@@ -71,9 +63,9 @@ class _Files:
         Raises:
             ProjectError: the file cannot be read.
         """
-        self._read.add(path.resolve())
+        self.seen.add(path.resolve())
         cursor = ProjectCursor(SourceFile(path.as_posix(), _text(path)), self.diagnostics)
-        part = _read_part(path.suffix, cursor)
+        part = read_part(path.suffix, cursor)
         _complete(path, part)
         self._map(path, part)
         for file, span in reversed(part.uses):
@@ -82,7 +74,7 @@ class _Files:
                 cursor.report(f"project not found: `{file}`", span, f"expected at {used}")
             elif used.resolve() in (*using, path.resolve()):
                 cursor.report(f"project `{file}` uses itself", span)
-            elif used.resolve() not in self._read:
+            elif used.resolve() not in self.seen:
                 try:
                     _import(part, self.read(used, (*using, path.resolve())))
                 except ProjectError as error:
@@ -90,7 +82,6 @@ class _Files:
         return part
 
     def _map(self, path: Path, part: ProjectPart) -> None:
-        """Read the mapping files that a project names."""
         if not part.mappings:
             return
         from jacaros.mas.mappings import MAIN, read_mapping_file  # here: most projects name none
@@ -114,15 +105,16 @@ def _text(path: Path) -> str:
         raise ProjectError([Diagnostic("error", f"cannot read {path}: {error}")]) from error
 
 
-def _read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
+def read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
+    """Return the declarations of a file of this kind. Errors are collected in the cursor."""
     # Imported on demand: a project uses one of the two formats.
     if suffix == _JCM:
-        from jacaros.mas.project.jcm import read_jcm
+        from jacaros.mas.project.jcm import JcmReader
 
-        return read_jcm(cursor)
-    from jacaros.mas.project.mas2j import read_mas2j
+        return JcmReader(cursor).read()
+    from jacaros.mas.project.mas2j import Mas2jReader
 
-    return read_mas2j(cursor)
+    return Mas2jReader(cursor).read()
 
 
 def _complete(path: Path, part: ProjectPart) -> None:
@@ -143,25 +135,24 @@ def _import(part: ProjectPart, used: ProjectPart) -> None:
     part.workspaces[:0] = used.workspaces
     part.organisations[:0] = used.organisations
     part.unsupported[:0] = used.unsupported
+    part.mapped[:0] = used.mapped
     part.folders = tuple(dict.fromkeys([*part.folders, *used.folders]))
     part.infrastructure = part.infrastructure or used.infrastructure
     if not part.world:
         part.world, part.world_span = used.world, used.world_span
-    part.mapped[:0] = used.mapped
 
 
-def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
+def _deployment(path: Path, part: ProjectPart, diagnostics: list[Diagnostic]) -> Deployment:
     _add_mapped_artifacts(part)
-    places = ProjectPlaces(part, remarks)
-    agents = ProjectAgents(part, places, remarks)
-    instances: list[AgentSpec] = [each for agent in part.agents for each in agents.instances(agent)]
-    remarks.repeated([(agent.name, agent.span) for agent in instances], "agent")
+    resolver = Resolver(part, diagnostics)
+    instances = [each for agent in part.agents for each in resolver.instances(agent)]
+    resolver.repeated([(agent.name, agent.span) for agent in instances], "agent")
     cartago = (part.environment or "").partition("(")[0] in CARTAGO_ENVIRONMENTS
     return Deployment(
         name=part.name,
         base_path=path.parent,
         agents=tuple(instances),
-        workspaces=places.specs(),
+        workspaces=resolver.specs(),
         environment=part.environment,
         artifact_environment=path.suffix == _JCM or cartago or bool(part.mapped),
         infrastructure=tuple(part.infrastructure),
@@ -172,12 +163,10 @@ def _deployment(path: Path, part: ProjectPart, remarks: Remarks) -> Deployment:
 
 
 def _add_mapped_artifacts(part: ProjectPart) -> None:
-    """Add the mapped artifacts to workspace ``main``."""
     if not part.mapped:
         return
-    main = next(
-        (space for space in part.workspaces if space.name in ("main", "/main") and not space.parent), None
-    )
+    named = (each for each in part.workspaces if each.name in ("main", "/main") and not each.parent)
+    main = next(named, None)
     if main is None:
         span = part.mapped[0].spec.span
         assert span is not None

@@ -1,6 +1,6 @@
 """Where two runs of an agent decided differently: the same events, other plans."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -65,11 +65,8 @@ class Comparison:
     def text(self) -> str:
         """Return the comparison as lines."""
         count = len(self.decisions)
-        told = (
-            f"{self.agent} decides differently {_times(count)}"
-            if count
-            else f"{self.agent} decides as before"
-        )
+        times = "once" if count == 1 else f"{count} times"
+        told = f"{self.agent} decides {f'differently {times}' if count else 'as before'}"
         lines = [f"{told}; {self.same} decisions are the same"]
         lines += [each.text() for each in self.decisions]
         lines += _listed("events only then", self.only_then)
@@ -147,8 +144,8 @@ class _Identity:
 
     def __init__(self, old: Past, new: Past, agent: str) -> None:
         then, now = old.programs.get(agent, {}), new.programs.get(agent, {})
-        counts = _counts(then), _counts(now)
-        ordered = {trigger for trigger, count in counts[0].items() if counts[1].get(trigger) == count}
+        before, after = (Counter(map(_trigger, plans.values())) for plans in (then, now))
+        ordered = {trigger for trigger, count in before.items() if after[trigger] == count}
         self._then, self._now = dict(_names(then, ordered)), dict(_names(now, ordered))
 
     def is_same(self, then: Any, now: Any) -> bool:
@@ -156,15 +153,8 @@ class _Identity:
         return self._then.get(then) == self._now.get(now)
 
 
-def _counts(plans: dict[Any, Data]) -> dict[str, int]:
-    counts: dict[str, int] = defaultdict(int)
-    for plan in plans.values():
-        counts[_trigger(plan)] += 1
-    return counts
-
-
 def _names(plans: dict[Any, Data], ordered: set[str]) -> Iterator[tuple[Any, tuple[str, str]]]:
-    seen: dict[str, int] = defaultdict(int)
+    seen: Counter[str] = Counter()
     for number, plan in plans.items():
         trigger, label = _trigger(plan), str(plan.get("label") or "")
         seen[trigger] += 1
@@ -183,10 +173,6 @@ def _trigger(plan: Data) -> str:
 
 def _told(plan: Fact | None) -> str:
     return "no applicable plan" if plan is None else plan.written()
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
 
 
 def _listed(what: str, events: Sequence[str]) -> list[str]:

@@ -13,15 +13,14 @@ from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.state.act import Act, SpeechAct
 from jacaros.agents.terms.text import text
 from jacaros.errors import UsageError
-from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.embedding.mas import Mas
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.history.chains import shown
 from jacaros.mas.history.past import Data, Past, Record
 from jacaros.mas.history.well_formed import is_well_formed
 from jacaros.mas.replaying.differences import Comparison, compare
-from jacaros.mas.replaying.recorded_acts import RecordedAct, RecordedActs, completion
-from jacaros.mas.replaying.recorded_inputs import Input, inputs_of
+from jacaros.mas.replaying.recording import Input, RecordedAct, RecordedActs, completion, inputs_of
 from jacaros.runtime.clock import VirtualClock, run
 
 AT_ONCE = 1e-3
@@ -158,6 +157,7 @@ class _Rerun:
             self._finish(act, each)
 
     def _finish(self, act: Act, recorded: RecordedAct) -> None:
+        assert self._host.mind is not None, "it runs a program"
         self._host.mind.complete(act.id, completion(recorded, act))
 
     def _act(self, act: Act) -> bool:
@@ -228,7 +228,6 @@ def _ignore(*_: str) -> None:
 
 
 def _answers(answer: Input, question: SpeechAct) -> bool:
-    """Return whether a recorded answer belongs to a question of the rerun."""
     asked = answer.question
     return (
         asked.get("to") == question.receiver

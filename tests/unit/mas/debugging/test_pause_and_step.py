@@ -195,7 +195,7 @@ def test_a_held_agent_can_receive_messages_and_its_goal_can_be_dropped() -> None
         bob.add_belief("hello")
         mas.add_agent("ann", "!drop. +!drop <- .send(bob, achieve, stop).")
         from jacaros.agents.mind.rules import goals
-        from jacaros.mas.open_mind import literal
+        from jacaros.mas.embedding.running_agent import literal
 
         goals.drop_desire(bob.mind, literal("go"))
         debugger.resume()

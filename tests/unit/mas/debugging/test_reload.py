@@ -124,7 +124,7 @@ def test_plans_of_run_time_stay_and_removed_ones_stay_away(tmp_path: Path) -> No
     async def test(mas: Mas, file: Path, lines: list[str]) -> None:
         bob = mas.agent("bob")
         await bob.achieve("c")
-        bob.mind.remove_plan(jacaros.mas.open_mind.literal("a"))
+        bob.mind.remove_plan(jacaros.mas.embedding.running_agent.literal("a"))
         bob.mind.add_plan(jacaros.agents.terms.values.String("+!d <- .print(own)."))
         bob.mind.add_plan(jacaros.agents.terms.values.String("+!c <- .print(first)."), first=True)
         write(file, old.replace("print(b)", "print(newb)"))

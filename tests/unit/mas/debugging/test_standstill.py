@@ -10,7 +10,7 @@ import pytest
 
 from jacaros.artifacts import Environment, OperationRequest
 from jacaros.artifacts.robots.velocity import ArtCmdVel
-from jacaros.mas.debugging.unpaused import command_standstill, not_paused
+from jacaros.mas.debugging.debugger import command_standstill, not_paused
 from jacaros.mas.options import RunOptions
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.open import open_backend

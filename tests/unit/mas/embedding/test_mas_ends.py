@@ -12,7 +12,7 @@ from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.mind.mind import Mind
 from jacaros.artifacts import Artifact, operation
 from jacaros.errors import InternalError
-from jacaros.mas.embedding.errors import AgentEnded, GoalFailed, RunEnded, UnknownAgent
+from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, RunEnded, UnknownAgent
 
 
 @pytest.mark.parametrize("how", ["ends", "raises", "is cancelled"])

@@ -14,7 +14,7 @@ from jacaros.agents.language.diagnostics import AslError
 from jacaros.artifacts import OperationFailed, Out
 from jacaros.errors import UsageError
 from jacaros.mas.deployment import AgentSpec, FocusSpec, ProjectError
-from jacaros.mas.embedding.errors import RunEnded, UnknownAgent
+from jacaros.mas.embedding.waits import RunEnded, UnknownAgent
 from jacaros.runtime.clock import VirtualClock, WallClock, clock_of, new_event_loop
 
 

@@ -5,8 +5,8 @@ from embedding_lab import run
 
 from jacaros import Atom, Mas, Structure
 from jacaros.errors import UsageError
-from jacaros.mas.embedding.errors import UnknownAgent
 from jacaros.mas.embedding.mailbox import Mailbox
+from jacaros.mas.embedding.waits import UnknownAgent
 
 
 def test_python_code_has_mailboxes() -> None:

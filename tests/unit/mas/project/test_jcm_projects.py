@@ -7,9 +7,9 @@ import pytest
 
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.artifacts.env.values import Atom
-from jacaros.mas.checking import check_files
+from jacaros.mas.checks.files import check_files
 from jacaros.mas.deployment import Deployment, FocusSpec, ProjectError
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 from jacaros.mas.project.reading import read_project
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.mas.deployment import AgentSpec, Deployment, FocusSpec, ProjectError
-from jacaros.mas.loading import load_deployment
+from jacaros.mas.launch import load_deployment
 
 TESTS = Path(__file__).parents[3]
 PROGRAMS = ("bob", "alice", "carl")

@@ -8,9 +8,7 @@ from hypothesis import strategies as st
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.mas.project.cursor import ProjectCursor
-from jacaros.mas.project.jcm import read_jcm
-from jacaros.mas.project.mas2j import read_mas2j
-from jacaros.mas.project.reading import read_project
+from jacaros.mas.project.reading import read_part, read_project
 
 JCM_WORDS = """
 mas uses agent workspace artifact institution organisation group scheme node running debug in package
@@ -25,15 +23,15 @@ agentClass agentArchClass beliefBaseClass beliefs goals verbose events m bob ali
 { } ( ) [ ] , : ; = # . @ * & ! // /* */
 """
 
-READERS = {
-    ".jcm": (read_jcm, JCM_WORDS.split(), "mas m {"),
-    ".mas2j": (read_mas2j, MAS2J_WORDS.split(), "MAS m { agents:"),
+LANGUAGES = {
+    ".jcm": (JCM_WORDS.split(), "mas m {"),
+    ".mas2j": (MAS2J_WORDS.split(), "MAS m { agents:"),
 }
 
 
 def read(suffix: str, text: str) -> list[Diagnostic]:
     diagnostics: list[Diagnostic] = []
-    READERS[suffix][0](ProjectCursor(SourceFile("p", text), diagnostics))
+    read_part(suffix, ProjectCursor(SourceFile("p", text), diagnostics))
     lines = text.split("\n")
     for each in diagnostics:
         assert each.span is not None
@@ -43,26 +41,26 @@ def read(suffix: str, text: str) -> list[Diagnostic]:
     return diagnostics
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", LANGUAGES)
 @settings(max_examples=150)
 @given(data=st.data())
 def test_words_in_any_order_are_read(suffix: str, data: st.DataObject) -> None:
-    _, words, head = READERS[suffix]
+    words, head = LANGUAGES[suffix]
     drawn = data.draw(
         st.lists(st.tuples(st.sampled_from(words), st.sampled_from((" ", "\n", ""))), max_size=40)
     )
     read(suffix, head + " " + "".join(word + gap for word, gap in drawn))
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", LANGUAGES)
 @settings(max_examples=100)
 @given(text=st.text(max_size=200))
 def test_any_text_is_read(suffix: str, text: str) -> None:
     read(suffix, text)
-    read(suffix, READERS[suffix][2] + text)
+    read(suffix, LANGUAGES[suffix][1] + text)
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", LANGUAGES)
 @pytest.mark.parametrize("sign", ["(", "[", "{", "a(", "group g : t {", "artifact a : A([", "agents: x ["])
 def test_endless_brackets_are_refused(suffix: str, sign: str) -> None:
     for head in (

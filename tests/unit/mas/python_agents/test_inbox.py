@@ -7,9 +7,9 @@ import pytest
 import jacaros
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.terms.values import atom
-from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.messaging import Messaging
-from jacaros.mas.python_agents.task_activity import TaskActivity
+from jacaros.mas.agents.python_agents import TaskActivity
+from jacaros.mas.messaging import Messaging
+from jacaros.mas.scheduler import Activity
 from jacaros.runtime.clock import clock_of
 
 
@@ -29,7 +29,7 @@ class Desk:
             lambda: ("ann", "bob"),
             clock_of(asyncio.get_running_loop()),
             activity,
-            TaskActivity(activity, lambda: None),
+            TaskActivity(activity, lambda: None).waiting,
         )
 
     def _send(self, said: SpeechAct) -> bool:
@@ -45,12 +45,12 @@ def test_readers_are_served_in_turn_and_a_cancelled_one_keeps_nothing() -> None:
         desk = Desk()
         first, second, third = (asyncio.ensure_future(desk.read()) for _ in range(3))
         await asyncio.sleep(0)
-        desk.mail.inbox.put(message(1))
+        desk.mail.receive(message(1))
         first.cancel()
         assert await second == "m1"
-        desk.mail.inbox.put(message(2))
+        desk.mail.receive(message(2))
         assert await third == "m2"
-        desk.mail.inbox.put(message(3))
+        desk.mail.receive(message(3))
         assert await desk.read() == "m3"
 
     jacaros.run(main(), clock="fast")
@@ -62,12 +62,12 @@ def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> Non
         asking = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), None))
         late = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), 1.0))
         await asyncio.sleep(0)
-        desk.mail.inbox.put(message(1, desk.sent[0].id))
+        desk.mail.receive(message(1, desk.sent[0].id))
         assert (await asking).content == atom("m1")
         with pytest.raises(TimeoutError, match="no answer from bob within 1 s"):
             await late
-        desk.mail.inbox.put(message(2, desk.sent[1].id))
-        desk.mail.inbox.put(message(3, "another"))
+        desk.mail.receive(message(2, desk.sent[1].id))
+        desk.mail.receive(message(3, "another"))
         assert await desk.read() == "m3"
 
     jacaros.run(main(), clock="fast")
@@ -76,10 +76,10 @@ def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> Non
 def test_unread_questions_get_a_negative_answer_at_the_end() -> None:
     async def main() -> None:
         desk = Desk()
-        desk.mail.inbox.put(message(1, performative="askAll"))
-        desk.mail.inbox.put(message(2))
+        desk.mail.receive(message(1, performative="askAll"))
+        desk.mail.receive(message(2))
         desk.mail.close()
-        desk.mail.inbox.put(message(3, performative="askOne"))
+        desk.mail.receive(message(3, performative="askOne"))
         assert [(said.performative, said.receiver, said.in_reply_to) for said in desk.sent] == [
             ("untell", "bob", "mid1_bob"),
             ("untell", "bob", "mid3_bob"),

@@ -5,8 +5,8 @@ from collections.abc import Coroutine
 from typing import Any
 
 import jacaros
-from jacaros.mas.idleness import Activity
-from jacaros.mas.python_agents.task_activity import TaskActivity
+from jacaros.mas.agents.python_agents import TaskActivity
+from jacaros.mas.scheduler import Activity
 
 
 class Stage:

@@ -7,6 +7,7 @@ an opaque reference. All errors fail the step with ``error(internal_action)``.
 import builtins
 import importlib
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 from jacaros.agents.body.body import AgentBody, name_of
@@ -17,6 +18,7 @@ from jacaros.agents.python.declaring import FAULTS
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, Term, bare, is_list, make_list
 from jacaros.artifacts.env.values import Out, plain
+from jacaros.artifacts.kernel.faults import error_text
 from jacaros.errors import InternalError
 from jacaros.files.python_modules import ProjectModules
 
@@ -26,10 +28,9 @@ PACKAGE = "cartago."
 
 def actions(modules: ProjectModules) -> Registry:
     """Return the internal actions for a project, whose classes are found beside it."""
-    classes = _Classes(modules)
     declared = (
-        InternalAction(f"{PACKAGE}new_obj", classes.new_object, arity=3, restricted=0),
-        InternalAction(f"{PACKAGE}invoke_obj", classes.invoke, arity=(2, 3), restricted=0),
+        InternalAction(f"{PACKAGE}new_obj", partial(_new_object, modules), arity=3, restricted=0),
+        InternalAction(f"{PACKAGE}invoke_obj", partial(_invoke, modules), arity=(2, 3), restricted=0),
         InternalAction(f"{PACKAGE}new_array", _new_array, arity=3, restricted=0),
         InternalAction(f"{PACKAGE}array_to_list", _array_to_list, arity=2),
         InternalAction(f"{PACKAGE}current_wsps", _current_workspaces, arity=1),
@@ -37,68 +38,63 @@ def actions(modules: ProjectModules) -> Registry:
     return {action.name: action for action in declared}
 
 
-class _Classes:
-    """Creates objects of classes, and calls methods of objects and classes.
+def _new_object(
+    modules: ProjectModules, ctx: Context, class_name: Term, arguments: Term, reference: Term
+) -> bool:
+    """``cartago.new_obj(Class, Arguments, -Reference)``."""
+    name = name_of(bare(class_name))
+    if name is None:
+        raise ActionError(f"expected the name of a class, found {text(class_name)}")
+    made = _call(f"{name}(...)", _find(modules, name), _values(arguments))
+    return ctx.unify(reference, Reference(made))
 
-    Args:
-        modules: modules of the project.
+
+def _invoke(modules: ProjectModules, ctx: Context, target: Term, call: Term, *result: Term) -> bool:
+    """``cartago.invoke_obj(ReferenceOrClass, method(Arguments) {, -Result})``; or an attribute instead of a call."""
+    owner, shown = _owner(modules, target)
+    call = bare(call)
+    name = name_of(call[0] if isinstance(call, tuple) else call)
+    if name is None:
+        raise ActionError(f"expected a call such as append(3), found {text(call)}")
+    try:
+        member = getattr(owner, name)
+    except AttributeError:
+        raise ActionError(f"unknown method `{name}` of {shown}") from None
+    given = [_bound(to_value(each)) for each in call[1:]] if isinstance(call, tuple) else []
+    value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
+    if not result or value is None:
+        return True
+    return ctx.unify(result[0], to_term(value, UNKEPT))
+
+
+def _owner(modules: ProjectModules, target: Term) -> tuple[Any, str]:
+    target = bare(target)
+    if target.__class__ is Reference:
+        return target.value, f"an object of class {type(target.value).__name__}"
+    name = name_of(target)
+    if name is None:
+        raise ActionError(f"expected an object or the name of a class, found {text(target)}")
+    return _find(modules, name), f"class {name}"
+
+
+def _find(modules: ProjectModules, name: str) -> Any:
+    """Return the class (or module, which has functions) with this name.
+
+    Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``. Otherwise
+    it is searched among Python's built-in names and the installed modules.
     """
-
-    def __init__(self, modules: ProjectModules) -> None:
-        self._modules = modules
-
-    def new_object(self, ctx: Context, class_name: Term, arguments: Term, reference: Term) -> bool:
-        """``cartago.new_obj(Class, Arguments, -Reference)``."""
-        name = name_of(bare(class_name))
-        if name is None:
-            raise ActionError(f"expected the name of a class, found {text(class_name)}")
-        made = _call(f"{name}(...)", self._find(name), _values(arguments))
-        return ctx.unify(reference, Reference(made))
-
-    def invoke(self, ctx: Context, target: Term, call: Term, *result: Term) -> bool:
-        """``cartago.invoke_obj(ReferenceOrClass, method(Arguments) {, -Result})``; or an attribute instead of a call."""
-        owner, shown = self._owner(target)
-        call = bare(call)
-        name = name_of(call[0] if isinstance(call, tuple) else call)
-        if name is None:
-            raise ActionError(f"expected a call such as append(3), found {text(call)}")
-        try:
-            member = getattr(owner, name)
-        except AttributeError:
-            raise ActionError(f"unknown method `{name}` of {shown}") from None
-        given = [_value(each) for each in call[1:]] if isinstance(call, tuple) else []
-        value = member if not given and not callable(member) else _call(f"{name} of {shown}", member, given)
-        if not result or value is None:
-            return True
-        return ctx.unify(result[0], to_term(value, UNKEPT))
-
-    def _owner(self, target: Term) -> tuple[Any, str]:
-        target = bare(target)
-        if target.__class__ is Reference:
-            return target.value, f"an object of class {type(target.value).__name__}"
-        name = name_of(target)
-        if name is None:
-            raise ActionError(f"expected an object or the name of a class, found {text(target)}")
-        return self._find(name), f"class {name}"
-
-    def _find(self, name: str) -> Any:
-        """Return the class (or module, which has functions) with this name.
-
-        Beside the project, ``my.shapes.Square`` is in ``my/shapes.py``, and ``Square`` in ``artifacts.py``. Otherwise
-        it is searched among Python's built-in names and the installed modules.
-        """
-        path, _, last = name.rpartition(".")
-        try:
-            for module in self._modules.load(path or "artifacts"):
-                if hasattr(module, last):
-                    return getattr(module, last)
-            own = self._modules.load(name)
-            return own[0] if own else _installed(name)
-        except InternalError:
-            raise
-        except FAULTS as error:
-            help = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
-            raise ActionError(f"unknown class `{name}`: {_error_text(error)}{help}") from error
+    path, _, last = name.rpartition(".")
+    try:
+        for module in modules.load(path or "artifacts"):
+            if hasattr(module, last):
+                return getattr(module, last)
+        own = modules.load(name)
+        return own[0] if own else _installed(name)
+    except InternalError:
+        raise
+    except FAULTS as error:
+        help = "; only Python classes are supported" if name.startswith(("java.", "javax.")) else ""
+        raise ActionError(f"unknown class `{name}`: {error_text(error)}{help}") from error
 
 
 def _installed(name: str) -> Any:
@@ -128,22 +124,13 @@ def _call(what: str, function: Any, given: list[Any]) -> Any:
     except InternalError:
         raise
     except FAULTS as error:
-        raise ActionError(f"{what}: {_error_text(error)}") from error
-
-
-def _error_text(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise ActionError(f"{what}: {error_text(error)}") from error
 
 
 def _values(arguments: Term) -> list[Any]:
     if not is_list(bare(arguments)):
         raise ActionError(f"expected a list of arguments, found {text(arguments)}")
-    values: list[Any] = [_bound(value) for value in to_value(bare(arguments))]
-    return values
-
-
-def _value(term: Term) -> Any:
-    return _bound(to_value(term))
+    return [_bound(value) for value in to_value(bare(arguments))]
 
 
 def _bound(value: Any) -> Any:
@@ -190,7 +177,7 @@ def _array_to_list(ctx: Context, reference: Term, result: Term) -> bool:
     try:
         items = list(value)
     except FAULTS as error:
-        raise ActionError(f"the items of {text(reference)}: {_error_text(error)}") from error
+        raise ActionError(f"the items of {text(reference)}: {error_text(error)}") from error
     return ctx.unify(result, make_list([to_term(item, UNKEPT) for item in items]))
 
 

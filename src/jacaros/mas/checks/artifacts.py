@@ -1,19 +1,24 @@
-"""Check that artifacts of a project offer the actions of its programs, and that the artifact types that agents use exist.
+"""Check that artifacts of a project offer the actions of its programs, that the artifact types that agents use exist, and
+that plans need resources that artifacts use.
 
 Only certain errors are reported: a program may create artifacts of types computed at run time, artifacts may define
 operations at run time, and an agent architecture may run actions itself.
 """
 
 import inspect
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from jacaros.agents.body.body import keys
+from jacaros.agents.checks.checker import needs_of
 from jacaros.agents.checks.formulas import clauses as clauses_of
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Diagnostic
-from jacaros.agents.language.nodes import UNDECLARED, walk
+from jacaros.agents.language.nodes import UNDECLARED, ByKind, walk
 from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.artifacts.env.arbiter import local_name, read_uses
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.files.texts import close_matches, did_you_mean
@@ -38,28 +43,41 @@ _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
 """Methods that add operations at run time."""
 
 
-def check_actions(
-    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
-) -> Iterator[Diagnostic]:
-    """Return warnings about operations that no artifact has.
+def check_artifacts(
+    deployment: Deployment,
+    programs: Sequence[tuple[AgentSpec, nodes.Program]],
+    folders: Sequence[Path],
+    find_type: "FindType",
+) -> list[Diagnostic]:
+    """Return warnings about what agents do with the artifacts of a project.
 
     Args:
+        deployment: the project.
         programs: the agents with their programs, including included files.
-        types: the types of all artifacts of the project.
+        folders: folders of the project, with its mapping files.
+        find_type: finds the artifact classes of the project.
     """
+    named = [each for _, program in programs for each in _named_types(program)[0] if each.of_library]
+    found = list(_unknown_types(named, folders, find_type))
+    types = made_types(deployment, [program for _, program in programs], find_type)
+    if types is not None:
+        found += [*_unknown_operations(programs, types), *_unknown_resources(programs, types)]
+    return found
+
+
+# ---- operations
+
+
+def _unknown_operations(
+    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
+) -> Iterator[Diagnostic]:
     if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
         return
     offered = _Offered(types)
     for agent, program in programs:
-        if not agent.agent_class:
-            yield from filter(None, map(offered.diagnose, _steps(program)))
-
-
-def _steps(program: nodes.Program) -> Iterator[nodes.Literal]:
-    """Return the actions in the plans of a program."""
-    for node in walk(*clauses_of(program)):
-        if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
-            yield node.action
+        for node in () if agent.agent_class else walk(*clauses_of(program)):
+            if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
+                yield from offered.check(node.action)
 
 
 def _is_open(program: nodes.Program) -> bool:
@@ -99,24 +117,53 @@ class _Offered:
             return True
         return any(each.interface.operations.find(name, arity) is not None for each in self._types)
 
-    def diagnose(self, action: nodes.Literal) -> Diagnostic | None:
+    def check(self, action: nodes.Literal) -> Iterator[Diagnostic]:
         """Return a warning if no artifact offers *action*."""
-        span = action.span
-        if span is None or span.file.name.startswith("$") or self._has(action.functor, len(action.arguments)):
-            return None
-        key = f"{action.functor}/{len(action.arguments)}"
-        message = f"unknown operation `{key}`: no artifact of the project has it"
-        return Diagnostic("warning", message, span, self._help(key), "unknown-operation")
+        span, name, arity = action.span, action.functor, len(action.arguments)
+        if span is not None and not span.file.name.startswith("$") and not self._has(name, arity):
+            message = f"unknown operation `{name}/{arity}`: no artifact of the project has it"
+            yield Diagnostic("warning", message, span, self._help(name), "unknown-operation")
 
-    def _help(self, key: str) -> str | None:
+    def _help(self, name: str) -> str | None:
         known = list(self._personal)
         for artifact_type in self._types:
             known += artifact_type.interface.operations.keys()
         for artifact in self._main.artifacts():
             known += self._main.offers(artifact)
-        name = key.partition("/")[0]
         same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
         return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
+
+
+# ---- resources
+
+
+def _unknown_resources(
+    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Iterable[type[Artifact]]"
+) -> Iterator[Diagnostic]:
+    """Return warnings about resources that only one plan names. They are probably misspelt.
+
+    Plans may share a resource that no artifact uses. So if several plans need it, it is reported only if its name is
+    similar to that of an artifact's resource.
+    """
+    known = sorted(set(_resources(types)))
+    found = [each for _, program in programs for each in needs_of(ByKind(*clauses_of(program)))]
+    counts = Counter(name for name, _ in found)
+    for name, item in found if known else ():
+        close = close_matches(name, known)
+        if local_name(name) not in known and (close or counts[name] == 1):
+            message = f"unknown resource `{name}`: no artifact of the project uses it"
+            help = did_you_mean(close, f"resources of the project: {', '.join(known)}")
+            yield Diagnostic("warning", message, item.span, help, "unknown-resource")
+
+
+def _resources(types: "Iterable[type[Artifact]]") -> Iterator[str]:
+    for each in types:
+        for table in (each.interface.operations, each.interface.links):
+            yield from (name for declared in table for name in declared.uses)
+        yield from read_uses(getattr(each, "further_uses", ()))
+
+
+# ---- types
 
 
 class _Place(NamedTuple):
@@ -138,19 +185,27 @@ class _NamedType(NamedTuple):
     """Whether it is an argument of an action or of a goal of a library, which is certainly a type."""
 
 
-def unknown_types(programs: Iterable[nodes.Program], find_type: "FindType") -> Iterator[Diagnostic]:
-    """Return warnings about artifact types that programs name but that do not exist."""
-    for program in programs:
-        for named in _named_types(program)[0]:
-            if not named.of_library:
-                continue
-            try:
-                find_type(named.name)
-            except UnknownArtifactType as unknown:
-                yield Diagnostic("warning", str(unknown), named.term.span, code="unknown-artifact-type")
-            except Exception:
-                # The module has an error, which a run reports.
-                continue
+def _unknown_types(
+    named: Iterable[_NamedType], folders: Sequence[Path], find_type: "FindType"
+) -> Iterator[Diagnostic]:
+    for each in named:
+        try:
+            find_type(each.name)
+        except UnknownArtifactType as unknown:
+            if not is_wrong_mapping(each.name, folders):
+                yield Diagnostic("warning", str(unknown), each.term.span, code="unknown-artifact-type")
+        except Exception:
+            # The module has an error, which a run reports.
+            continue
+
+
+def is_wrong_mapping(type_name: str, folders: Sequence[Path]) -> bool:
+    """Return whether an artifact's type is a mapping file with errors, which are reported there."""
+    if not type_name.partition("#")[0].endswith((".yaml", ".yml")):
+        return False
+    from jacaros.mas.mappings import is_wrong  # here: few projects have mappings
+
+    return is_wrong(type_name, folders)
 
 
 def made_types(

@@ -1,59 +1,30 @@
-"""The host of a mind in its run (Jason's agent architecture)."""
+"""The host of a mind in its run (Jason's agent architecture), and the coroutines of its internal actions."""
 
-from collections.abc import Callable, Coroutine, Iterable
+import asyncio
+from collections.abc import Callable, Coroutine, Sequence
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.agents.language.nodes import Literal
 from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, Timer
-from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.terms.values import String, Term, atom, functor
+from jacaros.agents.terms.values import String, atom, functor
 from jacaros.mas.console import Console
-from jacaros.mas.coroutines import Coroutines, Ended
-from jacaros.mas.idleness import Activity, AgentTimer
-from jacaros.mas.scheduler import Scheduler
+from jacaros.mas.scheduler import Activity, AgentTimer, Scheduler
 from jacaros.runtime.clock import Clock
 
 if TYPE_CHECKING:
     from jacaros.agents.body.body import AgentBody
+    from jacaros.agents.mind.mind import Mind
 
+PATIENCE = 5.0
+"""Seconds that coroutines and tasks of an agent have for their clean-up at the end of a run."""
+ADD_ENVIRONMENT = "add the line `environment: jacaros.Environment` to the project file"
 _ERROR_MSG = functor("error_msg", 1)
 _REASON = functor("env_failure_reason", 1)
 
 
-class HostedMind(Protocol):
-    """A mind, as its host sees it (`jacaros.agents.mind.mind.Mind`)."""
-
-    stopped: bool
-    """Set by the host to stop the mind."""
-
-    @property
-    def options(self) -> Options:
-        """Options for its events and logs."""
-
-    def start(self) -> None:
-        """Adopt initial beliefs and goals."""
-
-    def post_goal(self, goal: Term) -> None:
-        """Adopt a goal."""
-
-    def adopt(self, goals: Iterable[Literal]) -> None:
-        """Adopt the goals of a program."""
-
-    def run(self, fuel: int) -> bool:
-        """Run reasoning cycles. Return whether there is more to do."""
-
-    def receive(self, message: SpeechAct) -> None:
-        """Receive a message."""
-
-    def accept_kill(self, killer: str) -> bool:
-        """Return whether another agent may kill this one."""
-
-    def complete(self, act_id: int, completion: Completion) -> None:
-        """Receive the outcome of an action."""
-
-    def shut_down_in(self, milliseconds: float) -> None:
-        """Receive the announcement that the run ends after this time."""
+Ended = Callable[[object, BaseException | None], None]
+"""Called with the result of a coroutine, or the exception that ended it."""
 
 
 class Run(AgentSystem, Protocol):
@@ -90,12 +61,12 @@ class AgentHost:
 
     Attributes:
         queued: whether it waits for a turn. Set by the scheduler.
-        mind: set before the first turn.
         body: runs its actions. None before the first one.
         make_body: creates the body. None in a project without an environment.
         intercept: called first with each action. Returns whether it answers the action itself. For tests.
         intercept_stop: the same for the end of the run.
         system: its run.
+        verbose: the agent's option of this name.
         send: delivers a message. Returns False if the receiver is unknown.
         run: runs up to this number of cycles of the mind. Returns whether there is more to do.
     """
@@ -116,10 +87,12 @@ class AgentHost:
         "run",
         "send",
         "system",
+        "verbose",
     )
 
     def __init__(self, name: str, run: Run, seed: str) -> None:
         self.name = name
+        self.verbose = 1
         self.queued = False
         self.body: AgentBody | None = None
         self.make_body: Callable[[], AgentBody] | None = None
@@ -132,18 +105,27 @@ class AgentHost:
         self.run: Callable[[int], bool] = _no_turn
         self._seed = seed
         self._random: Random | None = None
-        self._coroutines: Coroutines | None = None
+        self._mind: Mind
+        self._coroutines: dict[AgentCoroutine, None] = {}
         self._ended = False
 
     @property
-    def mind(self) -> HostedMind:
-        """The mind."""
+    def mind(self) -> "Mind | None":
+        """The mind; None for a Python agent."""
         return self._mind
 
-    @mind.setter
-    def mind(self, mind: HostedMind) -> None:
+    def set_mind(self, mind: "Mind") -> None:
+        """Set the mind."""
         self._mind = mind
         self.run = mind.run
+        self.verbose = mind.options.verbose
+
+    def begin(self, goals: Sequence[Literal] | None) -> None:
+        """Start the agent. As in JaCaMo, one that is given *goals* adopts them after it has perceived what it focuses."""
+        self._mind.start()
+        if goals is not None:
+            self._mind.run(1)
+            self._mind.adopt(goals)
 
     @property
     def ended(self) -> bool:
@@ -153,25 +135,36 @@ class AgentHost:
     def halt(self) -> None:
         """Stop the mind, even in the middle of its turn."""
         self._ended = True
-        self._mind.stopped = True
+        if self.mind is not None:
+            self.mind.stopped = True
         self.run = _no_turn
 
     def end(self) -> None:
         """Cancel all actions and coroutines, and stop focusing."""
-        if self._coroutines is not None:
-            self._coroutines.cancel()
+        for coroutine in tuple(self._coroutines):
+            coroutine.cancel()
         if self.body is not None:
             self.body.close()
 
     async def close(self) -> None:
         """Wait until the coroutines have finished their clean-up."""
-        if self._coroutines is not None:
-            await self._coroutines.close()
+        for coroutine in tuple(self._coroutines):
+            coroutine.cancel()
+        if self._coroutines:
+            await asyncio.wait([each.task for each in self._coroutines], timeout=PATIENCE)
 
     def receive(self, message: SpeechAct) -> None:
         """Pass a message to the mind."""
         if not self._ended:
             self._mind.receive(message)
+
+    def accept_kill(self, killer: str) -> bool:
+        """Return whether another agent may kill this one."""
+        return self._mind.accept_kill(killer)
+
+    def shut_down_in(self, seconds: float) -> None:
+        """Announce to the agent that it ends after this time."""
+        self._mind.shut_down_in(seconds * 1000)
 
     # ---- the port `jacaros.agents.mind.state.act.Architecture`
 
@@ -197,9 +190,12 @@ class AgentHost:
 
     def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
         """Run a coroutine of the project's Python code beside the mind."""
-        if self._coroutines is None:
-            self._coroutines = Coroutines(self.system.activity)
-        return self._coroutines.start(coroutine, ended)
+        running = AgentCoroutine(coroutine, ended, self.system.activity, self._over)
+        self._coroutines[running] = None
+        return running
+
+    def _over(self, coroutine: "AgentCoroutine") -> None:
+        self._coroutines.pop(coroutine, None)
 
     def act(self, act: Act) -> None:
         """Begin an external action. Without an environment, it fails immediately."""
@@ -240,10 +236,9 @@ class AgentHost:
 
     def log(self, level: str, text: str) -> None:
         """Log a line, subject to the agent's option ``verbose``."""
-        verbose = self._mind.options.verbose
-        if verbose > 0 or level not in ("debug", "info"):
+        if self.verbose > 0 or level not in ("debug", "info"):
             # Details that an agent logs on request are shown, whatever the level of the console.
-            shown = "info" if level == "debug" and verbose > 1 else level
+            shown = "info" if level == "debug" and self.verbose > 1 else level
             self.system.console.log(f"[{self.name}] {level}: {text}", shown)
 
     def goal_lost(self) -> None:
@@ -268,9 +263,51 @@ def _no_turn(fuel: int) -> bool:
 
 def without_environment(act: Act) -> Completion:
     """Return the failure of an action in a project without an environment."""
-    text = (
-        f"unknown operation `{act.functor}`: the project has no environment "
-        "(add the line `environment: jacaros.Environment` to the project file)"
-    )
+    text = f"unknown operation `{act.functor}`: the project has no environment ({ADD_ENVIRONMENT})"
     reason = (_REASON, atom("no_environment"))
     return Completion(False, (), ((_ERROR_MSG, String(text)), reason))
+
+
+class AgentCoroutine:
+    """One running coroutine of an internal action.
+
+    Attributes:
+        task: the task that runs it.
+    """
+
+    def __init__(
+        self,
+        coroutine: Coroutine[Any, Any, Any],
+        ended: Ended,
+        activity: Activity,
+        over: "Callable[[AgentCoroutine], object]",
+    ) -> None:
+        self._ended, self._activity, self._over = ended, activity, over
+        self._wanted = True
+        activity.begin()
+        self.task = asyncio.get_running_loop().create_task(without_exit(coroutine))
+        self.task.add_done_callback(self._done)
+
+    def cancel(self) -> None:
+        """Cancel it: its ``finally`` blocks run, and its end is not reported."""
+        if self._wanted:
+            self._wanted = False
+            self._activity.end()
+            self.task.cancel()
+
+    def _done(self, task: "asyncio.Task[Any]") -> None:
+        self._over(self)
+        error = asyncio.CancelledError("cancelled") if task.cancelled() else task.exception()
+        if not self._wanted:
+            return
+        self._wanted = False
+        self._activity.end()
+        self._ended(None if error is not None else task.result(), error)
+
+
+async def without_exit(work: Coroutine[Any, Any, Any]) -> Any:
+    """Await a coroutine. Turn its ``sys.exit``, which would end the event loop, into an error."""
+    try:
+        return await work
+    except SystemExit as error:
+        raise RuntimeError(f"SystemExit: {error}") from error

@@ -1,0 +1,1 @@
+"""The agents of a run, their programs and their Python code."""

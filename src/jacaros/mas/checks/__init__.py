@@ -1,0 +1,1 @@
+"""Checks of programs and projects without running them."""

@@ -1,1 +1,0 @@
-"""Python agents in a run."""
