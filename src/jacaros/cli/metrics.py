@@ -19,7 +19,7 @@ from jacaros.metrics import (
     measure_chart,
     measure_table,
 )
-from jacaros.metrics.library import DEFAULT
+from jacaros.metrics.programs import DEFAULT
 
 
 @click.command(

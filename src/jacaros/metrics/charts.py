@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from jacaros.metrics.counted_file import MEASURES
-from jacaros.metrics.groups import Group, ProgramMetrics
+from jacaros.metrics.counting import MEASURES, Group, ProgramMetrics
 
 _STYLE: Final = """
   text{fill:#23282e;font:12px system-ui,sans-serif} .title{font-weight:600;font-size:14px}
