@@ -1,24 +1,31 @@
-"""``jacaros check FILE|FOLDER...``."""
+"""``jacaros check FILE|FOLDER...``: findings as text, as JSON, and as SARIF 2.1.0.
 
+SARIF: https://docs.oasis-open.org/sarif/sarif/v2.1.0/
+"""
+
+import json
 import os
 import sys
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
+from urllib.parse import quote
 
 import click
 
-from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, Severity, bounded
-from jacaros.cli.files import existing, no_programs
-from jacaros.cli.reports import as_json, as_sarif
-from jacaros.cli.usage import examples, usage_error
-from jacaros.files.texts import is_file, suggestion
+from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, Severity, Span, bounded
+from jacaros.cli.options import PATH, imports_option
+from jacaros.cli.usage import counted, examples, existing, listed, no_programs, usage_error
+from jacaros.files.texts import is_file, printable, suggestion
 from jacaros.mas.checking import Findings, check_files
 from jacaros.runtime.output import beneath
+from jacaros.version import VERSION
+
+Object = dict[str, Any]
+SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 _KINDS = (".asl", ".mas2j", ".jcm", ".py", ".yaml", ".yml")
-MOST_NAMES = 8
-"""Number of skipped files listed in the note."""
 _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
@@ -32,7 +39,7 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
         "jacaros check . --format sarif > problems.sarif",
     ),
 )
-@click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)
 @click.option(
     "--format",
     "style",
@@ -55,12 +62,7 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
     multiple=True,
     help="Also check that programs use only what this mapping file provides. Repeatable.",
 )
-@click.option(
-    "--import",
-    "imports",
-    is_flag=True,
-    help="Run the Python files of the project to find all their declarations (default: read them only).",
-)
+@imports_option
 def command(
     files: tuple[Path, ...],
     style: str,
@@ -104,8 +106,7 @@ def _supported(files: Sequence[Path]) -> Sequence[Path]:
     foreign = [file for file in files if is_file(file) and file.suffix not in _KINDS]
     if not foreign or len(foreign) == len(files):
         return files
-    names = ", ".join(map(str, foreign[:MOST_NAMES])) + (", ..." if len(foreign) > MOST_NAMES else "")
-    click.echo(f"note: skipped unsupported file types: {names}", err=True)
+    click.echo(f"note: skipped unsupported file types: {listed(foreign)}", err=True)
     return [file for file in files if file not in foreign]
 
 
@@ -136,7 +137,72 @@ def _coloured(diagnostic: Diagnostic) -> str:
 
 def _summary(diagnostics: Sequence[Diagnostic], files: int) -> str:
     counts = Counter(each.severity for each in diagnostics)
-    found = [
-        f"{counts[level]} {level}{'' if counts[level] == 1 else 's'}" for level in _COLOURS if counts[level]
+    found = [counted(counts[level], level) for level in _COLOURS if counts[level]]
+    return f"{', '.join(found) or 'nothing wrong'} in {counted(files, 'file')}"
+
+
+def as_json(findings: Findings) -> str:
+    """Return the findings as one JSON object; lines and columns count from 1, and the end column is exclusive."""
+    found = [_plain(diagnostic) for diagnostic in findings.diagnostics]
+    return _json({"version": 1, "files": len(findings.files), "diagnostics": found})
+
+
+def _json(document: Object) -> str:
+    return json.dumps(document, indent=2, ensure_ascii=False)
+
+
+def _plain(diagnostic: Diagnostic) -> Object:
+    span = diagnostic.span
+    return {
+        "file": None if span is None else span.file.name,
+        **{place: getattr(span, place, None) for place in ("line", "column", "end_line", "end_column")},
+        "level": diagnostic.severity,
+        "code": diagnostic.code,
+        "message": printable(diagnostic.message),
+        "help": None if diagnostic.help is None else printable(diagnostic.help),
+        "opened": None if diagnostic.opened is None else [diagnostic.opened.line, diagnostic.opened.column],
+    }
+
+
+def as_sarif(findings: Findings) -> str:
+    """Return the findings as a SARIF log with one run."""
+    codes = sorted({diagnostic.code for diagnostic in findings.diagnostics})
+    rules = [
+        {
+            "id": code,
+            "shortDescription": {"text": code.replace("-", " ")},
+            "defaultConfiguration": {"level": LEVELS[code]},
+        }
+        for code in codes
     ]
-    return f"{', '.join(found) or 'nothing wrong'} in {files} file{'' if files == 1 else 's'}"
+    results = [_result(diagnostic, codes) for diagnostic in findings.diagnostics]
+    tool = {"driver": {"name": "jacaros", "version": VERSION, "rules": rules}}
+    run = {"tool": tool, "columnKind": "unicodeCodePoints", "results": results}
+    return _json({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
+
+
+def _result(diagnostic: Diagnostic, codes: list[str]) -> Object:
+    text = diagnostic.message if diagnostic.help is None else f"{diagnostic.message}. {diagnostic.help}"
+    result: Object = {
+        "ruleId": diagnostic.code,
+        "ruleIndex": codes.index(diagnostic.code),
+        "level": diagnostic.severity,
+        "message": {"text": printable(text)},
+    }
+    if diagnostic.span is not None:
+        result["locations"] = [_location(diagnostic.span)]
+    if diagnostic.opened is not None:
+        result["relatedLocations"] = [{**_location(diagnostic.opened), "message": {"text": "opened here"}}]
+    return result
+
+
+def _location(span: Span) -> Object:
+    path = Path(span.file.name)
+    uri = path.as_uri() if path.is_absolute() else quote(path.as_posix())
+    region = {
+        "startLine": span.line,
+        "startColumn": span.column,
+        "endLine": span.end_line,
+        "endColumn": span.end_column,
+    }
+    return {"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}

@@ -12,8 +12,8 @@ import click
 from jacaros.agents.language.diagnostics import AslError, Diagnostic
 from jacaros.agents.language.formatting import format_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.cli.files import existing, no_programs
-from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.options import PATH
+from jacaros.cli.usage import counted, examples, existing, no_programs, usage_error
 from jacaros.errors import InternalError
 from jacaros.files import texts
 from jacaros.mas.checking import files_below
@@ -27,7 +27,7 @@ _STANDARD_INPUT = Path("-")
     short_help="Format programs in one style.",
     epilog=examples("jacaros fmt robot.asl", "jacaros fmt . --check"),
 )
-@click.argument("files", metavar="FILE...", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)
 @click.option(
     "--check",
     "only_check",
@@ -55,12 +55,10 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
             after = format_program(
                 "<stdin>" if path == _STANDARD_INPUT else path.as_posix(), before, STANDARD
             )
-        except AslError as wrong:
-            click.echo(wrong, err=True)
-            code = 1
-            continue
-        except InternalError as defect:
-            click.echo(f"internal error: {defect}; please file an issue with this program", err=True)
+        except (AslError, InternalError) as fault:
+            is_defect = isinstance(fault, InternalError)
+            text = f"internal error: {fault}; please file an issue with this program" if is_defect else fault
+            click.echo(text, err=True)
             code = 1
             continue
         changed += before != after
@@ -75,7 +73,8 @@ def command(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
                 click.echo(f"error: cannot write `{path}`: {fault.strerror}", err=True)
                 code = 1
     if _STANDARD_INPUT not in files:
-        click.echo(_summary(changed, len(programs), only_check or only_show), err=True)
+        what = "would change" if only_check or only_show else "changed"
+        click.echo(f"{changed} of {counted(len(programs), 'file')} {what}", err=True)
     return 1 if only_check and changed else code
 
 
@@ -120,8 +119,3 @@ def _difference(path: Path, before: str, after: str) -> Iterator[str]:
     )
     for line in lines:
         yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
-
-
-def _summary(changed: int, files: int, only_look: bool) -> str:
-    what = "would change" if only_look else "changed"
-    return f"{changed} of {files} file{'' if files == 1 else 's'} {what}"

@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import address_options, ros_option
+from jacaros.cli.options import VariableOption
 from jacaros.cli.usage import examples
-from jacaros.cli.variables import VariableOption
 from jacaros.files.texts import visible
 from jacaros.ros.middleware import ROS_KINDS
 from jacaros.runtime.clock import WallClock, run

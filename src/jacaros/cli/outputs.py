@@ -1,9 +1,10 @@
 """Output files and pages of a run, and checks that they can be written."""
 
-import contextlib
 import os
-from dataclasses import dataclass
+import sys
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from jacaros.cli.usage import usage_error
 
@@ -27,32 +28,35 @@ _BEGINNINGS = {
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """The outputs requested on the command line.
+    """The outputs requested on the command line, by the names of the options.
 
     Attributes:
         record: file for the recording, or None.
         replay: file for the replay page, or None.
         ground_truth: file for the ground truth of the world, or None.
-        view: ``page`` (in the browser), ``terminal``, or "" for no view.
+        view: ``page`` (in the browser), ``terminal``, or None for no view.
         view_address, view_port, view_token: where to serve the page; see `jacaros.inspector.live.run_view.Place`.
-        record_limit: size limit of the recording, in bytes.
+        record_limit: size limit of the recording, in megabytes.
     """
 
     record: Path | None = None
     replay: Path | None = None
     ground_truth: Path | None = None
-    view: str = ""
+    view: str | None = None
     view_address: str = LOOPBACK
     view_port: int = 0
     view_token: str | None = None
-    record_limit: int = RECORD_LIMIT * 1_000_000
+    record_limit: int = RECORD_LIMIT
+
+    @classmethod
+    def taken_from(cls, options: dict[str, Any]) -> "Outputs":
+        """Take the outputs out of the options of a command."""
+        return cls(**{each.name: options.pop(each.name) for each in fields(cls)})
 
     @property
     def any(self) -> bool:
         """Whether any output is requested."""
-        return bool(self.view) or any(
-            path is not None for path in (self.record, self.replay, self.ground_truth)
-        )
+        return any((self.view, self.record, self.replay, self.ground_truth))
 
     def check(self) -> None:
         """Check before the run that all outputs can be written.
@@ -91,24 +95,31 @@ def check_view(address: str, token: str | None) -> None:
     """
     from importlib.util import find_spec  # here: few runs have a page
 
-    with contextlib.suppress(ModuleNotFoundError):
-        if find_spec("websockets.asyncio") is not None:
-            _check_access(address, token)
-            return
-    raise usage_error(
-        "the page needs websockets 15 or later, which is not installed",
-        "pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl",
-    )
-
-
-def _check_access(address: str, token: str | None) -> None:
-    from jacaros.inspector.live.access import SHORTEST_TOKEN, Access  # here: few runs have a page
+    try:
+        found = find_spec("websockets.asyncio")
+    except ModuleNotFoundError:
+        found = None
+    if found is None:
+        raise usage_error(
+            "the page needs websockets 15 or later, which is not installed",
+            "pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl",
+        )
+    from jacaros.inspector.live.access import SHORTEST_TOKEN, Access
 
     if Access(address, token).exposed and token is None:
         raise usage_error(
             "a view for other machines needs a token",
             f"set JACAROS_VIEW_TOKEN, or add --view-token TOKEN (at least {SHORTEST_TOKEN} characters)",
         )
+
+
+def has_display() -> bool:
+    """Return whether a user can see a browser: standard error is a terminal, on a machine with a display."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return False
+    if sys.platform.startswith("linux"):
+        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return "SSH_CONNECTION" not in os.environ
 
 
 def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
@@ -147,3 +158,18 @@ def _check_content(path: Path, kind: str) -> None:
         begins = file.read(64)
     if begins and not begins.lstrip().lower().startswith(_BEGINNINGS[kind]):
         raise usage_error(f"`{path}` exists and is not a {kind}", "name another file, or delete it")
+
+
+def write_output(path: Path, content: str | bytes, make_folder: bool = False) -> None:
+    """Write a file; with *make_folder*, create its folder if it does not exist.
+
+    Raises:
+        UsageError: it cannot be written.
+    """
+    try:
+        if make_folder:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    except OSError as error:
+        help = f"name another {'folder' if make_folder else 'file'}"
+        raise usage_error(f"cannot write `{path}`: {error.strerror}", help) from error

@@ -1,6 +1,7 @@
-"""``jacaros run FILE``."""
+"""``jacaros run FILE``, and ``jacaros demo``."""
 
 import asyncio
+import shlex
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +12,6 @@ from typing import Any
 import click
 
 from jacaros.agents.mind.mind import Mind
-from jacaros.cli.files import not_found
 from jacaros.cli.graph_options import (
     faults_option,
     graph_options,
@@ -23,10 +23,17 @@ from jacaros.cli.graph_options import (
     ros_option,
     world_option,
 )
-from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
-from jacaros.cli.usage import examples, usage_error
-from jacaros.cli.variables import VariableOption, settled, variables
-from jacaros.cli.view_options import ViewCommand, view_options
+from jacaros.cli.options import (
+    PATH,
+    VariableOption,
+    ViewCommand,
+    ground_truth_option,
+    settled,
+    variables,
+    view_options,
+)
+from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs, has_display
+from jacaros.cli.usage import examples, listed, not_found, usage_error
 from jacaros.files.texts import is_file
 from jacaros.mas.agent_host import AgentHost
 from jacaros.mas.console import StandardConsole
@@ -40,8 +47,6 @@ from jacaros.runtime.output import CLOSING, PATIENCE
 FAST_PATIENCE = 1.0
 """Seconds that a run on the virtual clock waits for a slow reader of its output; its agents miss nothing meanwhile."""
 HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
-MOST_NAMES = 8
-"""Number of waiting agents named in the note that a run has nothing left to do."""
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Suffixes of files that can be run."""
 
@@ -58,7 +63,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
         "jacaros run house.jcm --record run.jsonl",
     ),
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=PATH)
 @click.option(
     "--clock",
     cls=VariableOption,
@@ -109,7 +114,7 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @click.option(
     "--record",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
 )
@@ -123,16 +128,11 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 )
 @click.option(
     "--replay",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE.html",
     help="Write the run as a page that needs no server.",
 )
-@click.option(
-    "--ground-truth",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the ground truth of the world to FILE (JSON lines).",
-)
+@ground_truth_option
 @click.option(
     "--restrict",
     "restricted",
@@ -156,14 +156,6 @@ def command(
     orphans: str,
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
-    record: Path | None,
-    record_limit: int,
-    replay: Path | None,
-    ground_truth: Path | None,
-    view: str | None,
-    view_port: int,
-    view_address: str,
-    view_token: str | None,
     quiet: bool,
     explained: tuple[str, ...],
     **given: Any,
@@ -173,16 +165,7 @@ def command(
     The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
     """
     check_file(file)
-    outputs = Outputs(
-        record,
-        replay,
-        ground_truth,
-        view or "",
-        view_address,
-        view_port,
-        view_token,
-        record_limit * 1_000_000,
-    )
+    outputs = Outputs.taken_from(given)
     outputs.check()
     _check_events(explained)
     options = RunOptions(
@@ -309,8 +292,7 @@ def _what_waits(mas: System) -> str:
     waiting = [host.name for host in mas.directory if isinstance(host.mind, Mind) and host.mind.alive]
     if not waiting:
         return "no agent has a goal or an event"
-    names = ", ".join(waiting[:MOST_NAMES]) + (", ..." if len(waiting) > MOST_NAMES else "")
-    return f"the goals of {names} wait, and no agent can wake them"
+    return f"the goals of {listed(waiting)} wait, and no agent can wake them"
 
 
 def _close(console: StandardConsole, code: int) -> None:
@@ -337,4 +319,46 @@ def check_file(file: Path) -> None:
         return
     if file.is_dir():
         raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
-    raise not_found(file, [each for each in file.parent.glob("*.*") if each.suffix in SUFFIXES])
+    raise not_found(file, SUFFIXES)
+
+
+PROGRAM = Path(__file__).with_name("patrol.asl")
+ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4.yaml")
+"""Options of the run: the world of the program, and the mappings of its robot."""
+
+
+@click.command(
+    "demo",
+    context_settings={"ignore_unknown_options": True},
+    short_help="Show a robot on patrol.",
+    epilog=examples("jacaros demo", "jacaros demo --view=terminal", "jacaros demo --save"),
+)
+@click.option(
+    "--save", is_flag=True, help="Write the program to patrol.asl in this folder, and do not run it."
+)
+@click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[OPTIONS OF jacaros run]...")
+def demo(save: bool, options: tuple[str, ...]) -> int:
+    """Run a robot on patrol in the embedded world, and show it on a page in the browser.
+
+    Without a display, the terminal shows it. Press Ctrl+C to stop. Options of `jacaros run` work here, too, such as
+    `--view=terminal`, `--clock fast` or `--record run.jsonl`.
+    """  # fmt: skip
+    if save:
+        _save(Path(PROGRAM.name))
+        return 0
+    chosen = any(each == "--view" or each.startswith("--view=") for each in options)
+    view = () if chosen else ("--view" if has_display() else "--view=terminal",)
+    arguments = [str(PROGRAM), *ROBOT, *view, *options]
+    code: int = command.main(arguments, "jacaros demo", standalone_mode=False, obj=variables())
+    return code
+
+
+def _save(file: Path) -> None:
+    try:
+        with file.open("xb") as copy:
+            copy.write(PROGRAM.read_bytes())
+    except FileExistsError as error:
+        raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder") from error
+    except OSError as error:
+        raise usage_error(f"cannot write `{file}`: {error.strerror}", "change to another folder") from error
+    click.echo(f"wrote {file}; run it with\n  jacaros run {file} {shlex.join(ROBOT)} --view")

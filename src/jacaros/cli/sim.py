@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import faults_option, noise_option, read_remaps, ros_option, world_options
+from jacaros.cli.options import ground_truth_option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file
@@ -29,12 +30,7 @@ from jacaros.sim.description import BatterySettings, WorldDescription
 @ros_option("ROS graph to join.", required=True, but_with="only_hash")
 @world_options
 @click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds.")
-@click.option(
-    "--ground-truth",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the ground truth of the world to FILE (JSON lines).",
-)
+@ground_truth_option
 @click.option("--seed", type=int, help="Seed for the noise of the sensors.")
 @noise_option
 @faults_option
@@ -97,9 +93,8 @@ def command(
     if clock == "fast" and (ros != "memory" or seconds is None):
         raise usage_error("--clock fast needs --ros memory and --for S", "a real ROS graph runs in real time")
     if clock == "fast" and speed is not None:
-        raise usage_error(
-            "--speed needs --clock real", "--clock fast already runs as fast as the machine can"
-        )
+        help = "--clock fast already runs as fast as the machine can"
+        raise usage_error("--speed needs --clock real", help)
     time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)
     assert ros is not None  # the option requires it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import check_output
-from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.options import PATH
+from jacaros.cli.outputs import check_output, write_output
+from jacaros.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
 from jacaros.sim.description import WorldDescription, WorldError
 
@@ -55,7 +56,7 @@ def check_command(worlds: tuple[str, ...]) -> int:
 @click.argument("world")
 @click.option(
     "--output",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="Write a picture to FILE.svg or FILE.png.",
 )
@@ -106,11 +107,11 @@ def _png(svg: str) -> bytes:
     short_help="Write a new world file.",
     epilog=examples("jacaros world new world.yaml", "jacaros world new lab.yaml --map map.yaml"),
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=PATH)
 @click.option(
     "--map",
     "map_file",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="MAP",
     help="Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
 )
@@ -134,7 +135,10 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
     if map_file is not None and map_file.suffix in _IMAGES:
         described = file.with_name(f"{file.stem}_map.yaml")
         files.append(described)
-    _refuse_existing(files)
+    for path in files:
+        if path.exists():
+            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
+        _check_yaml(path)
     if map_file is not None and described is not None and described != map_file:
         _write(described, described_map(map_file, described, resolution or _RESOLUTION))
     _write(file, new_world(file.stem) if described is None else world_of_map(file, described))
@@ -146,14 +150,10 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
     epilog=examples("jacaros world export house house_map.yaml"),
 )
 @click.argument("world")
-@click.argument("file", metavar="FILE.yaml", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.yaml", type=PATH)
 def export_command(world: str, file: Path) -> None:
     """Write the map of WORLD to FILE.yaml and FILE.pgm, in the format of ROS's map_server. Doors are open in the map."""
-    if file.suffix not in (".yaml", ".yml"):
-        raise usage_error(
-            f"expected a file name with the suffix .yaml, found `{file}`",
-            f"name it {file.with_suffix('.yaml')}",
-        )
+    _check_yaml(file)
     image = file.with_suffix(".pgm")
     check_output(file, "map")
     check_output(image, "map image")
@@ -167,20 +167,17 @@ def export_command(world: str, file: Path) -> None:
 
 def _summary(world: WorldDescription) -> str:
     left, bottom, right, top = world.bounds
-    parts = [
-        _count(len(world.rooms), "room"),
-        _count(len(world.segments), "wall"),
-        _count(len(world.doors), "door"),
-        _count(len(world.docks), "dock"),
-        _count(len(world.robots), "robot"),
-    ]
+    parts = {
+        "room": world.rooms,
+        "wall": world.segments,
+        "door": world.doors,
+        "dock": world.docks,
+        "robot": world.robots,
+    }
+    listed = [counted(len(things), what) for what, things in parts.items()]
     if world.people:
-        parts.append(f"{len(world.people)} {'person' if len(world.people) == 1 else 'people'}")
-    return f"{world.name}: {right - left:g} x {top - bottom:g} m, {', '.join(parts)}"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
+        listed.append(counted(len(world.people), "person", "people"))
+    return f"{world.name}: {right - left:g} x {top - bottom:g} m, {', '.join(listed)}"
 
 
 def _draw(world: WorldDescription) -> None:
@@ -198,20 +195,14 @@ def _draw(world: WorldDescription) -> None:
     click.echo(_summary(world))
 
 
-def _refuse_existing(paths: list[Path]) -> None:
-    for path in paths:
-        if path.exists():
-            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
-        if path.suffix not in (".yaml", ".yml"):
-            raise usage_error(
-                f"expected a file name with the suffix .yaml, found `{path}`",
-                f"name it {path.with_suffix('.yaml')}",
-            )
+def _check_yaml(path: Path) -> None:
+    if path.suffix not in (".yaml", ".yml"):
+        raise usage_error(
+            f"expected a file name with the suffix .yaml, found `{path}`",
+            f"name it {path.with_suffix('.yaml')}",
+        )
 
 
 def _write(path: Path, content: str | bytes) -> None:
-    try:
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    except OSError as error:
-        raise usage_error(f"cannot write `{path}`: {error.strerror}", "name another file") from error
+    write_output(path, content)
     click.echo(f"wrote {path}")
