@@ -29,9 +29,8 @@ from jacaros.mas.python_code import PythonCode
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
-from jacaros.testing.assertions import Assertion, Probe, actions
-from jacaros.testing.recorded import Fakes
-from jacaros.testing.run import AgentTest, Outcome, Problem, Suite, with_assertions
+from jacaros.testing.assertions import Assertion, Fakes, Probe, actions
+from jacaros.testing.suites import AgentTest, Outcome, Problem, Suite, with_assertions
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
