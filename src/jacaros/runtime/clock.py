@@ -19,13 +19,14 @@ import signal
 import sys
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from concurrent.futures import Executor, Future
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from types import FrameType
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 # An alarm that interrupts the main thread in the middle of whatever Python code it executes.
 #
@@ -98,7 +99,7 @@ COMPACT_ABOVE = 100
 """Cancelled timers that a queue may hold before it looks whether they are more than half of all."""
 
 
-class QueuedTimer:
+class Timer:
     """A call at a moment.
 
     Attributes:
@@ -125,7 +126,7 @@ class QueuedTimer:
             callback()
 
 
-_Entry = tuple[float, int, QueuedTimer]
+_Entry = tuple[float, int, Timer]
 """A moment, a number that no other timer has, and the timer: tuples compare without calling Python functions."""
 
 
@@ -142,13 +143,13 @@ class TimerQueue:
     def __len__(self) -> int:
         return len(self._heap)
 
-    def add(self, when: float, callback: Callable[[], None]) -> QueuedTimer:
+    def add(self, when: float, callback: Callable[[], None]) -> Timer:
         """Set a timer."""
-        timer = QueuedTimer(when, next(self._numbers), callback, self)
+        timer = Timer(when, next(self._numbers), callback, self)
         heapq.heappush(self._heap, (when, timer.number, timer))
         return timer
 
-    def put_back(self, timer: QueuedTimer) -> None:
+    def put_back(self, timer: Timer) -> None:
         """Put back a timer that `next_due` returned and that has not rung."""
         heapq.heappush(self._heap, (timer.when, timer.number, timer))
 
@@ -159,7 +160,7 @@ class TimerQueue:
             heapq.heappop(heap)
         return heap[0][0] if heap else None
 
-    def next_due(self, moment: float) -> QueuedTimer | None:
+    def next_due(self, moment: float) -> Timer | None:
         """Remove and return the earliest timer that is due at *moment*; None if none is."""
         heap = self._heap
         while heap and heap[0][0] <= moment:
@@ -168,7 +169,7 @@ class TimerQueue:
                 return timer
         return None
 
-    def pending(self) -> Sequence[QueuedTimer]:
+    def pending(self) -> Sequence[Timer]:
         """The pending timers, in no order."""
         return [timer for _, _, timer in self._heap if timer.callback is not None]
 
@@ -190,43 +191,50 @@ real_time = time.monotonic
 T = TypeVar("T")
 
 
-class Timer(Protocol):
-    """A pending call, which can be cancelled."""
+class Clock(ABC):
+    """The one source of time for agents, artifacts and the world.
 
-    def cancel(self) -> None:
-        """Cancel the call; no effect once it has been made."""
+    Attributes:
+        virtual: whether time moves in jumps.
+        paused: whether time and timers stand still.
+    """
 
+    virtual = False
+    paused = False
 
-class Clock(Protocol):
-    """The one source of time for agents, artifacts and the world."""
+    def __init__(self) -> None:
+        self._timers = TimerQueue()
 
     @property
-    def virtual(self) -> bool:
-        """True if time moves in jumps."""
-
-    @property
+    @abstractmethod
     def elapsed(self) -> float:
         """Seconds since some moment, as `call_later` counts them; never decreases, whatever `now` does."""
 
+    @abstractmethod
     def now(self) -> float:
         """Return seconds since the Unix epoch."""
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* on the loop after *delay* seconds; calls for the same moment keep their order."""
+        return self._timers.add(self.elapsed + max(0.0, delay), callback)
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds."""
+        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        timer = self.call_later(delay, lambda: None if done.done() else done.set_result(None))
+        try:
+            await done
+        finally:
+            timer.cancel()
 
-    def busy(self, cycles: int) -> None:
+    def busy(self, cycles: int) -> None:  # noqa: B027 - other time moves anyway
         """Report that agents made *cycles* reasoning cycles without becoming idle."""
 
-    @property
-    def paused(self) -> bool:
-        """Whether the clock is paused."""
-
+    @abstractmethod
     def pause(self) -> None:
         """Stop time and timers until `resume`; no effect on a paused clock."""
 
+    @abstractmethod
     def resume(self) -> None:
         """Let time continue: pending timers ring after the rest of their delays."""
 
@@ -236,23 +244,18 @@ _OF_RUN: contextvars.ContextVar[bool] = contextvars.ContextVar("jacaros_of_run",
 
 
 @contextmanager
-def of_run() -> Iterator[None]:
+def of_run(belongs: bool = True) -> Iterator[None]:
     """Mark callbacks and tasks started inside, and those that they start, as parts of a run."""
-    token = _OF_RUN.set(True)
+    token = _OF_RUN.set(belongs)
     try:
         yield
     finally:
         _OF_RUN.reset(token)
 
 
-@contextmanager
-def outside_run() -> Iterator[None]:
+def outside_run() -> AbstractContextManager[None]:
     """Mark code started inside as independent of a run: a paused virtual clock does not hold it."""
-    token = _OF_RUN.set(False)
-    try:
-        yield
-    finally:
-        _OF_RUN.reset(token)
+    return of_run(False)
 
 
 def run_context() -> contextvars.Context:
@@ -262,7 +265,7 @@ def run_context() -> contextvars.Context:
     return context
 
 
-class WallClock:
+class WallClock(Clock):
     """The time of day; delays are measured on the monotonic clock.
 
     Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it continues from
@@ -272,16 +275,13 @@ class WallClock:
         speed: seconds of this clock per second of real time, greater than 0.
     """
 
-    virtual = False
-
     def __init__(self, speed: float = 1.0) -> None:
+        super().__init__()
         self._speed = 1.0
-        self._paused = False
         self._reached = self._began = 0.0
         """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of speed."""
         self._ahead: float | None = None
         """`now` minus `elapsed`; None while `now` is the time of day."""
-        self._timers = TimerQueue()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._alarm: asyncio.TimerHandle | None = None
         self._alarm_at = 0.0
@@ -292,7 +292,7 @@ class WallClock:
     @property
     def elapsed(self) -> float:
         """Seconds of the monotonic clock, as far as this clock followed it; it cannot be set."""
-        if self._paused:
+        if self.paused:
             return self._reached
         return self._reached + (time.monotonic() - self._began) * self._speed
 
@@ -310,33 +310,25 @@ class WallClock:
         self._speed = speed
         self._set_alarm()
 
-    @property
-    def paused(self) -> bool:
-        """Whether the clock is paused."""
-        return self._paused
-
     def pause(self) -> None:
-        """Stop time and timers until `resume`; no effect on a paused clock."""
-        if not self._paused:
+        if not self.paused:
             self._note_day()
             self.pause_timers()
 
     def pause_timers(self) -> None:
         """Stop timers until `resume`; `now` continues, as messages of real robots carry the time of day."""
-        if not self._paused:
+        if not self.paused:
             self._note_moment()
-            self._paused = True
+            self.paused = True
             self._set_alarm()
 
     def resume(self) -> None:
-        """Let time continue: pending timers ring after the rest of their delays."""
-        if self._paused:
+        if self.paused:
             self._began = time.monotonic()
-            self._paused = False
+            self.paused = False
             self._set_alarm()
 
     def now(self) -> float:
-        """Return seconds since the Unix epoch."""
         return time.time() if self._ahead is None else self._ahead + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
@@ -344,18 +336,10 @@ class WallClock:
         loop = asyncio.get_running_loop()
         if loop is not self._loop:
             self._move_to_loop(loop)
-        when = self.elapsed + max(0.0, delay)
-        timer = self._timers.add(when, callback)
-        if (self._alarm is None or when < self._alarm_at) and not self._ringing:
+        timer = super().call_later(delay, callback)
+        if (self._alarm is None or timer.when < self._alarm_at) and not self._ringing:
             self._set_alarm()
         return timer
-
-    async def sleep(self, delay: float) -> None:
-        """Wait for *delay* seconds."""
-        await _sleep(self, delay)
-
-    def busy(self, cycles: int) -> None:
-        """Do nothing: the wall clock moves anyway."""
 
     def _note_day(self) -> None:
         """From now on, `now` follows this clock instead of the time of day."""
@@ -377,7 +361,7 @@ class WallClock:
             self._alarm.cancel()
             self._alarm = None
         moment = self._timers.first_moment()
-        if moment is None or self._paused or self._loop is None or self._loop.is_closed():
+        if moment is None or self.paused or self._loop is None or self._loop.is_closed():
             return
         self._alarm_at = moment
         self._alarm = self._loop.call_later(max(0.0, moment - self.elapsed) / self._speed, self._ring)
@@ -389,7 +373,7 @@ class WallClock:
         due = deque(iter(lambda: self._timers.next_due(moment), None))
         self._ringing = True
         try:
-            while due and not self._paused:
+            while due and not self.paused:
                 due.popleft().ring()
         finally:
             self._ringing = False
@@ -398,16 +382,11 @@ class WallClock:
             self._set_alarm()
 
 
-async def _sleep(clock: Clock, delay: float) -> None:
-    done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-    timer = clock.call_later(delay, partial(_wake, done))
-    try:
-        await done
-    finally:
-        timer.cancel()
+def _ignore(*_: object) -> None:
+    """Take the place of a callback that is held, or of a loop that is not there."""
 
 
-class VirtualClock:
+class VirtualClock(Clock):
     """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all agents wait.
 
     Attributes:
@@ -416,43 +395,31 @@ class VirtualClock:
     """
 
     virtual = True
+    elapsed = 0.0
     CYCLES_PER_MILLISECOND = 10_000
     """Time moves 1 ms per this number of busy cycles, so a plan that never ends cannot freeze the world."""
 
     def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
+        super().__init__()
         self.start = start
-        self.elapsed = 0.0
-        self.paused = False
-        self._timers = TimerQueue()
         self._cycles = 0
         self._context = run_context()
-        self.when_paused: list[Callable[[bool], None]] = []
+        self.when_paused: Callable[[bool], None] = _ignore
 
     def now(self) -> float:
-        """Return seconds since the Unix epoch."""
         return self.start + self.elapsed
-
-    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
-        """Call *callback* after *delay* seconds of virtual time."""
-        return self._timers.add(self.elapsed + max(0.0, delay), callback)
-
-    async def sleep(self, delay: float) -> None:
-        """Wait for *delay* seconds of virtual time."""
-        await _sleep(self, delay)
 
     def pause(self) -> None:
         """Stop jumping, and hold the callbacks of the run, until `resume`; no effect on a paused clock."""
         if not self.paused:
             self.paused = True
-            for watcher in tuple(self.when_paused):
-                watcher(True)
+            self.when_paused(True)
 
     def resume(self) -> None:
         """Continue exactly where the clock was paused."""
         if self.paused:
             self.paused = False
-            for watcher in tuple(self.when_paused):
-                watcher(False)
+            self.when_paused(False)
 
     def busy(self, cycles: int) -> None:
         """Move 1 ms for every 10,000 cycles that agents made without becoming idle.
@@ -490,7 +457,7 @@ class VirtualClock:
         if moment > self.elapsed:
             self.elapsed = moment
 
-    def _call_soon(self, timer: QueuedTimer) -> None:
+    def _call_soon(self, timer: Timer) -> None:
         """Let the running loop ring a timer, so that its handler gets errors; without a loop, ring it now."""
         try:
             loop = asyncio.get_running_loop()
@@ -498,11 +465,6 @@ class VirtualClock:
             timer.ring()
         else:
             loop.call_soon(timer.ring, context=self._context)
-
-
-def _wake(sleeper: asyncio.Future[None]) -> None:
-    if not sleeper.done():
-        sleeper.set_result(None)
 
 
 class _VirtualSelector(selectors.DefaultSelector):
@@ -519,7 +481,7 @@ class _VirtualSelector(selectors.DefaultSelector):
         self._passed = 0
         self.ready: deque[asyncio.Handle] = deque()
         self.held: deque[asyncio.Handle] = deque()
-        clock.when_paused.append(self._hold)
+        clock.when_paused = self._hold
 
     def _hold(self, paused: bool) -> None:
         """Hold the callbacks of the run, or release them."""
@@ -532,7 +494,7 @@ class _VirtualSelector(selectors.DefaultSelector):
             if _is_of_run(handle):
                 self.held.append(handle)
                 # The loop has counted the callbacks of this pass: put something in its place.
-                self.ready[place] = asyncio.Handle(_nothing, (), asyncio.get_running_loop())
+                self.ready[place] = asyncio.Handle(_ignore, (), asyncio.get_running_loop())
 
     def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
         """Serve sockets, and callbacks that do not belong to the run."""
@@ -559,10 +521,6 @@ class _VirtualSelector(selectors.DefaultSelector):
             if timeout is None and [watcher for watcher in self.when_stuck if watcher()]:
                 return []
         return super().select(timeout)
-
-
-def _nothing() -> None:
-    """Take the place of a callback that is held."""
 
 
 def _is_of_run(handle: asyncio.Handle) -> bool:
