@@ -31,7 +31,6 @@ _COLOURS: dict[Severity, str] = {"error": "red", "warning": "yellow", "note": "c
 
 @click.command(
     "check",
-    short_help="Report problems in programs, projects and mapping files.",
     epilog=examples(
         "jacaros check robot.asl",
         "jacaros check . --strict",

@@ -24,7 +24,6 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 @click.command(
     "describe",
-    short_help="Describe an artifact type, a mapping file or a project.",
     epilog=examples(
         "jacaros describe ArtCmdVel", "jacaros describe robot.yaml", "jacaros describe house.jcm --json"
     ),

@@ -24,7 +24,6 @@ _STANDARD_INPUT = Path("-")
 
 @click.command(
     "fmt",
-    short_help="Format programs in one style.",
     epilog=examples("jacaros fmt robot.asl", "jacaros fmt . --check"),
 )
 @click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)

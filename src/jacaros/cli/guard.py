@@ -20,7 +20,6 @@ LEAST_TIMEOUT = 0.15
 
 @click.command(
     "guard",
-    short_help="Stop the robot when its agents no longer can.",
     epilog=examples("jacaros guard robot --ros ros2", "jacaros run robot.asl --ros ros2 --guard"),
 )
 @click.argument("name")

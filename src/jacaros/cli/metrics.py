@@ -13,7 +13,6 @@ from jacaros.metrics.programs import DEFAULT
 
 @click.command(
     "metrics",
-    short_help="Count identifiers, lines and compressed bytes of programs.",
     epilog=examples("jacaros metrics .", "jacaros metrics agents --baseline baseline.py --charts charts"),
 )
 @click.argument("folders", metavar="FOLDER...", type=PATH, nargs=-1, required=True)

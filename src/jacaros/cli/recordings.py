@@ -16,7 +16,6 @@ _QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
 
 @click.command(
     "view",
-    short_help="Show a recorded run on a page in the browser.",
     epilog=examples("jacaros view run.jsonl", "jacaros view run.jsonl --output run.html"),
 )
 @click.argument("run", type=PATH)
@@ -73,7 +72,6 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 @click.command(
     "why",
     context_settings=_QUESTIONS,
-    short_help="Explain why something did or did not happen in a recorded run.",
     epilog=examples("jacaros why run.jsonl stopped", "jacaros why run.jsonl '+alarm(_)' --at 12.5"),
 )
 @click.argument("run", type=PATH)
@@ -118,7 +116,6 @@ def why(
 
 @click.command(
     "replay",
-    short_help="Replay a recorded run against a changed program.",
     epilog=examples("jacaros replay run.jsonl --against robot.asl"),
 )
 @click.argument("run", type=PATH)

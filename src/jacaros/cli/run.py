@@ -54,7 +54,6 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.command(
     "run",
     cls=ViewCommand,
-    short_help="Run an agent program or a project.",
     epilog=examples(
         "jacaros run hello.asl",
         "jacaros run robot.asl --world house --view",
@@ -330,7 +329,6 @@ ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4
 @click.command(
     "demo",
     context_settings={"ignore_unknown_options": True},
-    short_help="Show a robot on patrol.",
     epilog=examples("jacaros demo", "jacaros demo --view=terminal", "jacaros demo --save"),
 )
 @click.option(

@@ -19,7 +19,6 @@ from jacaros.sim.description import BatterySettings, WorldDescription
 
 @click.command(
     "sim",
-    short_help="Run a robot world as a separate ROS node.",
     epilog=examples(
         "jacaros sim house --ros ros2",
         "jacaros sim world.yaml --ros ros2 --speed 5",

@@ -27,7 +27,6 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 
 @click.command(
     "test",
-    short_help="Run the tests of agent programs.",
     epilog=examples(
         "jacaros test",
         "jacaros test tests/test_patrol.asl -k charging -v",

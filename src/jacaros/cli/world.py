@@ -20,7 +20,7 @@ _ROWS = 48
 """Height of a picture in characters when the output is not a terminal, in lines."""
 
 
-@click.group("world", short_help="Check, show, create and export world files.")
+@click.group("world")
 def command() -> None:
     """Check, show, create and export world files.
 
