@@ -101,9 +101,8 @@ class Trial:
         self._began = self._began_run = 0.0
         self._probes: dict[str, Probe] = {}
         self._actions = actions(self._probes)
-        clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
-        clock.on_busy = self._busy
-        self._clock: Clock = clock
+        self._clock: Clock = VirtualClock() if options.fast else WallClock()
+        self._move, self._clock.busy = self._clock.busy, self._busy  # type: ignore[method-assign]
         self._mappings = tuple(dict.fromkeys((*options.mappings, *test.mappings)))
         self._mas = self._system(suite.deployment)
 
@@ -208,7 +207,8 @@ class Trial:
             self._give_up(f"the test did not end within {limit:g} s of the run's clock")
 
     def _busy(self, cycles: int) -> None:
-        """Count reasoning cycles."""
+        """Count reasoning cycles that agents report to the clock."""
+        self._move(cycles)
         self._cycles += cycles
         if self._done or not self._began:
             return
@@ -324,24 +324,6 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
         what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
         return Problem(message, (what,), place)
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
-
-
-class _Metered:
-    """A clock that reports reasoning cycles."""
-
-    on_busy: Callable[[int], None]
-
-    def busy(self, cycles: int) -> None:
-        super().busy(cycles)  # type: ignore[misc]
-        self.on_busy(cycles)
-
-
-class _MeteredVirtualClock(_Metered, VirtualClock):
-    pass
-
-
-class _MeteredWallClock(_Metered, WallClock):
-    pass
 
 
 @contextmanager
