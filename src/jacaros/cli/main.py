@@ -30,8 +30,8 @@ _LIBRARIES = ("click", "rich", "ruamel.yaml", "websockets", "numpy")
 COMMANDS = {
     "demo": ("jacaros.cli.run:demo", "Show a robot on patrol."),
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
-    "check": ("jacaros.cli.check", "Report problems in programs, projects and mapping files."),
-    "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
+    "check": ("jacaros.cli.programs:check", "Report problems in programs, projects and mapping files."),
+    "fmt": ("jacaros.cli.programs:fmt", "Format programs in one style."),
     "view": ("jacaros.cli.recordings:view", "Show a recorded run on a page in the browser."),
     "why": ("jacaros.cli.recordings:why", "Explain why something did or did not happen in a recorded run."),
     "replay": ("jacaros.cli.recordings:replay", "Replay a recorded run against a changed program."),
@@ -69,24 +69,14 @@ class Commands(click.Group):
         if args and args[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
             args = ["run", *args]
         if args and not args[0].startswith("-") and args[0] not in COMMANDS:
-            raise _unknown_command(args[0])
+            help = suggestion(args[0], COMMANDS, "`jacaros --help` lists the commands")
+            raise usage_error(f"unknown command: `{args[0]}`", help)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
-
-
-def _unknown_command(name: str) -> UsageError:
-    help = suggestion(name, COMMANDS, "`jacaros --help` lists the commands")
-    return usage_error(f"unknown command: `{name}`", help)
-
-
-def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
-    if wanted:
-        click.echo(f"jacaros {VERSION}")
-        ctx.exit()
 
 
 @click.command(
@@ -99,14 +89,7 @@ def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None
         "jacaros run --help                          list the options of a command",
     ),
 )
-@click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_print_version,
-    help="Print the version and exit.",
-)
+@click.version_option(VERSION, message="jacaros %(version)s", help="Print the version and exit.")
 def jacaros() -> None:
     """Program robots as rational agents: AgentSpeak minds, artifacts and ROS."""
 
@@ -169,10 +152,8 @@ def call(arguments: list[str] | None = None) -> int:
             click.echo(wrong.format_message())
             return 0
         return _report(in_our_form(wrong), 2, by_variable)
-    except UsageError as wrong:
-        return _report(wrong, 2, by_variable)
     except JacarosError as wrong:
-        return _report(wrong, 1, by_variable)
+        return _report(wrong, 2 if isinstance(wrong, UsageError) else 1, by_variable)
     except BrokenPipeError:
         return OUTPUT_GONE
     except Exception as defect:
@@ -186,13 +167,12 @@ def call(arguments: list[str] | None = None) -> int:
 
 def _own(arguments: list[str]) -> list[str]:
     """Replace the arguments added by ``ros2 run``, rosrun and launch files by our own options."""
-    if not any(":=" in each or each == "--ros-args" for each in arguments):
-        return arguments
-    from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
+    if any(":=" in each or each == "--ros-args" for each in arguments):
+        from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
 
-    if not has_ros_arguments(arguments):
-        return arguments
-    return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
+        if has_ros_arguments(arguments):
+            return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
+    return arguments
 
 
 def _report(error: JacarosError, code: int, by_variable: Mapping[str, str]) -> int:

@@ -18,7 +18,6 @@ _BEGINNINGS = {
     "recording": (b'{"kind": "', b"\x1f\x8b\x08", b"\x89mcap0"),
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
-    "JUnit report": (b"<?xml", b"<testsuite"),
     "picture": (b"<svg",),
     "map": (b"image:",),
     "map image": (b"p5",),
@@ -71,18 +70,16 @@ class Outputs:
                 f"--replay {self.replay.with_suffix('.html')}",
             )
         paths = {"recording": self.record, "replay page": self.replay, "ground truth": self.ground_truth}
+        files = [(path, kind, kind) for kind, path in paths.items() if path is not None]
+        if self.record is not None:  # a long one is continued in another file
+            older = self.record.parent / f"{self.record.name}.1"
+            files.insert(1, (older, "recording", "older part of the recording"))
         known: dict[Path, str] = {}
-        for kind, path in paths.items():
-            if path is None:
-                continue
-            files = {path: kind}
-            if kind == "recording":  # a long one is continued in another file
-                files[path.parent / f"{path.name}.1"] = "older part of the recording"
-            for file, what in files.items():
-                check_output(file, kind)
-                before = known.setdefault(file.resolve(), what)
-                if before != what:
-                    raise usage_error(f"`{file}` cannot be both {before} and {what}", "name two files")
+        for file, kind, what in files:
+            check_output(file, kind)
+            before = known.setdefault(file.resolve(), what)
+            if before != what:
+                raise usage_error(f"`{file}` cannot be both {before} and {what}", "name two files")
         if self.view == "page":
             check_view(self.view_address, self.view_token)
 
@@ -148,16 +145,12 @@ def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
         elif path.is_fifo() and path.resolve().exists():  # unlike a pipe of the shell, which is open: >(gzip)
             raise usage_error(f"`{path}` is a named pipe, and opening it waits for a reader", "name a file")
         elif path.is_file():
-            _check_content(path, kind)
+            with path.open("rb") as file:
+                begins = file.read(64).lstrip().lower()
+            if begins and not begins.startswith(_BEGINNINGS[kind]):
+                raise usage_error(f"`{path}` exists and is not a {kind}", "name another file, or delete it")
     except (OSError, ValueError) as error:
         raise usage_error(f"cannot write `{path}`: {error}", "name another file") from error
-
-
-def _check_content(path: Path, kind: str) -> None:
-    with path.open("rb") as file:
-        begins = file.read(64)
-    if begins and not begins.lstrip().lower().startswith(_BEGINNINGS[kind]):
-        raise usage_error(f"`{path}` exists and is not a {kind}", "name another file, or delete it")
 
 
 def write_output(path: Path, content: str | bytes, make_folder: bool = False) -> None:
