@@ -11,7 +11,7 @@ import click
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.env.manual import Manual, describe
-from jacaros.cli.options import PATH, imports_option
+from jacaros.cli.options import PATH, imports_option, option
 from jacaros.cli.usage import examples, usage_error
 from jacaros.errors import UsageError
 from jacaros.files.python_modules import UNSEEN, NotImported, ProjectModules
@@ -29,14 +29,14 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
     ),
 )
 @click.argument("what")
-@click.option(
-    "--project",
-    type=PATH,
+@option(
+    "--project FOLDER",
+    "Folder with the project's own artifact types (default: the current folder).",
+    PATH,
     default=Path(),
-    metavar="FOLDER",
-    help="Folder with the project's own artifact types (default: the current folder).",
+    show_default=False,
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@option("--json", "Print JSON.", name="as_json")
 @imports_option
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
     """Describe WHAT: an artifact type, a Python file or a mapping file with artifact types, or a project file.

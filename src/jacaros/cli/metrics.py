@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from jacaros import metrics
-from jacaros.cli.options import PATH
+from jacaros.cli.options import PATH, option
 from jacaros.cli.outputs import check_output, write_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.metrics.programs import DEFAULT
@@ -16,33 +16,20 @@ from jacaros.metrics.programs import DEFAULT
     epilog=examples("jacaros metrics .", "jacaros metrics agents --baseline baseline.py --charts charts"),
 )
 @click.argument("folders", metavar="FOLDER...", type=PATH, nargs=-1, required=True)
-@click.option(
-    "--baseline",
-    "baselines",
-    metavar="PATH",
-    type=PATH,
-    multiple=True,
-    help="Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
+@option(
+    "--baseline PATH...",
+    "Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
+    PATH,
+    name="baselines",
 )
-@click.option(
-    "--library",
-    "libraries",
-    metavar="PACKAGE",
-    multiple=True,
-    help="Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
+@option(
+    "--library PACKAGE...",
+    "Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
+    name="libraries",
 )
-@click.option(
-    "--format",
-    "style",
-    type=click.Choice(["text", "markdown", "csv"]),
-    default="text",
-    show_default=True,
-    help="Output format.",
-)
-@click.option("--files", is_flag=True, help="List every counted file.")
-@click.option(
-    "--charts", metavar="FOLDER", type=PATH, help="Write a bar chart of each measure to FOLDER, as SVG."
-)
+@option("--format", "Output format.", click.Choice(["text", "markdown", "csv"]), name="style", default="text")
+@option("--files", "List every counted file.")
+@option("--charts FOLDER", "Write a bar chart of each measure to FOLDER, as SVG.", PATH)
 def command(
     folders: tuple[Path, ...],
     baselines: tuple[Path, ...],

@@ -20,35 +20,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 PATH = click.Path(path_type=Path)
 
-imports_option = click.option(
-    "--import",
-    "imports",
-    is_flag=True,
-    help="Run the Python files of the project to find all their declarations (default: read them only).",
-)
-ground_truth_option = click.option(
-    "--ground-truth",
-    type=PATH,
-    metavar="FILE",
-    help="Write the ground truth of the world to FILE (JSON lines).",
-)
-
-
-def with_options(*options: Callable[[F], F]) -> Callable[[F], F]:
-    """Return a decorator that adds the options to a command, in this order."""
-
-    def add(command: F) -> F:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return add
-
-
-def json_option(what: str = "") -> Callable[[F], F]:
-    """Return the option ``--json``; *what* is printed, such as ``the answer as``."""
-    return click.option("--json", "as_json", is_flag=True, help=f"Print {what}JSON.")
-
 
 class VariableOption(click.Option):
     """An option with an environment variable, of which messages about its value remind.
@@ -68,6 +39,61 @@ def variables(context: click.Context | None = None) -> dict[str, str]:
     """Return the variables that have set options of this call, by option, such as ``--world``."""
     found: dict[str, str] = (context or click.get_current_context()).ensure_object(dict)
     return found
+
+
+def option(
+    declared: str, help: str, type: Any = None, name: str | None = None, **settings: Any
+) -> Callable[[F], F]:
+    """Return an option, declared as help texts show it.
+
+    Its default is shown, and it may have an environment variable (`VariableOption`).
+
+    Args:
+        declared: ``--strict`` is a flag, ``--record FILE`` has a value, and ``--mapping FILE...`` can be repeated.
+        help: its line in help texts.
+        type: type of the value; None for a text, or that of the default.
+        name: name of the parameter; None for that of the option.
+        settings: for `click.option`.
+    """
+    *flags, last = declared.split()
+    metavar = None if last.startswith("-") else last.removesuffix("...")
+    flags += [last] if metavar is None else []
+    if metavar is None and type is None and "/" not in last:
+        settings["is_flag"] = True
+    elif last.endswith("..."):
+        settings["multiple"] = True
+    if "envvar" in settings:
+        settings |= {"cls": VariableOption, "show_envvar": True}
+    if "default" in settings:
+        settings.setdefault("show_default", True)
+    names = flags if name is None else [*flags, name]
+    return click.option(*names, help=help, type=type, metavar=metavar, **settings)
+
+
+imports_option = option(
+    "--import",
+    "Run the Python files of the project to find all their declarations (default: read them only).",
+    name="imports",
+)
+ground_truth_option = option(
+    "--ground-truth FILE", "Write the ground truth of the world to FILE (JSON lines).", PATH
+)
+
+
+def with_options(*options: Callable[[F], F]) -> Callable[[F], F]:
+    """Return a decorator that adds the options to a command, in this order."""
+
+    def add(command: F) -> F:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+def json_option(what: str = "") -> Callable[[F], F]:
+    """Return the option ``--json``; *what* is printed, such as ``the answer as``."""
+    return option("--json", f"Print {what}JSON.", name="as_json")
 
 
 def settled(
@@ -109,38 +135,32 @@ def settled(
 
 
 place_options = with_options(
-    click.option(
-        "--view-port",
-        type=click.IntRange(0, 65535),
+    option(
+        "--view-port PORT",
+        "Port of the page (default: a free one).",
+        click.IntRange(0, 65535),
         default=0,
-        metavar="PORT",
-        help="Port of the page (default: a free one).",
+        show_default=False,
     ),
-    click.option(
-        "--view-address",
-        default=LOOPBACK,
-        metavar="ADDRESS",
-        show_default=True,
-        help="Address of this machine to serve the page at. Any other than the default lets other machines see and command "
+    option(
+        "--view-address ADDRESS",
+        "Address of this machine to serve the page at. Any other than the default lets other machines see and command "
         "the run, and needs a token.",
+        default=LOOPBACK,
     ),
-    click.option(
-        "--view-token",
-        cls=VariableOption,
-        metavar="TOKEN",
+    option(
+        "--view-token TOKEN",
+        "Token in the address of the page, at least 16 characters (default: random).",
         envvar="JACAROS_VIEW_TOKEN",
-        show_envvar=True,
-        help="Token in the address of the page, at least 16 characters (default: random).",
     ),
 )
 """Add the options that say where to serve a page."""
 
 view_options = with_options(
-    click.option(
-        "--view",
-        type=click.Choice(["page", "terminal"]),
-        metavar="[=terminal]",
-        help="Show the run on a page in the browser (`--view`) or in the terminal (`--view=terminal`).",
+    option(
+        "--view [=terminal]",
+        "Show the run on a page in the browser (`--view`) or in the terminal (`--view=terminal`).",
+        click.Choice(["page", "terminal"]),
     ),
     place_options,
 )

@@ -17,7 +17,7 @@ import click
 from jacaros.agents.language.diagnostics import LEVELS, AslError, Diagnostic, Severity, Span, bounded
 from jacaros.agents.language.formatting import format_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.cli.options import PATH, imports_option
+from jacaros.cli.options import PATH, imports_option, option
 from jacaros.cli.usage import counted, examples, existing, listed, no_programs, usage_error
 from jacaros.errors import InternalError
 from jacaros.files import texts
@@ -45,27 +45,19 @@ _STANDARD_INPUT = Path("-")
     ),
 )
 @click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)
-@click.option(
+@option(
     "--format",
-    "style",
-    type=click.Choice(["text", "json", "sarif"]),
+    "Output format: text, json, or sarif (SARIF 2.1.0, for editors and code hosts).",
+    click.Choice(["text", "json", "sarif"]),
+    name="style",
     default="text",
-    show_default=True,
-    help="Output format: text, json, or sarif (SARIF 2.1.0, for editors and code hosts).",
 )
-@click.option("--strict", is_flag=True, help="Exit with status 1 on warnings, too.")
-@click.option(
-    "--ignore",
-    metavar="CODE",
-    multiple=True,
-    help="Do not report warnings of this kind. Repeatable.",
-)
-@click.option(
-    "--mapping",
-    "mappings",
-    metavar="FILE",
-    multiple=True,
-    help="Also check that programs use only what this mapping file provides. Repeatable.",
+@option("--strict", "Exit with status 1 on warnings, too.")
+@option("--ignore CODE...", "Do not report warnings of this kind. Repeatable.")
+@option(
+    "--mapping FILE...",
+    "Also check that programs use only what this mapping file provides. Repeatable.",
+    name="mappings",
 )
 @imports_option
 def check(
@@ -224,13 +216,10 @@ def _location(span: Span) -> Object:
     epilog=examples("jacaros fmt robot.asl", "jacaros fmt . --check"),
 )
 @click.argument("files", metavar="FILE...", type=PATH, nargs=-1, required=True)
-@click.option(
-    "--check",
-    "only_check",
-    is_flag=True,
-    help="Write nothing; print the changes, and exit with status 1 if there are any.",
+@option(
+    "--check", "Write nothing; print the changes, and exit with status 1 if there are any.", name="only_check"
 )
-@click.option("--diff", "only_show", is_flag=True, help="Write nothing; print the changes.")
+@option("--diff", "Write nothing; print the changes.", name="only_show")
 def fmt(files: tuple[Path, ...], only_check: bool, only_show: bool) -> int:
     """Format each FILE in one style: an agent program (.asl), or all programs in a folder. `-` formats the standard
     input to the standard output.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.options import PATH, place_options
+from jacaros.cli.options import PATH, option, place_options
 from jacaros.cli.outputs import check_output, check_view
 from jacaros.cli.usage import examples, existing, read_recording, usage_error
 
@@ -19,12 +19,7 @@ _QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
     epilog=examples("jacaros view run.jsonl", "jacaros view run.jsonl --output run.html"),
 )
 @click.argument("run", type=PATH)
-@click.option(
-    "--output",
-    type=PATH,
-    metavar="FILE.html",
-    help="Write the page to a file that needs no server, and exit.",
-)
+@option("--output FILE.html", "Write the page to a file that needs no server, and exit.", PATH)
 @place_options
 def view(run: Path, output: Path | None, view_port: int, view_address: str, view_token: str | None) -> None:
     """Show RUN, a recording (`jacaros run FILE --record RUN`), on the same page as a live run, until you press Ctrl+C.
@@ -76,15 +71,14 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 )
 @click.argument("run", type=PATH)
 @click.argument("question", nargs=-1, required=True)
-@click.option(
-    "--at",
-    type=float,
-    metavar="T",
-    help="Answer for time T, in seconds since the start of the run (default: the end of the recording).",
+@option(
+    "--at T",
+    "Answer for time T, in seconds since the start of the run (default: the end of the recording).",
+    float,
 )
-@click.option("--agent", default="", metavar="A", help="Consider only this agent.")
-@click.option("--robot", default="", metavar="R", help="Consider only this robot.")
-@click.option("--json", "as_json", is_flag=True, help="Print the answer as JSON.")
+@option("--agent A", "Consider only this agent.", default="", show_default=False)
+@option("--robot R", "Consider only this robot.", default="", show_default=False)
+@option("--json", "Print the answer as JSON.", name="as_json")
 def why(
     run: Path, question: tuple[str, ...], at: float | None, agent: str, robot: str, as_json: bool
 ) -> None:
@@ -119,20 +113,14 @@ def why(
     epilog=examples("jacaros replay run.jsonl --against robot.asl"),
 )
 @click.argument("run", type=PATH)
-@click.option(
-    "--against",
-    type=PATH,
-    required=True,
-    metavar="FILE.asl",
-    help="The changed program.",
-)
-@click.option(
-    "--agent",
+@option("--against FILE.asl", "The changed program.", PATH, required=True)
+@option(
+    "--agent A",
+    "Agent whose percepts and messages FILE.asl receives (default: the only one).",
     default="",
-    metavar="A",
-    help="Agent whose percepts and messages FILE.asl receives (default: the only one).",
+    show_default=False,
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
+@option("--json", "Print the comparison as JSON.", name="as_json")
 def replay(run: Path, against: Path, agent: str, as_json: bool) -> int:
     """Run FILE.asl with the percepts and messages that an agent received in RUN, and report each different decision.
 

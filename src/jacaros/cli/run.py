@@ -25,9 +25,9 @@ from jacaros.cli.graph_options import (
 )
 from jacaros.cli.options import (
     PATH,
-    VariableOption,
     ViewCommand,
     ground_truth_option,
+    option,
     settled,
     variables,
     view_options,
@@ -63,91 +63,72 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
     ),
 )
 @click.argument("file", type=PATH)
-@click.option(
+@option(
     "--clock",
-    cls=VariableOption,
-    type=click.Choice(["real", "fast", "ros"]),
+    "Clock to run on: real (default), fast (virtual time; with --ros memory only) or ros (follow /clock).",
+    click.Choice(["real", "fast", "ros"]),
     envvar="JACAROS_CLOCK",
-    show_envvar=True,
-    help="Clock to run on: real (default), fast (virtual time; with --ros memory only) or ros (follow /clock).",
 )
-@click.option(
-    "--seed", type=int, help="Seed for random numbers. With --clock fast, the whole run is reproducible."
-)
+@option("--seed", "Seed for random numbers. With --clock fast, the whole run is reproducible.", int)
 @ros_option("ROS graph to join: memory (in-process), or a real one.")
 @world_option("World file, or the name of a shipped world; `none` for a graph without robots.")
 @noise_option
 @faults_option
-@click.option(
-    "--mapping",
-    "mappings",
-    metavar="FILE",
-    multiple=True,
-    help="Mapping file of a robot; a program without a project file focuses its artifacts. Repeatable.",
+@option(
+    "--mapping FILE...",
+    "Mapping file of a robot; a program without a project file focuses its artifacts. Repeatable.",
+    name="mappings",
 )
-@click.option("--until-idle", is_flag=True, help="Exit once all agents are idle.")
-@click.option(
+@option("--until-idle", "Exit once all agents are idle.")
+@option(
     "--fail-on-lost-goal",
-    is_flag=True,
-    help="Exit with code 1 if a goal failed that no plan handled, or an exception ended an agent in Python.",
+    "Exit with code 1 if a goal failed that no plan handled, or an exception ended an agent in Python.",
 )
-@click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds of the run's clock.")
-@click.option(
+@option("--for S", "Exit after S seconds of the run's clock.", float, name="seconds")
+@option(
     "--guard",
-    is_flag=True,
-    help="Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only), or use "
+    "Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only), or use "
     "a running `jacaros guard` for this node; also publish a heartbeat for a guard on the robot's computer.",
 )
 @graph_options
 @orphans_option
 @parameter_options
-@click.option(
+@option(
     "--rosout/--no-rosout",
+    "Also publish the output of agents, and warnings, on /rosout (default: on real graphs).",
     default=None,
-    help="Also publish the output of agents, and warnings, on /rosout (default: on real graphs).",
 )
-@click.option(
+@option(
     "--diagnostics/--no-diagnostics",
+    "Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
     default=None,
-    help="Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
 )
-@click.option(
-    "--record",
-    type=PATH,
-    metavar="FILE",
-    help="Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
+@option(
+    "--record FILE",
+    "Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
+    PATH,
 )
-@click.option(
-    "--record-limit",
-    type=click.IntRange(1),
+@option(
+    "--record-limit MB",
+    "Size limit of the recording, in megabytes; the older half is in FILE.1.",
+    click.IntRange(1),
     default=RECORD_LIMIT,
-    metavar="MB",
-    show_default=True,
-    help="Size limit of the recording, in megabytes; the older half is in FILE.1.",
 )
-@click.option(
-    "--replay",
-    type=PATH,
-    metavar="FILE.html",
-    help="Write the run as a page that needs no server.",
-)
+@option("--replay FILE.html", "Write the run as a page that needs no server.", PATH)
 @ground_truth_option
-@click.option(
+@option(
     "--restrict",
-    "restricted",
-    is_flag=True,
-    help="Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
+    "Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
     ".create_agent with a program) and to create Python objects (cartago.*): such a step fails.",
+    name="restricted",
 )
-@click.option(
-    "--explain",
-    "explained",
-    metavar="EVENT",
-    multiple=True,
-    help="Log how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. Repeatable.",
+@option(
+    "--explain EVENT...",
+    "Log how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. Repeatable.",
+    name="explained",
 )
 @view_options
-@click.option("--quiet", is_flag=True, help="Print only warnings and errors.")
+@option("--quiet", "Print only warnings and errors.")
 def command(
     file: Path,
     clock: str | None,
@@ -331,9 +312,7 @@ ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4
     context_settings={"ignore_unknown_options": True},
     epilog=examples("jacaros demo", "jacaros demo --view=terminal", "jacaros demo --save"),
 )
-@click.option(
-    "--save", is_flag=True, help="Write the program to patrol.asl in this folder, and do not run it."
-)
+@option("--save", "Write the program to patrol.asl in this folder, and do not run it.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[OPTIONS OF jacaros run]...")
 def demo(save: bool, options: tuple[str, ...]) -> int:
     """Run a robot on patrol in the embedded world, and show it on a page in the browser.

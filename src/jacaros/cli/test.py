@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from jacaros.cli.graph_options import noise_option
-from jacaros.cli.options import PATH
+from jacaros.cli.options import PATH, option
 from jacaros.cli.usage import counted, examples, listed, usage_error
 from jacaros.files.texts import visible
 from jacaros.runtime.output import beneath
@@ -33,71 +33,45 @@ _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
     ),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[FILE|FOLDER]...")
-@click.option(
-    "-k",
-    "pattern",
-    metavar="PATTERN",
-    help="Run only tests whose FILE::NAME contains PATTERN; * matches anything.",
-)
-@click.option("-x", "first", is_flag=True, help="Stop after the first failed test.")
-@click.option(
-    "--timeout",
-    type=click.FloatRange(0.0, min_open=True),
+@option("-k PATTERN", "Run only tests whose FILE::NAME contains PATTERN; * matches anything.", name="pattern")
+@option("-x", "Stop after the first failed test.", name="first")
+@option(
+    "--timeout S",
+    "Time limit for each test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
+    click.FloatRange(0.0, min_open=True),
     default=60.0,
-    show_default=True,
-    metavar="S",
-    help="Time limit for each test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
 )
-@click.option(
-    "--cycles",
-    type=click.IntRange(1),
-    default=1_000_000,
-    show_default=True,
-    metavar="N",
-    help="Limit on the reasoning cycles of each test.",
-)
-@click.option(
-    "--patience",
-    type=click.FloatRange(0.0),
+@option("--cycles N", "Limit on the reasoning cycles of each test.", click.IntRange(1), default=1_000_000)
+@option(
+    "--patience S",
+    "Limit on the real time of each test, in seconds; 0 for no limit.",
+    click.FloatRange(0.0),
     default=300.0,
-    show_default=True,
-    metavar="S",
-    help="Limit on the real time of each test, in seconds; 0 for no limit.",
 )
-@click.option(
+@option(
     "--clock",
-    type=click.Choice(["real", "fast"]),
+    "Clock to run on: real, or fast (virtual time).",
+    click.Choice(["real", "fast"]),
     default="fast",
-    show_default=True,
-    help="Clock to run on: real, or fast (virtual time).",
 )
-@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Seed for random numbers.")
-@click.option(
-    "--world",
-    metavar="FILE",
-    help="World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
+@option("--seed N", "Seed for random numbers.", int, default=0)
+@option(
+    "--world FILE",
+    "World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
 )
 @noise_option
-@click.option(
-    "--mapping",
-    "mappings",
-    multiple=True,
-    metavar="FILE",
-    help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
+@option(
+    "--mapping FILE...",
+    "Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
+    name="mappings",
 )
-@click.option(
+@option(
     "--color",
-    type=click.Choice(["auto", "always", "never"]),
+    "Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
+    click.Choice(["auto", "always", "never"]),
     default="auto",
-    show_default=True,
-    help="Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
 )
-@click.option(
-    "-v",
-    "--verbose",
-    is_flag=True,
-    help="Also show the time of each test and the output of passed tests.",
-)
+@option("-v --verbose", "Also show the time of each test and the output of passed tests.")
 def command(
     paths: tuple[Path, ...],
     pattern: str | None,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.options import PATH
+from jacaros.cli.options import PATH, option
 from jacaros.cli.outputs import check_output, write_output
 from jacaros.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
@@ -54,19 +54,8 @@ def check_command(worlds: tuple[str, ...]) -> int:
     epilog=examples("jacaros world show house", "jacaros world show world.yaml --output world.svg"),
 )
 @click.argument("world")
-@click.option(
-    "--output",
-    type=PATH,
-    metavar="FILE",
-    help="Write a picture to FILE.svg or FILE.png.",
-)
-@click.option(
-    "--width",
-    type=click.IntRange(100, 10_000),
-    default=_WIDTH,
-    show_default=True,
-    help="Width of the picture, in pixels.",
-)
+@option("--output FILE", "Write a picture to FILE.svg or FILE.png.", PATH)
+@option("--width", "Width of the picture, in pixels.", click.IntRange(100, 10_000), default=_WIDTH)
 def show_command(world: str, output: Path | None, width: int) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
     from jacaros.sim.files.world import load_world
@@ -108,18 +97,16 @@ def _png(svg: str) -> bytes:
     epilog=examples("jacaros world new world.yaml", "jacaros world new lab.yaml --map map.yaml"),
 )
 @click.argument("file", type=PATH)
-@click.option(
-    "--map",
-    "map_file",
-    type=PATH,
-    metavar="MAP",
-    help="Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
+@option(
+    "--map MAP",
+    "Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
+    PATH,
+    name="map_file",
 )
-@click.option(
-    "--resolution",
-    type=click.FloatRange(0.001, 10.0),
-    metavar="M",
-    help="Resolution of the image, in metres per pixel (default: 0.05).",
+@option(
+    "--resolution M",
+    "Resolution of the image, in metres per pixel (default: 0.05).",
+    click.FloatRange(0.001, 10.0),
 )
 def new_command(file: Path, map_file: Path | None, resolution: float | None) -> None:
     """Write FILE, a commented world file to start from, with two rooms or the walls of a map.
