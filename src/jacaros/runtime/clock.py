@@ -13,7 +13,7 @@ import _thread
 import asyncio
 import contextvars
 import heapq
-import itertools
+import math
 import selectors
 import signal
 import sys
@@ -22,7 +22,7 @@ import time
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterator, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Future
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from types import FrameType
@@ -106,10 +106,10 @@ class Timer:
         when: the moment, in seconds of the clock.
     """
 
-    __slots__ = ("_queue", "callback", "number", "when")
+    __slots__ = ("_queue", "callback", "when")
 
-    def __init__(self, when: float, number: int, callback: Callable[[], None], queue: "TimerQueue") -> None:
-        self.when, self.number = when, number
+    def __init__(self, when: float, callback: Callable[[], None], queue: "TimerQueue") -> None:
+        self.when = when
         self.callback: Callable[[], None] | None = callback
         self._queue = queue
 
@@ -131,27 +131,27 @@ _Entry = tuple[float, int, Timer]
 
 
 class TimerQueue:
-    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set."""
+    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set.
 
-    __slots__ = ("_cancelled", "_heap", "_numbers")
+    Attributes:
+        newest: number of the timer that was set last.
+    """
+
+    __slots__ = ("_cancelled", "_heap", "newest")
 
     def __init__(self) -> None:
         self._heap: list[_Entry] = []
-        self._numbers = itertools.count()
-        self._cancelled = 0
+        self.newest = self._cancelled = 0
 
     def __len__(self) -> int:
         return len(self._heap)
 
     def add(self, when: float, callback: Callable[[], None]) -> Timer:
         """Set a timer."""
-        timer = Timer(when, next(self._numbers), callback, self)
-        heapq.heappush(self._heap, (when, timer.number, timer))
+        self.newest += 1
+        timer = Timer(when, callback, self)
+        heapq.heappush(self._heap, (when, self.newest, timer))
         return timer
-
-    def put_back(self, timer: Timer) -> None:
-        """Put back a timer that `next_due` returned and that has not rung."""
-        heapq.heappush(self._heap, (timer.when, timer.number, timer))
 
     def first_moment(self) -> float | None:
         """The moment of the earliest timer; None without one."""
@@ -160,10 +160,10 @@ class TimerQueue:
             heapq.heappop(heap)
         return heap[0][0] if heap else None
 
-    def next_due(self, moment: float) -> Timer | None:
-        """Remove and return the earliest timer that is due at *moment*; None if none is."""
+    def next_due(self, moment: float, newest: float = math.inf) -> Timer | None:
+        """Remove and return the earliest timer that is due at *moment*; None if none is, or if it is newer."""
         heap = self._heap
-        while heap and heap[0][0] <= moment:
+        while heap and heap[0][0] <= moment and heap[0][1] <= newest:
             timer = heapq.heappop(heap)[2]
             if timer.callback is not None:
                 return timer
@@ -370,15 +370,13 @@ class WallClock(Clock):
         """Ring the timers that are due; those that they set ring in a later pass of the loop."""
         self._alarm = None
         moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
-        due = deque(iter(lambda: self._timers.next_due(moment), None))
+        newest = self._timers.newest
         self._ringing = True
         try:
-            while due and not self.paused:
-                due.popleft().ring()
+            while not self.paused and (timer := self._timers.next_due(moment, newest)) is not None:
+                timer.ring()
         finally:
             self._ringing = False
-            for timer in due:
-                self._timers.put_back(timer)
             self._set_alarm()
 
 
@@ -528,20 +526,6 @@ def _is_of_run(handle: asyncio.Handle) -> bool:
     return context.get(_OF_RUN, False)
 
 
-class _DaemonThreads(Executor):
-    """Runs each piece of work in a daemon thread.
-
-    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
-    """
-
-    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        """Call *fn* in a thread of its own."""
-        done: Future[T] = Future()
-        work = partial(fn, *args, **kwargs)
-        threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
-        return done
-
-
 def _work(work: Callable[[], T], done: Future[T]) -> None:
     """Deliver what *work* returns or raises to its future, which may have been cancelled."""
     if not done.set_running_or_notify_cancel():
@@ -556,9 +540,14 @@ def _work(work: Callable[[], T], done: Future[T]) -> None:
         done.set_result(result)
 
 
-def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
-    """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result."""
-    return asyncio.wrap_future(_DaemonThreads().submit(work))
+def start_thread(work: Callable[[], T], loop: asyncio.AbstractEventLoop | None = None) -> asyncio.Future[T]:
+    """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result.
+
+    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
+    """
+    done: Future[T] = Future()
+    threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
+    return asyncio.wrap_future(done, loop=loop)
 
 
 class _Loop(asyncio.BaseEventLoop):
@@ -568,7 +557,9 @@ class _Loop(asyncio.BaseEventLoop):
         self, executor: Any, func: Any, *args: Any
     ) -> Any:
         """Run *func* in a thread of *executor*, or in a daemon thread if that is None."""
-        return super().run_in_executor(executor or _DaemonThreads(), func, *args)
+        if executor is None:
+            return start_thread(partial(func, *args), self)
+        return super().run_in_executor(executor, func, *args)
 
 
 class VirtualEventLoop(_Loop, asyncio.SelectorEventLoop):
