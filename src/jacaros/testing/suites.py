@@ -15,7 +15,7 @@ cannot be read is a test file, too.
 
 import os
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -86,7 +86,7 @@ class Suite:
 
 def with_assertions(program: nodes.Program) -> nodes.Program:
     """Return a program prepared for tests: with all assertion goals, without the initial goal of Jason's test harness."""
-    labels = {plan.label.functor for plan in program.plans if isinstance(plan.label, nodes.Literal)}
+    labels = set(map(_label, program.plans)) - {None}
     added = tuple(plan for plan in _library() if _label(plan) not in labels)
     goals = tuple(goal for goal in program.goals if goal.functor != _HARNESS_GOAL)
     return replace(program, goals=goals, plans=(*program.plans, *added))
@@ -109,9 +109,9 @@ def collect(paths: Sequence[Path]) -> list[Suite]:
     """
     found: dict[Path, Suite] = {}
     for path in paths:
-        for suite in _in_folder(path) if path.is_dir() else _of_file(path):
+        for suite in _in_folder(path) if path.is_dir() else [_of_file(path)]:
             found.setdefault(suite.path.resolve(), suite)
-    _without_repetitions(list(found.values()))
+    _without_repetitions(found.values())
     return list(found.values())
 
 
@@ -140,25 +140,24 @@ def suite_of(path: Path) -> Suite:
 
 def is_test_file(path: Path) -> bool:
     """Return whether a program or project in a folder is a test file; see the module docstring."""
+    named = bool(_NAMED_TEST.fullmatch(path.stem))
     if path.suffix in PROJECTS:
-        return bool(_NAMED_TEST.fullmatch(path.stem))
+        return named
     if path.suffix != ".asl":
         return False
     try:
         text = file_text(path)
     except (OSError, UnicodeError):
-        return bool(_NAMED_TEST.fullmatch(path.stem))
-    if _LABELLED.search(_COMMENT.sub("", text)):
-        return True
-    return bool(_NAMED_TEST.fullmatch(path.stem)) and suite_of(path).error is not None
+        return named
+    return bool(_LABELLED.search(_COMMENT.sub("", text))) or (named and suite_of(path).error is not None)
 
 
-def _in_folder(folder: Path) -> Iterator[Suite]:
-    projects: list[Path] = []
-    programs: list[Path] = []
-    for file in _files(folder):
-        (projects if file.suffix in PROJECTS else programs).append(file)
-    suites = [suite_of(file) for file in projects]
+def _in_folder(folder: Path) -> list[Suite]:
+    files: list[Path] = []
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        files += filter(is_test_file, (Path(place) / name for name in sorted(names)))
+    suites = [suite_of(file) for file in files if file.suffix in PROJECTS]
     # Programs that a test project runs are not run again as single programs.
     run = {
         spec.source_path.resolve()
@@ -166,40 +165,29 @@ def _in_folder(folder: Path) -> Iterator[Suite]:
         if suite.deployment is not None
         for spec in suite.deployment.agents
     }
-    suites += [suite_of(file) for file in programs if file.resolve() not in run]
-    yield from sorted(suites, key=lambda suite: suite.path)
+    suites += [suite_of(file) for file in files if file.suffix == ".asl" and file.resolve() not in run]
+    return sorted(suites, key=lambda suite: suite.path)
 
 
-def _files(folder: Path) -> Iterator[Path]:
-    for place, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
-        for name in sorted(names):
-            file = Path(place) / name
-            if file.suffix in (".asl", *PROJECTS) and is_test_file(file):
-                yield file
-
-
-def _of_file(path: Path) -> Iterator[Suite]:
+def _of_file(path: Path) -> Suite:
     if path.suffix not in (".asl", *PROJECTS):
-        raise UsageError(
-            f"error: unsupported file type: `{path}`\n{help_line('expected .asl, .mas2j, .jcm or a folder')}"
-        )
+        help = help_line("expected .asl, .mas2j, .jcm or a folder")
+        raise UsageError(f"error: unsupported file type: `{path}`\n{help}")
     if not is_file(path):
         raise UsageError(f"error: file not found: `{path}`")
-    yield suite_of(path)
+    return suite_of(path)
 
 
-def _without_repetitions(suites: list[Suite]) -> None:
+def _without_repetitions(suites: Iterable[Suite]) -> None:
     """Drop tests from included files that are suites themselves."""
-    own = {suite.path.resolve() for suite in suites if suite.path.suffix == ".asl"}
-    for suite in suites:
-        if suite.path.suffix == ".asl":
-            others = own - {suite.path.resolve()}
-            suite.tests = [test for test in suite.tests if _file_of(test) not in others]
-
-
-def _file_of(test: AgentTest) -> Path | None:
-    return Path(test.span.file.name).resolve() if test.span is not None else None
+    programs = {suite.path.resolve(): suite for suite in suites if suite.path.suffix == ".asl"}
+    for path, suite in programs.items():
+        others = programs.keys() - {path}
+        suite.tests = [
+            each
+            for each in suite.tests
+            if each.span is None or Path(each.span.file.name).resolve() not in others
+        ]
 
 
 # programs
@@ -245,8 +233,10 @@ def _tests(agent: str, program: nodes.Program, problems: list[Diagnostic]) -> It
                 continue
             message = f"unreachable test: an earlier plan for !{signature} is always applicable"
             problems.append(Diagnostic("warning", message, plan.span, "give the test a different goal"))
+        label = _label(plan)
+        name = goal.functor if label is None or label.startswith("p__") else label
         mappings = tuple(_mappings(plan, problems))
-        yield AgentTest(_name(plan, goal), agent, goal, plan.span, _timeout(plan), mappings)
+        yield AgentTest(name, agent, goal, plan.span, _timeout(plan), mappings)
 
 
 def _marks(plan: nodes.Plan, functor: str) -> list[nodes.Literal]:
@@ -267,10 +257,8 @@ def _mappings(plan: nodes.Plan, problems: list[Diagnostic]) -> Iterator[str]:
     for mark in _marks(plan, "mapping"):
         for argument in mark.arguments or (None,):
             if not isinstance(argument, nodes.String):
-                message = "mapping(...) expects a file name"
-                problems.append(
-                    Diagnostic("error", message, plan.span, 'as in @name[test, mapping("robot.yaml")]')
-                )
+                help = 'as in @name[test, mapping("robot.yaml")]'
+                problems.append(Diagnostic("error", "mapping(...) expects a file name", plan.span, help))
                 continue
             beside = Path(plan.span.file.name).parent / argument.value if plan.span is not None else None
             yield str(beside) if beside is not None and is_file(beside) else argument.value
@@ -278,11 +266,6 @@ def _mappings(plan: nodes.Plan, problems: list[Diagnostic]) -> Iterator[str]:
 
 def _label(plan: nodes.Plan) -> str | None:
     return plan.label.functor if isinstance(plan.label, nodes.Literal) else None
-
-
-def _name(plan: nodes.Plan, goal: nodes.Literal) -> str:
-    label = _label(plan)
-    return goal.functor if label is None or label.startswith("p__") else label
 
 
 def _signature(goal: nodes.Literal) -> str:
@@ -322,11 +305,11 @@ class Problem:
 
     def lines(self) -> list[str]:
         """Return the problem as text: place and message, source line, details."""
-        place = (
-            f"{self.span.file.name}:{self.span.line}:{self.span.column}: " if self.span is not None else ""
-        )
-        shown = excerpt(self.span) if self.span is not None else []
-        return [f"{place}{self.message}", *shown, *(f"  {detail}" for detail in self.details)]
+        details = [f"  {detail}" for detail in self.details]
+        if self.span is None:
+            return [self.message, *details]
+        place = f"{self.span.file.name}:{self.span.line}:{self.span.column}"
+        return [f"{place}: {self.message}", *excerpt(self.span), *details]
 
 
 @dataclass(slots=True)

@@ -69,17 +69,12 @@ def run_suite(
     """
     options = options or TrialOptions()
     options.check()
-    if suite.error is None:
-        for test in suite.tests:
-            if chosen(test):
-                yield _outcome(suite, test, options)
-
-
-def _outcome(suite: Suite, test: AgentTest, options: TrialOptions) -> Outcome:
-    try:
-        return Trial(suite, test, options).run()
-    except ProjectError as wrong:
-        return Outcome(test, [Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)])
+    for test in filter(chosen, suite.tests if suite.error is None else ()):
+        try:
+            yield Trial(suite, test, options).run()
+        except ProjectError as wrong:
+            problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)
+            yield Outcome(test, [problem])
 
 
 class TookTooLong(BaseException):
@@ -156,9 +151,8 @@ class Trial:
         self._clock.call_later(limit, lambda: self._timed_out(limit))
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
-            self._fail(
-                Problem(f"the test was not started: agent {test.agent} no longer exists", (), test.span)
-            )
+            message = f"the test was not started: agent {test.agent} no longer exists"
+            self._fail(Problem(message, (), test.span))
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
@@ -216,9 +210,8 @@ class Trial:
             if self._cycles > LINGER_CYCLES:
                 self._finish()
         elif self._cycles > self._options.cycles:
-            self._give_up(
-                f"the test did not end within {self._options.cycles} reasoning cycles: an endless loop?"
-            )
+            limit = f"{self._options.cycles} reasoning cycles"
+            self._give_up(f"the test did not end within {limit}: an endless loop?")
 
     def _idle(self) -> None:
         """Handle an idle run: no agent has anything to do, or waits for anything but the environment."""
@@ -239,9 +232,8 @@ class Trial:
         self._fail(problem)
 
     def _hangs(self) -> None:
-        message = (
-            f"the test did not end within {self._options.patience:g} s of real time: a step that never ends?"
-        )
+        seconds = f"{self._options.patience:g} s of real time"
+        message = f"the test did not end within {seconds}: a step that never ends?"
         intentions = self._goal.intentions() if self._goal is not None else []
         self._end_run(_stuck(message, intentions, self._outcome.test))
 
