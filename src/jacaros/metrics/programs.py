@@ -355,27 +355,23 @@ class ProgramFiles:
 
     def _add_agents(self, programs: Iterable[AgentProgram]) -> None:
         """Add the files of programs, with the names in each file over all programs that include it."""
-        found: dict[str, tuple[set[str], set[str]]] = {}
-        for program in programs:
-            own = str(program.path)
-            files = {own, *program.included}
-            for name in files:
-                found.setdefault(name, (set(), set()))
-            for clause, is_goal in program.clauses():
-                # The clauses of patterns may come from strings in a directive.
-                name = _file_of(clause)
-                identifiers, others = found[name if name in files else own]
-                identifiers.update(languages.goals_events_operations(clause, is_goal))
-                others.update(languages.other_names(clause))
-        by_path: dict[tuple[Group, Path], tuple[Path, set[str], set[str]]] = {}
-        for name, (identifiers, others) in found.items():
+        found: dict[tuple[Group, Path], tuple[Path, set[str], set[str]]] = {}
+
+        def names_in(name: str) -> tuple[Path, set[str], set[str]]:
             shipped = name.startswith(_SHIPPED)
             path = SourcePath(()).find(name) if shipped else Path(name)
             key = (Group.LIBRARY if shipped else Group.AGENTS, path.resolve())
-            _, known, more = by_path.setdefault(key, (path, set(), set()))
-            known |= identifiers
-            more |= others
-        for (group, _), (path, identifiers, others) in by_path.items():
+            return found.setdefault(key, (path, set(), set()))
+
+        for program in programs:
+            own = str(program.path)
+            files = {name: names_in(name) for name in (own, *program.included)}
+            for clause, is_goal in program.clauses():
+                # The clauses of patterns may come from strings in a directive.
+                _, identifiers, others = files.get(_file_of(clause), files[own])
+                identifiers.update(languages.goals_events_operations(clause, is_goal))
+                others.update(languages.other_names(clause))
+        for (group, _), (path, identifiers, others) in found.items():
             text = text_of(path)
             comments = languages.agentspeak_comments(text)
             self._add(group, counted(path, text, comments, identifiers | others, identifiers))
