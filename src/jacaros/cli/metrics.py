@@ -1,5 +1,6 @@
 """``jacaros metrics FOLDER...``."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -54,7 +55,9 @@ def command(
     programs = metrics.measure(folders, [[path] for path in baselines], libraries or DEFAULT)
     click.echo(_shown(programs, style, files))
     for name, path in pictures.items():
-        write_output(path, metrics.measure_chart(programs, name), make_folder=True)
+        with suppress(OSError):  # what writing will report
+            path.parent.mkdir(parents=True, exist_ok=True)
+        write_output(path, metrics.measure_chart(programs, name), "name another folder")
 
 
 def _shown(programs: list[metrics.ProgramMetrics], style: str, files: bool) -> str:

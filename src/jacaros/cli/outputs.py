@@ -153,16 +153,13 @@ def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
         raise usage_error(f"cannot write `{path}`: {error}", "name another file") from error
 
 
-def write_output(path: Path, content: str | bytes, make_folder: bool = False) -> None:
-    """Write a file; with *make_folder*, create its folder if it does not exist.
+def write_output(path: Path, content: str | bytes, advice: str = "name another file") -> None:
+    """Write a file.
 
     Raises:
-        UsageError: it cannot be written.
+        UsageError: it cannot be written; *advice* says what to do instead.
     """
     try:
-        if make_folder:
-            path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
     except OSError as error:
-        help = f"name another {'folder' if make_folder else 'file'}"
-        raise usage_error(f"cannot write `{path}`: {error.strerror}", help) from error
+        raise usage_error(f"cannot write `{path}`: {error.strerror}", advice) from error

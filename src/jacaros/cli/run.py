@@ -32,7 +32,7 @@ from jacaros.cli.options import (
     variables,
     view_options,
 )
-from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs, has_display
+from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs, has_display, write_output
 from jacaros.cli.usage import examples, listed, not_found, usage_error
 from jacaros.files.texts import is_file
 from jacaros.mas.agent_host import AgentHost
@@ -147,7 +147,11 @@ def command(
     check_file(file)
     outputs = Outputs.taken_from(given)
     outputs.check()
-    _check_events(explained)
+    if explained:
+        from jacaros.mas.history.patterns import Pattern  # here: few runs are explained
+
+        for each in explained:
+            Pattern(each)  # refuses what is not an event, a goal or a belief
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
         orphans=orphan_policy(orphans),
@@ -200,7 +204,9 @@ def _launch(
 ) -> int:
     def begin(mas: System) -> None:
         if explained:
-            _announce(mas, explained)
+            from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
+
+            Announcer(mas.keep_history(), explained, mas.console.log).begin()
         if options.fast:
             # As in `| head`: no reader wants the rest, and no robot depends on the agents.
             loop = asyncio.get_running_loop()
@@ -222,25 +228,6 @@ def _launch(
     with Watching(console, outputs) as watching, console.with_prints():
         code = launch(project, options, watching, begin_watched)
     return code or int(watching.incomplete)
-
-
-def _check_events(events: Sequence[str]) -> None:
-    """Check before the run that ``--explain`` can explain these events.
-
-    Raises:
-        UsageError: one of them is not an event, a goal or a belief.
-    """
-    if events:
-        from jacaros.mas.history.patterns import Pattern  # here: few runs are explained
-
-        for each in events:
-            Pattern(each)
-
-
-def _announce(mas: System, events: Sequence[str]) -> None:
-    from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
-
-    Announcer(mas.keep_history(), events, mas.console.log).begin()
 
 
 def report_idleness(mas: System) -> None:
@@ -331,11 +318,7 @@ def demo(save: bool, options: tuple[str, ...]) -> int:
 
 
 def _save(file: Path) -> None:
-    try:
-        with file.open("xb") as copy:
-            copy.write(PROGRAM.read_bytes())
-    except FileExistsError as error:
-        raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder") from error
-    except OSError as error:
-        raise usage_error(f"cannot write `{file}`: {error.strerror}", "change to another folder") from error
+    if file.exists():
+        raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder")
+    write_output(file, PROGRAM.read_bytes(), "change to another folder")
     click.echo(f"wrote {file}; run it with\n  jacaros run {file} {shlex.join(ROBOT)} --view")

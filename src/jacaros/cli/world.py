@@ -10,6 +10,7 @@ from jacaros.cli.outputs import check_output, write_output
 from jacaros.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
 from jacaros.sim.description import WorldDescription, WorldError
+from jacaros.sim.files.world import load_world
 
 _IMAGES = (".pgm", ".png")
 _WIDTH = 640
@@ -36,8 +37,6 @@ def command() -> None:
 @click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
 def check_command(worlds: tuple[str, ...]) -> int:
     """Report all mistakes in each WORLD, or print a summary. The exit code is 1 if there is a mistake."""
-    from jacaros.sim.files.world import load_world  # here: YAML is slow to import
-
     code = 0
     for name in worlds:
         try:
@@ -58,8 +57,6 @@ def check_command(worlds: tuple[str, ...]) -> int:
 @option("--width", "Width of the picture, in pixels.", click.IntRange(100, 10_000), default=_WIDTH)
 def show_command(world: str, output: Path | None, width: int) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
-    from jacaros.sim.files.world import load_world
-
     if output is None:
         _draw(load_world(world))
         return
@@ -145,7 +142,6 @@ def export_command(world: str, file: Path) -> None:
     check_output(file, "map")
     check_output(image, "map image")
     from jacaros.sim.files.map import map_of_world
-    from jacaros.sim.files.world import load_world
 
     text, pixels = map_of_world(load_world(world), image.name)
     _write(file, text)
