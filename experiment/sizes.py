@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jacaros.files.yaml import plain_values
-from jacaros.metrics import MEASURES, ProgramMetrics, Table, measure, measure_chart
-from jacaros.metrics.groups import Group
+from jacaros.metrics import MEASURES, Group, ProgramMetrics, Table, measure, measure_chart
 from scenarios import FOLDER, SCENARIOS
 
 CHARTS = ("identifiers", "lines", "gzip_bytes")

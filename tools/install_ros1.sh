@@ -51,7 +51,7 @@ if [ ! -x "$venv/bin/python" ]; then
   say "making $venv"
   "$python" -m venv --system-site-packages "$venv"
 fi
-if ! "$venv/bin/python" -c 'import jacaros.ros.open, jacaros.cli.pages, ruamel.yaml, pytest, pytest_rerunfailures, hypothesis, rospy' 2>/dev/null; then
+if ! "$venv/bin/python" -c 'import jacaros.ros.open, jacaros.cli.watching, ruamel.yaml, pytest, pytest_rerunfailures, hypothesis, rospy' 2>/dev/null; then
   say "installing the project and the test tools into $venv"
   "$venv/bin/python" -m pip install -q --disable-pip-version-check -e "$root" pytest pytest-rerunfailures hypothesis >&2
 fi

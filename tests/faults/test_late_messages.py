@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from jacaros.cli.main import call
-from jacaros.cli.why import command as why_command
+from jacaros.cli.recordings import why
 from jacaros.testing import run_project
 
 PROGRAMS = Path(__file__).parent / "programs"
@@ -41,7 +41,7 @@ def test_why_tells_what_was_measured_of_a_robot_at_a_wall(tmp_path: Path) -> Non
     run, world = tmp_path / "run.jsonl", str(PROGRAMS / "closet.yaml")
     options = ("--world", world, "--clock", "fast", "--for", "20", "--quiet", "--record", str(run))
     assert call(["run", str(PROGRAMS / "wall.asl"), *options]) == 0
-    asked = CliRunner().invoke(why_command, [str(run), "!forth"], catch_exceptions=False)
+    asked = CliRunner().invoke(why, [str(run), "!forth"], catch_exceptions=False)
     [failed] = [line for line in asked.stdout.splitlines() if "!forth failed" in line]
     assert re.search(r"the robot is stuck \(measured: \d\.\d\d s of delay, [\d.]+ m/s2\)", failed), failed
     assert "env_failure_reason(blocked(" in asked.stdout

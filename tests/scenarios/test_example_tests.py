@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.testing.run import Suite, collect
+from jacaros.testing.suites import Suite, collect
 from jacaros.testing.trial import run_suite
 
 FOLDERS = sorted(path for path in EXAMPLES.iterdir() if (path / "tests").is_dir())

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.testing import RunResult, run_project
-from jacaros.testing.run import collect
+from jacaros.testing.suites import collect
 from jacaros.testing.trial import run_suite
 
 TESTS = Path(__file__).parent / "navigation_library"

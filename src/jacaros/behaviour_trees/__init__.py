@@ -15,15 +15,17 @@ except ModuleNotFoundError as missing:
     ) from missing
 
 from jacaros.behaviour_trees.act import Act, Failure, FromBlackboard, ToBlackboard
-from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.behaviour_trees.properties import (
+from jacaros.behaviour_trees.behaviours import (
+    ArtifactBehaviour,
     HasProperty,
+    OnSignal,
     PropertiesToBlackboard,
     PropertyCheck,
+    Timeout,
+    Timer,
     WaitForProperty,
+    WaitForSignal,
 )
-from jacaros.behaviour_trees.signals import OnSignal, WaitForSignal
-from jacaros.behaviour_trees.timing import Timeout, Timer
 from jacaros.behaviour_trees.tree_runner import TreeRunner
 
 __all__ = [

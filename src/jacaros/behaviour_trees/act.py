@@ -8,7 +8,7 @@ from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.operation import OperationOutcome
 from jacaros.artifacts.env.values import Atom, Out, Structure, text
 from jacaros.artifacts.presence.session import SessionOperation
-from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
+from jacaros.behaviour_trees.behaviours import ArtifactBehaviour
 
 MISTAKES = ("unknown_operation", "wrong_op_arguments")
 """Functors of reasons that indicate a mistake in the tree, not in the world; these are logged, too."""

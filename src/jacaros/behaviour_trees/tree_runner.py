@@ -1,10 +1,13 @@
 """Ticks a tree: on the run's clock, and as soon as something has happened."""
 
 import asyncio
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from types import FunctionType, MethodType, SimpleNamespace
 from typing import Any
 
+import py_trees.decorators
+import py_trees.timers
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.trees import BehaviourTree
@@ -12,8 +15,8 @@ from py_trees.trees import BehaviourTree
 from jacaros.artifacts import Session
 from jacaros.artifacts.presence.presence import OperationObserver
 from jacaros.behaviour_trees.act import Act
-from jacaros.behaviour_trees.artifact_behaviour import ArtifactBehaviour
-from jacaros.behaviour_trees.timing import follow
+from jacaros.behaviour_trees.behaviours import ArtifactBehaviour
+from jacaros.runtime.clock import Clock
 
 _ENDS = {Status.SUCCESS: "achieved", Status.FAILURE: "failed"}
 CLOSEST = 0.01
@@ -193,3 +196,49 @@ class TreeRunner:
         for behaviour in self._reported:
             if behaviour not in before:
                 report("executing", behaviour.name, behaviour, "")
+
+
+# Timers and time-outs of py_trees use the time of day, unless they are made to follow a clock.
+
+
+_OF_PY_TREES = (py_trees.timers.Timer, py_trees.decorators.Timeout)
+_METHODS = ("initialise", "update")
+"""The methods in which they read the time."""
+
+
+def follow(clock: Clock, behaviours: Iterable[Behaviour]) -> Callable[[], None]:
+    """Let timers and time-outs of py_trees read *clock*, each object for itself; return a function that ends this.
+
+    Raises:
+        TypeError: a class derived from one of them has a method of its own there, so that it cannot follow a virtual clock.
+    """
+    bound: list[Behaviour] = []
+    for behaviour in behaviours:
+        kind = next((each for each in _OF_PY_TREES if isinstance(behaviour, each)), None)
+        if kind is None:
+            continue
+        if all(getattr(type(behaviour), name) is getattr(kind, name) for name in _METHODS):
+            _bind(behaviour, clock)
+            bound.append(behaviour)
+        elif clock.virtual:
+            ours = f"jacaros.behaviour_trees.{kind.__name__}"
+            raise TypeError(
+                f"the behaviour `{behaviour.name}` ({type(behaviour).__name__}) follows the time of day, not the virtual "
+                f"clock of the run; derive it from {ours}"
+            )
+
+    def end() -> None:
+        for behaviour in bound:
+            for name in _METHODS:
+                delattr(behaviour, name)
+
+    return end
+
+
+def _bind(behaviour: Behaviour, clock: Clock) -> None:
+    """Replace the module `time`, as the methods of one object see it."""
+    reading = SimpleNamespace(time=lambda: clock.elapsed, monotonic=lambda: clock.elapsed)
+    for name in _METHODS:
+        method = getattr(type(behaviour), name)
+        function = FunctionType(method.__code__, {**method.__globals__, "time": reading}, name)
+        setattr(behaviour, name, MethodType(function, behaviour))

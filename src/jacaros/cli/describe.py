@@ -11,6 +11,7 @@ import click
 from jacaros.artifacts.env.artifact import Artifact
 from jacaros.artifacts.env.errors import UnknownArtifactType
 from jacaros.artifacts.env.manual import Manual, describe
+from jacaros.cli.options import PATH, imports_option, option
 from jacaros.cli.usage import examples, usage_error
 from jacaros.errors import UsageError
 from jacaros.files.python_modules import UNSEEN, NotImported, ProjectModules
@@ -23,26 +24,20 @@ PROJECT_FILES = (".asl", ".mas2j", ".jcm")
 
 @click.command(
     "describe",
-    short_help="Describe an artifact type, a mapping file or a project.",
     epilog=examples(
         "jacaros describe ArtCmdVel", "jacaros describe robot.yaml", "jacaros describe house.jcm --json"
     ),
 )
 @click.argument("what")
-@click.option(
-    "--project",
-    type=click.Path(path_type=Path),
+@option(
+    "--project FOLDER",
+    "Folder with the project's own artifact types (default: the current folder).",
+    PATH,
     default=Path(),
-    metavar="FOLDER",
-    help="Folder with the project's own artifact types (default: the current folder).",
+    show_default=False,
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-@click.option(
-    "--import",
-    "imports",
-    is_flag=True,
-    help="Run the Python files of the project to find all their declarations (default: read them only).",
-)
+@option("--json", "Print JSON.", name="as_json")
+@imports_option
 def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
     """Describe WHAT: an artifact type, a Python file or a mapping file with artifact types, or a project file.
 
@@ -51,16 +46,16 @@ def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
     """
     unseen = None if imports else set[Path]()
     if what.endswith(PROJECT_FILES):
-        described = _Project(load_deployment(what), unseen)
-        click.echo(_json(described.data()) if as_json else "\n".join(described.lines()))
-        return
-    manuals = [describe(kind) for kind in _kinds(what, project, unseen)]
-    if as_json:
-        click.echo(
-            _json([dataclasses.asdict(manual) for manual in manuals] if len(manuals) != 1 else manuals[0])
-        )
+        deployment = load_deployment(what)
+        manuals, unknown = _project_types(deployment, unseen)
+        data: Any = _project_data(deployment, manuals)
+        text = "\n".join(_project_lines(deployment, manuals, unknown))
     else:
-        click.echo("\n\n".join(map(_for_people, manuals)))
+        manuals = [describe(kind) for kind in _kinds(what, project, unseen)]
+        described = [dataclasses.asdict(manual) for manual in manuals]
+        data = described[0] if len(described) == 1 else described
+        text = "\n\n".join(map(_for_people, manuals))
+    click.echo(json.dumps(data, indent=2, ensure_ascii=False) if as_json else text)
 
 
 def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[Artifact]]:
@@ -68,30 +63,18 @@ def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[
     if what.endswith(".py"):
         return _types_in(Path(what), unseen)
     if what.endswith((".yaml", ".yml")):
-        return _mapped_types(what, project, unseen)
+        from jacaros.artifacts.mapping.file import find_mapping, load_mapping  # here: few files are mappings
+
+        path = find_mapping(what, (project,))
+        if path is None:
+            raise usage_error(f"mapping file not found: `{what}`")
+        return [_find(f"{path}#{each}", project, unseen) for each in load_mapping(path).artifacts]
     return [_find(what, project, unseen)]
-
-
-def _mapped_types(name: str, folder: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
-    """Return the artifact types of a mapping file, in the order of the file."""
-    # Imported here: only for mapping files.
-    from jacaros.artifacts.mapping.file import find_mapping, load_mapping
-
-    path = find_mapping(name, (folder,))
-    if path is None:
-        raise usage_error(f"mapping file not found: `{name}`")
-    return [_find(f"{path}#{each}", folder, unseen) for each in load_mapping(path).artifacts]
 
 
 def _for_people(manual: Manual) -> str:
     """Return a manual as text, without the backquotes of docstrings."""
     return str(manual).replace("`", "")
-
-
-def _json(data: Any) -> str:
-    return json.dumps(
-        dataclasses.asdict(data) if isinstance(data, Manual) else data, indent=2, ensure_ascii=False
-    )
 
 
 def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
@@ -130,60 +113,51 @@ def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
     ]
 
 
-class _Project:
-    """A project, and the types of its artifacts."""
+def _project_types(project: Deployment, unseen: set[Path] | None) -> tuple[list[Manual], dict[str, str]]:
+    """Return the types of a project's artifacts, and why others are unknown, by name."""
+    from jacaros.artifacts.registry import ARTIFACTS, type_finder
 
-    def __init__(self, deployment: Deployment, unseen: set[Path] | None) -> None:
-        from jacaros.artifacts.registry import ARTIFACTS, type_finder
+    modules = ProjectModules(project.base_path, *project.source_paths, unseen=unseen)
+    find = type_finder(modules)
+    unknown: dict[str, str] = {}
+    types: dict[type[Artifact], None] = {}
+    for workspace in project.workspaces:
+        for artifact in workspace.artifacts:
+            try:
+                types[find(artifact.type_name)] = None
+            except (UnknownArtifactType, NotImported) as reason:
+                unknown[artifact.type_name] = str(reason)
+    types.update(dict.fromkeys(_own_types(modules, ARTIFACTS)))
+    return [describe(kind) for kind in types], unknown
 
-        self._deployment = deployment
-        modules = ProjectModules(deployment.base_path, *deployment.source_paths, unseen=unseen)
-        find = type_finder(modules)
-        self._unknown: dict[str, str] = {}
-        types: dict[type[Artifact], None] = {}
-        for workspace in deployment.workspaces:
-            for artifact in workspace.artifacts:
-                try:
-                    types[find(artifact.type_name)] = None
-                except (UnknownArtifactType, NotImported) as unknown:
-                    self._unknown[artifact.type_name] = str(unknown)
-        types.update(dict.fromkeys(_own_types(modules, ARTIFACTS)))
-        self._manuals = [describe(kind) for kind in types]
 
-    def lines(self) -> Iterator[str]:
-        """Yield the lines of the description."""
-        deployment = self._deployment
-        yield deployment.name
-        for agent in deployment.agents:
-            yield f"  agent {agent.name}: {agent.source_path}"
-        for workspace in deployment.workspaces:
-            yield f"  workspace {workspace.name}"
-            for artifact in workspace.artifacts:
-                unknown = self._unknown.get(artifact.type_name)
-                yield f"    artifact {artifact.name}: {artifact.type_name}" + (
-                    f" ({unknown})" if unknown else ""
-                )
-        if deployment.world is not None:
-            yield f"  world {deployment.world}"
-        for manual in self._manuals:
-            yield ""
-            yield _for_people(manual)
+def _project_lines(project: Deployment, manuals: list[Manual], unknown: dict[str, str]) -> Iterator[str]:
+    yield project.name
+    for agent in project.agents:
+        yield f"  agent {agent.name}: {agent.source_path}"
+    for workspace in project.workspaces:
+        yield f"  workspace {workspace.name}"
+        for artifact in workspace.artifacts:
+            reason = unknown.get(artifact.type_name)
+            yield f"    artifact {artifact.name}: {artifact.type_name}{f' ({reason})' if reason else ''}"
+    if project.world is not None:
+        yield f"  world {project.world}"
+    for manual in manuals:
+        yield f"\n{_for_people(manual)}"
 
-    def data(self) -> dict[str, Any]:
-        """Return the description as data for JSON."""
-        deployment = self._deployment
-        return {
-            "name": deployment.name,
-            "agents": [{"name": agent.name, "source": str(agent.source_path)} for agent in deployment.agents],
-            "workspaces": [
-                {
-                    "name": workspace.name,
-                    "artifacts": [
-                        {"name": each.name, "type": each.type_name} for each in workspace.artifacts
-                    ],
-                }
-                for workspace in deployment.workspaces
-            ],
-            "world": deployment.world,
-            "types": [dataclasses.asdict(manual) for manual in self._manuals],
+
+def _project_data(project: Deployment, manuals: list[Manual]) -> dict[str, Any]:
+    workspaces = [
+        {
+            "name": workspace.name,
+            "artifacts": [{"name": each.name, "type": each.type_name} for each in workspace.artifacts],
         }
+        for workspace in project.workspaces
+    ]
+    return {
+        "name": project.name,
+        "agents": [{"name": agent.name, "source": str(agent.source_path)} for agent in project.agents],
+        "workspaces": workspaces,
+        "world": project.world,
+        "types": [dataclasses.asdict(manual) for manual in manuals],
+    }

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from jacaros.cli.options import VariableOption
 from jacaros.cli.usage import usage_error
-from jacaros.cli.variables import VariableOption
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import address_options, ros_option
+from jacaros.cli.options import option
 from jacaros.cli.usage import examples
-from jacaros.cli.variables import VariableOption
 from jacaros.files.texts import visible
 from jacaros.ros.middleware import ROS_KINDS
 from jacaros.runtime.clock import WallClock, run
@@ -20,24 +20,20 @@ LEAST_TIMEOUT = 0.15
 
 @click.command(
     "guard",
-    short_help="Stop the robot when its agents no longer can.",
     epilog=examples("jacaros guard robot --ros ros2", "jacaros run robot.asl --ros ros2 --guard"),
 )
 @click.argument("name")
 @ros_option("ROS graph to join.", ROS_KINDS[1:], required=True)
 @address_options
-@click.option("--node-name", metavar="NODE", help="Name of the guard's node (default: NAME_guard).")
-@click.option(
-    "--timeout",
-    cls=VariableOption,
-    type=click.FloatRange(min=LEAST_TIMEOUT),
-    metavar="S",
-    envvar="JACAROS_GUARD_TIMEOUT",
-    show_envvar=True,
-    help="Seconds without a heartbeat after which the guard stops the robot (default: 0.3 for agents on this computer, "
+@option("--node-name NODE", "Name of the guard's node (default: NAME_guard).")
+@option(
+    "--timeout S",
+    "Seconds without a heartbeat after which the guard stops the robot (default: 0.3 for agents on this computer, "
     "0.5 over the graph). Larger values cause fewer false alarms on a busy machine or network.",
+    click.FloatRange(min=LEAST_TIMEOUT),
+    envvar="JACAROS_GUARD_TIMEOUT",
 )
-@click.option("--once", is_flag=True, help="Exit when the agents have shut down, or when none connect.")
+@option("--once", "Exit when the agents have shut down, or when none connect.")
 def command(
     name: str,
     timeout: float | None,

@@ -6,6 +6,7 @@ Exit codes: 0 after a normal end, 1 for an error in a program or project, 2 for 
 
 import io
 import os
+import platform
 import re
 import sys
 import threading
@@ -17,22 +18,23 @@ import click
 
 from jacaros.cli.outputs import OUTPUT_GONE
 from jacaros.cli.usage import examples, in_our_form, usage_error
-from jacaros.cli.variables import note
 from jacaros.errors import JacarosError, UsageError
 from jacaros.files.texts import help_line, suggestion
 from jacaros.runtime.output import PLAIN, Visible
+from jacaros.version import VERSION
 
 ENDED_BY_SIGNAL = (129, 130, 143, 149)
 """Exit codes of runs ended by SIGHUP, Ctrl+C, SIGTERM or Ctrl+Break (Windows)."""
 
+_LIBRARIES = ("click", "rich", "ruamel.yaml", "websockets", "numpy")
 COMMANDS = {
-    "demo": ("jacaros.cli.demo", "Show a robot on patrol."),
+    "demo": ("jacaros.cli.run:demo", "Show a robot on patrol."),
     "run": ("jacaros.cli.run", "Run an agent program or a project."),
-    "check": ("jacaros.cli.check", "Report problems in programs, projects and mapping files."),
-    "fmt": ("jacaros.cli.fmt", "Format programs in one style."),
-    "view": ("jacaros.cli.view", "Show a recorded run on a page in the browser."),
-    "why": ("jacaros.cli.why", "Explain why something did or did not happen in a recorded run."),
-    "replay": ("jacaros.cli.replay", "Replay a recorded run against a changed program."),
+    "check": ("jacaros.cli.programs:check", "Report problems in programs, projects and mapping files."),
+    "fmt": ("jacaros.cli.programs:fmt", "Format programs in one style."),
+    "view": ("jacaros.cli.recordings:view", "Show a recorded run on a page in the browser."),
+    "why": ("jacaros.cli.recordings:why", "Explain why something did or did not happen in a recorded run."),
+    "replay": ("jacaros.cli.recordings:replay", "Replay a recorded run against a changed program."),
     "test": ("jacaros.cli.test", "Run the tests of agent programs."),
     "sim": ("jacaros.cli.sim", "Run a robot world as a separate ROS node."),
     "world": ("jacaros.cli.world", "Check, show, create and export world files."),
@@ -40,9 +42,9 @@ COMMANDS = {
     "ros": ("jacaros.cli.ros", "Inspect a live ROS graph, and write mapping files for it."),
     "describe": ("jacaros.cli.describe", "Describe an artifact type, a mapping file or a project."),
     "metrics": ("jacaros.cli.metrics", "Count identifiers, lines and compressed bytes of programs."),
-    "version": ("jacaros.cli.version", "Print the versions of jacaros and its dependencies."),
+    "version": ("jacaros.cli.main:version", "Print the versions of jacaros and its dependencies."),
 }
-"""Module and summary of each command."""
+"""Module and summary of each command; after a colon, its name in the module if that is not ``command``."""
 
 
 class Commands(click.Group):
@@ -56,7 +58,8 @@ class Commands(click.Group):
         """Return the command, or None if the name is unknown."""
         if cmd_name not in COMMANDS:
             return None
-        command: click.Command = import_module(COMMANDS[cmd_name][0]).command
+        module, _, name = COMMANDS[cmd_name][0].partition(":")
+        command: click.Command = getattr(import_module(module), name or "command")
         return command
 
     def resolve_command(
@@ -66,26 +69,14 @@ class Commands(click.Group):
         if args and args[0].endswith((".asl", ".py", ".mas2j", ".jcm")):
             args = ["run", *args]
         if args and not args[0].startswith("-") and args[0] not in COMMANDS:
-            raise _unknown_command(args[0])
+            help = suggestion(args[0], COMMANDS, "`jacaros --help` lists the commands")
+            raise usage_error(f"unknown command: `{args[0]}`", help)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
-
-
-def _unknown_command(name: str) -> UsageError:
-    help = suggestion(name, COMMANDS, "`jacaros --help` lists the commands")
-    return usage_error(f"unknown command: `{name}`", help)
-
-
-def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
-    if wanted:
-        from jacaros.cli.version import version_of
-
-        click.echo(f"jacaros {version_of('jacaros')}")
-        ctx.exit()
 
 
 @click.command(
@@ -98,16 +89,24 @@ def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None
         "jacaros run --help                          list the options of a command",
     ),
 )
-@click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_print_version,
-    help="Print the version and exit.",
-)
+@click.version_option(VERSION, message="jacaros %(version)s", help="Print the version and exit.")
 def jacaros() -> None:
     """Program robots as rational agents: AgentSpeak minds, artifacts and ROS."""
+
+
+@click.command("version")
+def version() -> None:
+    """Print the versions of jacaros and its dependencies."""
+    from importlib import metadata  # here: it imports much
+
+    click.echo(f"jacaros {VERSION}")
+    click.echo(f"Python {platform.python_version()} on {platform.platform()}")
+    for library in _LIBRARIES:
+        try:
+            found = metadata.version(library)
+        except metadata.PackageNotFoundError:
+            found = "is not installed"
+        click.echo(f"{library} {found}")
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -153,10 +152,8 @@ def call(arguments: list[str] | None = None) -> int:
             click.echo(wrong.format_message())
             return 0
         return _report(in_our_form(wrong), 2, by_variable)
-    except UsageError as wrong:
-        return _report(wrong, 2, by_variable)
     except JacarosError as wrong:
-        return _report(wrong, 1, by_variable)
+        return _report(wrong, 2 if isinstance(wrong, UsageError) else 1, by_variable)
     except BrokenPipeError:
         return OUTPUT_GONE
     except Exception as defect:
@@ -170,13 +167,12 @@ def call(arguments: list[str] | None = None) -> int:
 
 def _own(arguments: list[str]) -> list[str]:
     """Replace the arguments added by ``ros2 run``, rosrun and launch files by our own options."""
-    if not any(":=" in each or each == "--ros-args" for each in arguments):
-        return arguments
-    from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
+    if any(":=" in each or each == "--ros-args" for each in arguments):
+        from jacaros.cli.ros_arguments import as_options, has_ros_arguments  # here: few runs need it
 
-    if not has_ros_arguments(arguments):
-        return arguments
-    return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
+        if has_ros_arguments(arguments):
+            return as_options(arguments, lambda line: print(f"warning: {line}", file=sys.stderr))
+    return arguments
 
 
 def _report(error: JacarosError, code: int, by_variable: Mapping[str, str]) -> int:
@@ -188,5 +184,6 @@ def _report(error: JacarosError, code: int, by_variable: Mapping[str, str]) -> i
         words = option[2:].replace("-", "[- ]")
         about = re.search(rf"\b{words}\b", str(error)) or os.environ[variable] in str(error)
         if about or (code == 1 and not located):
-            print(note(option, variable), file=sys.stderr)
+            set_by = f"{option} was set by the environment variable {variable}"
+            print(f"note: {set_by}; to ignore it, unset {variable}", file=sys.stderr)
     return code

@@ -1,63 +1,36 @@
 """``jacaros metrics FOLDER...``."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import check_output
+from jacaros import metrics
+from jacaros.cli.options import PATH, option
+from jacaros.cli.outputs import check_output, write_output
 from jacaros.cli.usage import examples, usage_error
-from jacaros.metrics import (
-    MEASURES,
-    ProgramMetrics,
-    Table,
-    as_csv,
-    as_markdown,
-    as_text,
-    file_table,
-    group_table,
-    measure,
-    measure_chart,
-    measure_table,
-)
-from jacaros.metrics.library import DEFAULT
+from jacaros.metrics.programs import DEFAULT
 
 
 @click.command(
     "metrics",
-    short_help="Count identifiers, lines and compressed bytes of programs.",
     epilog=examples("jacaros metrics .", "jacaros metrics agents --baseline baseline.py --charts charts"),
 )
-@click.argument("folders", metavar="FOLDER...", type=click.Path(path_type=Path), nargs=-1, required=True)
-@click.option(
-    "--baseline",
-    "baselines",
-    metavar="PATH",
-    type=click.Path(path_type=Path),
-    multiple=True,
-    help="Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
+@click.argument("folders", metavar="FOLDER...", type=PATH, nargs=-1, required=True)
+@option(
+    "--baseline PATH...",
+    "Python program (file or folder) to compare with; give one for each FOLDER, in the same order. Repeatable.",
+    PATH,
+    name="baselines",
 )
-@click.option(
-    "--library",
-    "libraries",
-    metavar="PACKAGE",
-    multiple=True,
-    help="Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
+@option(
+    "--library PACKAGE...",
+    "Installed Python package whose imported modules count as library code (default: py_trees). Repeatable.",
+    name="libraries",
 )
-@click.option(
-    "--format",
-    "style",
-    type=click.Choice(["text", "markdown", "csv"]),
-    default="text",
-    show_default=True,
-    help="Output format.",
-)
-@click.option("--files", is_flag=True, help="List every counted file.")
-@click.option(
-    "--charts",
-    metavar="FOLDER",
-    type=click.Path(path_type=Path),
-    help="Write a bar chart of each measure to FOLDER, as SVG.",
-)
+@option("--format", "Output format.", click.Choice(["text", "markdown", "csv"]), name="style", default="text")
+@option("--files", "List every counted file.")
+@option("--charts FOLDER", "Write a bar chart of each measure to FOLDER, as SVG.", PATH)
 def command(
     folders: tuple[Path, ...],
     baselines: tuple[Path, ...],
@@ -76,29 +49,24 @@ def command(
             f"expected {len(folders)} baselines, found {len(baselines)}",
             "give --baseline PATH once for each folder, in the order of the folders",
         )
-    pictures = {name: charts / f"{name}.svg" for name in MEASURES} if charts is not None else {}
+    pictures = {name: charts / f"{name}.svg" for name in metrics.MEASURES} if charts is not None else {}
     for path in pictures.values():
         check_output(path, "picture", make_folder=True)
-    programs = measure(folders, [[path] for path in baselines], libraries or DEFAULT)
+    programs = metrics.measure(folders, [[path] for path in baselines], libraries or DEFAULT)
     click.echo(_shown(programs, style, files))
     for name, path in pictures.items():
-        _write(path, measure_chart(programs, name))
+        with suppress(OSError):  # what writing will report
+            path.parent.mkdir(parents=True, exist_ok=True)
+        write_output(path, metrics.measure_chart(programs, name), "name another folder")
 
 
-def _shown(programs: list[ProgramMetrics], style: str, files: bool) -> str:
+def _shown(programs: list[metrics.ProgramMetrics], style: str, files: bool) -> str:
     if style == "csv":
-        return as_csv((file_table if files else group_table)(programs)).rstrip("\n")
-    tables = [file_table(programs)] if files else [measure_table(programs, name) for name in MEASURES]
-    return "\n\n".join(map(as_text if style == "text" else _titled, tables))
-
-
-def _titled(table: Table) -> str:
-    return f"**{table.title}**\n\n{as_markdown(table)}"
-
-
-def _write(path: Path, svg: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(svg, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise usage_error(f"cannot write `{path}`: {error.strerror}", "name another folder") from error
+        table = (metrics.file_table if files else metrics.group_table)(programs)
+        return metrics.as_csv(table).rstrip("\n")
+    tables = [metrics.measure_table(programs, name) for name in metrics.MEASURES]
+    if files:
+        tables = [metrics.file_table(programs)]
+    if style == "text":
+        return "\n\n".join(map(metrics.as_text, tables))
+    return "\n\n".join(f"**{table.title}**\n\n{metrics.as_markdown(table)}" for table in tables)

@@ -1,9 +1,10 @@
 """Output files and pages of a run, and checks that they can be written."""
 
-import contextlib
 import os
-from dataclasses import dataclass
+import sys
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from jacaros.cli.usage import usage_error
 
@@ -17,7 +18,6 @@ _BEGINNINGS = {
     "recording": (b'{"kind": "', b"\x1f\x8b\x08", b"\x89mcap0"),
     "replay page": (b"<!doctype html>",),
     "ground truth": (b'{"kind": "',),
-    "JUnit report": (b"<?xml", b"<testsuite"),
     "picture": (b"<svg",),
     "map": (b"image:",),
     "map image": (b"p5",),
@@ -27,32 +27,35 @@ _BEGINNINGS = {
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """The outputs requested on the command line.
+    """The outputs requested on the command line, by the names of the options.
 
     Attributes:
         record: file for the recording, or None.
         replay: file for the replay page, or None.
         ground_truth: file for the ground truth of the world, or None.
-        view: ``page`` (in the browser), ``terminal``, or "" for no view.
+        view: ``page`` (in the browser), ``terminal``, or None for no view.
         view_address, view_port, view_token: where to serve the page; see `jacaros.inspector.live.run_view.Place`.
-        record_limit: size limit of the recording, in bytes.
+        record_limit: size limit of the recording, in megabytes.
     """
 
     record: Path | None = None
     replay: Path | None = None
     ground_truth: Path | None = None
-    view: str = ""
+    view: str | None = None
     view_address: str = LOOPBACK
     view_port: int = 0
     view_token: str | None = None
-    record_limit: int = RECORD_LIMIT * 1_000_000
+    record_limit: int = RECORD_LIMIT
+
+    @classmethod
+    def taken_from(cls, options: dict[str, Any]) -> "Outputs":
+        """Take the outputs out of the options of a command."""
+        return cls(**{each.name: options.pop(each.name) for each in fields(cls)})
 
     @property
     def any(self) -> bool:
         """Whether any output is requested."""
-        return bool(self.view) or any(
-            path is not None for path in (self.record, self.replay, self.ground_truth)
-        )
+        return any((self.view, self.record, self.replay, self.ground_truth))
 
     def check(self) -> None:
         """Check before the run that all outputs can be written.
@@ -67,18 +70,16 @@ class Outputs:
                 f"--replay {self.replay.with_suffix('.html')}",
             )
         paths = {"recording": self.record, "replay page": self.replay, "ground truth": self.ground_truth}
+        files = [(path, kind, kind) for kind, path in paths.items() if path is not None]
+        if self.record is not None:  # a long one is continued in another file
+            older = self.record.parent / f"{self.record.name}.1"
+            files.insert(1, (older, "recording", "older part of the recording"))
         known: dict[Path, str] = {}
-        for kind, path in paths.items():
-            if path is None:
-                continue
-            files = {path: kind}
-            if kind == "recording":  # a long one is continued in another file
-                files[path.parent / f"{path.name}.1"] = "older part of the recording"
-            for file, what in files.items():
-                check_output(file, kind)
-                before = known.setdefault(file.resolve(), what)
-                if before != what:
-                    raise usage_error(f"`{file}` cannot be both {before} and {what}", "name two files")
+        for file, kind, what in files:
+            check_output(file, kind)
+            before = known.setdefault(file.resolve(), what)
+            if before != what:
+                raise usage_error(f"`{file}` cannot be both {before} and {what}", "name two files")
         if self.view == "page":
             check_view(self.view_address, self.view_token)
 
@@ -91,24 +92,31 @@ def check_view(address: str, token: str | None) -> None:
     """
     from importlib.util import find_spec  # here: few runs have a page
 
-    with contextlib.suppress(ModuleNotFoundError):
-        if find_spec("websockets.asyncio") is not None:
-            _check_access(address, token)
-            return
-    raise usage_error(
-        "the page needs websockets 15 or later, which is not installed",
-        "pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl",
-    )
-
-
-def _check_access(address: str, token: str | None) -> None:
-    from jacaros.inspector.live.access import SHORTEST_TOKEN, Access  # here: few runs have a page
+    try:
+        found = find_spec("websockets.asyncio")
+    except ModuleNotFoundError:
+        found = None
+    if found is None:
+        raise usage_error(
+            "the page needs websockets 15 or later, which is not installed",
+            "pip install 'websockets>=15', or --view=terminal, or --record RUN.jsonl",
+        )
+    from jacaros.inspector.live.access import SHORTEST_TOKEN, Access
 
     if Access(address, token).exposed and token is None:
         raise usage_error(
             "a view for other machines needs a token",
             f"set JACAROS_VIEW_TOKEN, or add --view-token TOKEN (at least {SHORTEST_TOKEN} characters)",
         )
+
+
+def has_display() -> bool:
+    """Return whether a user can see a browser: standard error is a terminal, on a machine with a display."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        return False
+    if sys.platform.startswith("linux"):
+        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return "SSH_CONNECTION" not in os.environ
 
 
 def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
@@ -137,13 +145,21 @@ def check_output(path: Path, kind: str, make_folder: bool = False) -> None:
         elif path.is_fifo() and path.resolve().exists():  # unlike a pipe of the shell, which is open: >(gzip)
             raise usage_error(f"`{path}` is a named pipe, and opening it waits for a reader", "name a file")
         elif path.is_file():
-            _check_content(path, kind)
+            with path.open("rb") as file:
+                begins = file.read(64).lstrip().lower()
+            if begins and not begins.startswith(_BEGINNINGS[kind]):
+                raise usage_error(f"`{path}` exists and is not a {kind}", "name another file, or delete it")
     except (OSError, ValueError) as error:
         raise usage_error(f"cannot write `{path}`: {error}", "name another file") from error
 
 
-def _check_content(path: Path, kind: str) -> None:
-    with path.open("rb") as file:
-        begins = file.read(64)
-    if begins and not begins.lstrip().lower().startswith(_BEGINNINGS[kind]):
-        raise usage_error(f"`{path}` exists and is not a {kind}", "name another file, or delete it")
+def write_output(path: Path, content: str | bytes, advice: str = "name another file") -> None:
+    """Write a file.
+
+    Raises:
+        UsageError: it cannot be written; *advice* says what to do instead.
+    """
+    try:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    except OSError as error:
+        raise usage_error(f"cannot write `{path}`: {error.strerror}", advice) from error

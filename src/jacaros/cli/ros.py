@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from jacaros.cli.graph_options import address_options, ros_option, world_option
+from jacaros.cli.options import settled
 from jacaros.cli.usage import examples, usage_error
-from jacaros.cli.variables import settled
 from jacaros.files.texts import shown_from
 from jacaros.mas.options import RunOptions
 from jacaros.ros.middleware import MIDDLEWARES

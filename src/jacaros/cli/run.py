@@ -1,6 +1,7 @@
-"""``jacaros run FILE``."""
+"""``jacaros run FILE``, and ``jacaros demo``."""
 
 import asyncio
+import shlex
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +12,6 @@ from typing import Any
 import click
 
 from jacaros.agents.mind.mind import Mind
-from jacaros.cli.files import not_found
 from jacaros.cli.graph_options import (
     faults_option,
     graph_options,
@@ -23,10 +23,17 @@ from jacaros.cli.graph_options import (
     ros_option,
     world_option,
 )
-from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs
-from jacaros.cli.usage import examples, usage_error
-from jacaros.cli.variables import VariableOption, settled, variables
-from jacaros.cli.view_options import ViewCommand, view_options
+from jacaros.cli.options import (
+    PATH,
+    ViewCommand,
+    ground_truth_option,
+    option,
+    settled,
+    variables,
+    view_options,
+)
+from jacaros.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs, has_display, write_output
+from jacaros.cli.usage import examples, listed, not_found, usage_error
 from jacaros.files.texts import is_file
 from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.console import StandardConsole
@@ -39,8 +46,6 @@ from jacaros.runtime.output import CLOSING, PATIENCE
 FAST_PATIENCE = 1.0
 """Seconds that a run on the virtual clock waits for a slow reader of its output; its agents miss nothing meanwhile."""
 HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
-MOST_NAMES = 8
-"""Number of waiting agents named in the note that a run has nothing left to do."""
 SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 """Suffixes of files that can be run."""
 
@@ -48,7 +53,6 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
 @click.command(
     "run",
     cls=ViewCommand,
-    short_help="Run an agent program or a project.",
     epilog=examples(
         "jacaros run hello.asl",
         "jacaros run robot.asl --world house --view",
@@ -57,97 +61,73 @@ SUFFIXES = (".asl", ".mas2j", ".jcm", ".py")
         "jacaros run house.jcm --record run.jsonl",
     ),
 )
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option(
+@click.argument("file", type=PATH)
+@option(
     "--clock",
-    cls=VariableOption,
-    type=click.Choice(["real", "fast", "ros"]),
+    "Clock to run on: real (default), fast (virtual time; with --ros memory only) or ros (follow /clock).",
+    click.Choice(["real", "fast", "ros"]),
     envvar="JACAROS_CLOCK",
-    show_envvar=True,
-    help="Clock to run on: real (default), fast (virtual time; with --ros memory only) or ros (follow /clock).",
 )
-@click.option(
-    "--seed", type=int, help="Seed for random numbers. With --clock fast, the whole run is reproducible."
-)
+@option("--seed", "Seed for random numbers. With --clock fast, the whole run is reproducible.", int)
 @ros_option("ROS graph to join: memory (in-process), or a real one.")
 @world_option("World file, or the name of a shipped world; `none` for a graph without robots.")
 @noise_option
 @faults_option
-@click.option(
-    "--mapping",
-    "mappings",
-    metavar="FILE",
-    multiple=True,
-    help="Mapping file of a robot; a program without a project file focuses its artifacts. Repeatable.",
+@option(
+    "--mapping FILE...",
+    "Mapping file of a robot; a program without a project file focuses its artifacts. Repeatable.",
+    name="mappings",
 )
-@click.option("--until-idle", is_flag=True, help="Exit once all agents are idle.")
-@click.option(
+@option("--until-idle", "Exit once all agents are idle.")
+@option(
     "--fail-on-lost-goal",
-    is_flag=True,
-    help="Exit with code 1 if a goal failed that no plan handled, or an exception ended an agent in Python.",
+    "Exit with code 1 if a goal failed that no plan handled, or an exception ended an agent in Python.",
 )
-@click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds of the run's clock.")
-@click.option(
+@option("--for S", "Exit after S seconds of the run's clock.", float, name="seconds")
+@option(
     "--guard",
-    is_flag=True,
-    help="Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only), or use "
+    "Start a separate process that stops the robot if this one dies, freezes or is stuck (real graphs only), or use "
     "a running `jacaros guard` for this node; also publish a heartbeat for a guard on the robot's computer.",
 )
 @graph_options
 @orphans_option
 @parameter_options
-@click.option(
+@option(
     "--rosout/--no-rosout",
+    "Also publish the output of agents, and warnings, on /rosout (default: on real graphs).",
     default=None,
-    help="Also publish the output of agents, and warnings, on /rosout (default: on real graphs).",
 )
-@click.option(
+@option(
     "--diagnostics/--no-diagnostics",
+    "Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
     default=None,
-    help="Publish the state of the agents and the connection on /diagnostics (default: on real graphs).",
 )
-@click.option(
-    "--record",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
+@option(
+    "--record FILE",
+    "Record the run to FILE: JSON lines, compressed (FILE.gz), or for Foxglove (FILE.mcap, needs jacaros[mcap]).",
+    PATH,
 )
-@click.option(
-    "--record-limit",
-    type=click.IntRange(1),
+@option(
+    "--record-limit MB",
+    "Size limit of the recording, in megabytes; the older half is in FILE.1.",
+    click.IntRange(1),
     default=RECORD_LIMIT,
-    metavar="MB",
-    show_default=True,
-    help="Size limit of the recording, in megabytes; the older half is in FILE.1.",
 )
-@click.option(
-    "--replay",
-    type=click.Path(path_type=Path),
-    metavar="FILE.html",
-    help="Write the run as a page that needs no server.",
-)
-@click.option(
-    "--ground-truth",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the ground truth of the world to FILE (JSON lines).",
-)
-@click.option(
+@option("--replay FILE.html", "Write the run as a page that needs no server.", PATH)
+@ground_truth_option
+@option(
     "--restrict",
-    "restricted",
-    is_flag=True,
-    help="Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
+    "Forbid agents to take plans from others (tellHow), to use files (.include, .save_agent, .list_files, "
     ".create_agent with a program) and to create Python objects (cartago.*): such a step fails.",
+    name="restricted",
 )
-@click.option(
-    "--explain",
-    "explained",
-    metavar="EVENT",
-    multiple=True,
-    help="Log how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. Repeatable.",
+@option(
+    "--explain EVENT...",
+    "Log how EVENT is handled each time, such as '+alarm(_)' or '!go(dock)'. Repeatable.",
+    name="explained",
 )
 @view_options
-@click.option("--quiet", is_flag=True, help="Print only warnings and errors.")
+@option("--quiet", "Print only warnings and errors.")
 def command(
     file: Path,
     clock: str | None,
@@ -155,14 +135,6 @@ def command(
     orphans: str,
     param: tuple[str, ...],
     params_file: tuple[Path, ...],
-    record: Path | None,
-    record_limit: int,
-    replay: Path | None,
-    ground_truth: Path | None,
-    view: str | None,
-    view_port: int,
-    view_address: str,
-    view_token: str | None,
     quiet: bool,
     explained: tuple[str, ...],
     **given: Any,
@@ -172,18 +144,13 @@ def command(
     The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
     """
     check_file(file)
-    outputs = Outputs(
-        record,
-        replay,
-        ground_truth,
-        view or "",
-        view_address,
-        view_port,
-        view_token,
-        record_limit * 1_000_000,
-    )
+    outputs = Outputs.taken_from(given)
     outputs.check()
-    _check_events(explained)
+    if explained:
+        from jacaros.mas.history.patterns import Pattern  # here: few runs are explained
+
+        for each in explained:
+            Pattern(each)  # refuses what is not an event, a goal or a belief
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
         orphans=orphan_policy(orphans),
@@ -236,7 +203,9 @@ def _launch(
 ) -> int:
     def begin(mas: System) -> None:
         if explained:
-            _announce(mas, explained)
+            from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
+
+            Announcer(mas.keep_history(), explained, mas.console.log).begin()
         if options.fast:
             # As in `| head`: no reader wants the rest, and no robot depends on the agents.
             loop = asyncio.get_running_loop()
@@ -258,25 +227,6 @@ def _launch(
     with Watching(console, outputs) as watching, console.with_prints():
         code = launch(project, options, watching, begin_watched)
     return code or int(watching.incomplete)
-
-
-def _check_events(events: Sequence[str]) -> None:
-    """Check before the run that ``--explain`` can explain these events.
-
-    Raises:
-        UsageError: one of them is not an event, a goal or a belief.
-    """
-    if events:
-        from jacaros.mas.history.patterns import Pattern  # here: few runs are explained
-
-        for each in events:
-            Pattern(each)
-
-
-def _announce(mas: System, events: Sequence[str]) -> None:
-    from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
-
-    Announcer(mas.keep_history(), events, mas.console.log).begin()
 
 
 def report_idleness(mas: System) -> None:
@@ -308,8 +258,7 @@ def _what_waits(mas: System) -> str:
     waiting = [host.name for host in mas.directory if isinstance(host.mind, Mind) and host.mind.alive]
     if not waiting:
         return "no agent has a goal or an event"
-    names = ", ".join(waiting[:MOST_NAMES]) + (", ..." if len(waiting) > MOST_NAMES else "")
-    return f"the goals of {names} wait, and no agent can wake them"
+    return f"the goals of {listed(waiting)} wait, and no agent can wake them"
 
 
 def _close(console: StandardConsole, code: int) -> None:
@@ -336,4 +285,39 @@ def check_file(file: Path) -> None:
         return
     if file.is_dir():
         raise usage_error(f"`{file}` is a folder", "name a .asl, .py, .mas2j or .jcm file in it")
-    raise not_found(file, [each for each in file.parent.glob("*.*") if each.suffix in SUFFIXES])
+    raise not_found(file, SUFFIXES)
+
+
+PROGRAM = Path(__file__).with_name("patrol.asl")
+ROBOT = ("--world", "patrol", "--mapping", "nav2.yaml", "--mapping", "turtlebot4.yaml")
+"""Options of the run: the world of the program, and the mappings of its robot."""
+
+
+@click.command(
+    "demo",
+    context_settings={"ignore_unknown_options": True},
+    epilog=examples("jacaros demo", "jacaros demo --view=terminal", "jacaros demo --save"),
+)
+@option("--save", "Write the program to patrol.asl in this folder, and do not run it.")
+@click.argument("options", nargs=-1, type=click.UNPROCESSED, metavar="[OPTIONS OF jacaros run]...")
+def demo(save: bool, options: tuple[str, ...]) -> int:
+    """Run a robot on patrol in the embedded world, and show it on a page in the browser.
+
+    Without a display, the terminal shows it. Press Ctrl+C to stop. Options of `jacaros run` work here, too, such as
+    `--view=terminal`, `--clock fast` or `--record run.jsonl`.
+    """  # fmt: skip
+    if save:
+        _save(Path(PROGRAM.name))
+        return 0
+    chosen = any(each == "--view" or each.startswith("--view=") for each in options)
+    view = () if chosen else ("--view" if has_display() else "--view=terminal",)
+    arguments = [str(PROGRAM), *ROBOT, *view, *options]
+    code: int = command.main(arguments, "jacaros demo", standalone_mode=False, obj=variables())
+    return code
+
+
+def _save(file: Path) -> None:
+    if file.exists():
+        raise usage_error(f"file exists: `{file}`", "rename it, or change to another folder")
+    write_output(file, PROGRAM.read_bytes(), "change to another folder")
+    click.echo(f"wrote {file}; run it with\n  jacaros run {file} {shlex.join(ROBOT)} --view")

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from jacaros.cli.graph_options import faults_option, noise_option, read_remaps, ros_option, world_options
+from jacaros.cli.options import ground_truth_option, option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file
@@ -18,7 +19,6 @@ from jacaros.sim.description import BatterySettings, WorldDescription
 
 @click.command(
     "sim",
-    short_help="Run a robot world as a separate ROS node.",
     epilog=examples(
         "jacaros sim house --ros ros2",
         "jacaros sim world.yaml --ros ros2 --speed 5",
@@ -28,41 +28,32 @@ from jacaros.sim.description import BatterySettings, WorldDescription
 @click.argument("world")
 @ros_option("ROS graph to join.", required=True, but_with="only_hash")
 @world_options
-@click.option("--for", "seconds", type=float, metavar="S", help="Exit after S seconds.")
-@click.option(
-    "--ground-truth",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the ground truth of the world to FILE (JSON lines).",
-)
-@click.option("--seed", type=int, help="Seed for the noise of the sensors.")
+@option("--for S", "Exit after S seconds.", float, name="seconds")
+@ground_truth_option
+@option("--seed", "Seed for the noise of the sensors.", int)
 @noise_option
 @faults_option
-@click.option("--full-battery", is_flag=True, help="Keep all batteries full.")
-@click.option(
+@option("--full-battery", "Keep all batteries full.")
+@option(
     "--hash",
-    "only_hash",
-    is_flag=True,
-    help="Drive all robots for a minute (or --for S seconds), print a hash of their poses and scans, and exit. The hash is "
+    "Drive all robots for a minute (or --for S seconds), print a hash of their poses and scans, and exit. The hash is "
     "the same on every machine.",
+    name="only_hash",
 )
-@click.option(
+@option(
     "--clock",
-    type=click.Choice(["real", "fast"]),
+    "Clock to run on: real, or fast (virtual time; with --ros memory only).",
+    click.Choice(["real", "fast"]),
     default="real",
-    show_default=True,
-    help="Clock to run on: real, or fast (virtual time; with --ros memory only).",
 )
-@click.option(
+@option(
     "--publish-clock",
-    is_flag=True,
-    help="Publish the world's time on /clock, for nodes with use_sim_time (agents: --clock ros).",
+    "Publish the world's time on /clock, for nodes with use_sim_time (agents: --clock ros).",
 )
-@click.option(
-    "--speed",
-    type=click.FloatRange(0.0, 100.0, min_open=True),
-    metavar="X",
-    help="Run X times as fast as real time; includes --publish-clock.",
+@option(
+    "--speed X",
+    "Run X times as fast as real time; includes --publish-clock.",
+    click.FloatRange(0.0, 100.0, min_open=True),
 )
 def command(
     world: str,
@@ -97,9 +88,8 @@ def command(
     if clock == "fast" and (ros != "memory" or seconds is None):
         raise usage_error("--clock fast needs --ros memory and --for S", "a real ROS graph runs in real time")
     if clock == "fast" and speed is not None:
-        raise usage_error(
-            "--speed needs --clock real", "--clock fast already runs as fast as the machine can"
-        )
+        help = "--clock fast already runs as fast as the machine can"
+        raise usage_error("--speed needs --clock real", help)
     time: Clock = VirtualClock() if clock == "fast" else WallClock(speed or 1.0)
     assert ros is not None  # the option requires it
     address = GraphAddress(ros, remap=read_remaps(remap), **graph)

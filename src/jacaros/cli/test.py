@@ -5,102 +5,73 @@ import re
 import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from jacaros.cli.graph_options import noise_option
-from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.options import PATH, option
+from jacaros.cli.usage import counted, examples, listed, usage_error
 from jacaros.files.texts import visible
 from jacaros.runtime.output import beneath
 
 if TYPE_CHECKING:
-    from jacaros.testing.run import AgentTest, Suite, SuiteOutcome
+    from jacaros.testing.suites import AgentTest, Outcome, Suite
     from jacaros.testing.trial import TrialOptions
 
 _STYLED = re.compile(r"(\x1b\[.*?\x1b\[0m)", re.DOTALL)
 _COLOURS = {"passed": "green", "failed": "red", "place": "cyan"}
 
 
-MOST_NAMES = 8
-"""Number of tests listed when none matches."""
-
-
 @click.command(
     "test",
-    short_help="Run the tests of agent programs.",
     epilog=examples(
         "jacaros test",
         "jacaros test tests/test_patrol.asl -k charging -v",
     ),
 )
-@click.argument("paths", nargs=-1, type=click.Path(path_type=Path), metavar="[FILE|FOLDER]...")
-@click.option(
-    "-k",
-    "pattern",
-    metavar="PATTERN",
-    help="Run only tests whose FILE::NAME contains PATTERN; * matches anything.",
-)
-@click.option("-x", "first", is_flag=True, help="Stop after the first failed test.")
-@click.option(
-    "--timeout",
-    type=click.FloatRange(0.0, min_open=True),
+@click.argument("paths", nargs=-1, type=PATH, metavar="[FILE|FOLDER]...")
+@option("-k PATTERN", "Run only tests whose FILE::NAME contains PATTERN; * matches anything.", name="pattern")
+@option("-x", "Stop after the first failed test.", name="first")
+@option(
+    "--timeout S",
+    "Time limit for each test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
+    click.FloatRange(0.0, min_open=True),
     default=60.0,
-    show_default=True,
-    metavar="S",
-    help="Time limit for each test, in seconds of the run's clock; the label [test, timeout(Ms)] overrides it.",
 )
-@click.option(
-    "--cycles",
-    type=click.IntRange(1),
-    default=1_000_000,
-    show_default=True,
-    metavar="N",
-    help="Limit on the reasoning cycles of each test.",
-)
-@click.option(
-    "--patience",
-    type=click.FloatRange(0.0),
+@option("--cycles N", "Limit on the reasoning cycles of each test.", click.IntRange(1), default=1_000_000)
+@option(
+    "--patience S",
+    "Limit on the real time of each test, in seconds; 0 for no limit.",
+    click.FloatRange(0.0),
     default=300.0,
-    show_default=True,
-    metavar="S",
-    help="Limit on the real time of each test, in seconds; 0 for no limit.",
 )
-@click.option(
+@option(
     "--clock",
-    type=click.Choice(["real", "fast"]),
+    "Clock to run on: real, or fast (virtual time).",
+    click.Choice(["real", "fast"]),
     default="fast",
-    show_default=True,
-    help="Clock to run on: real, or fast (virtual time).",
 )
-@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Seed for random numbers.")
-@click.option(
-    "--world",
-    metavar="FILE",
-    help="World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
+@option("--seed N", "Seed for random numbers.", int, default=0)
+@option(
+    "--world FILE",
+    "World file or name of a shipped world, instead of the project's; `none` for a graph without robots.",
 )
 @noise_option
-@click.option(
-    "--mapping",
-    "mappings",
-    multiple=True,
-    metavar="FILE",
-    help="Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
+@option(
+    "--mapping FILE...",
+    "Mapping file for all tests; the label [test, mapping(FILE)] adds one for a single test. Repeatable.",
+    name="mappings",
 )
-@click.option(
+@option(
     "--color",
-    type=click.Choice(["auto", "always", "never"]),
+    "Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
+    click.Choice(["auto", "always", "never"]),
     default="auto",
-    show_default=True,
-    help="Whether to colour the report; auto: on a terminal, unless NO_COLOR is set.",
 )
-@click.option(
-    "-v",
-    "--verbose",
-    is_flag=True,
-    help="Also show the time of each test and the output of passed tests.",
-)
+@option("-v --verbose", "Also show the time of each test and the output of passed tests.")
 def command(
     paths: tuple[Path, ...],
     pattern: str | None,
@@ -116,30 +87,77 @@ def command(
     with such plans, and all projects whose names begin with `test_` or end in `_test`. The exit code is 1 if a test fails.
     """  # fmt: skip
     # Imported here: it imports all that runs a system.
-    from jacaros.testing.run import collect, failures, summary
+    from jacaros.testing.suites import collect
     from jacaros.testing.trial import TrialOptions
 
-    paint = _Paint(color)
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
-    options = TrialOptions(fast=clock == "fast", **given)
-    outcomes = _Progress(options, paint, pattern, first, verbose).run(suites)
-    for line in (*failures(outcomes, paint), "", summary(outcomes, options.seed, paint)):
-        paint.echo(line)
-    return 0 if all(outcome.passed for outcome in outcomes) else 1
+    report = _Report(color, verbose)
+    return 0 if report.run(suites, TrialOptions(fast=clock == "fast", **given), pattern, first) else 1
 
 
-class _Paint:
-    """Colours, if enabled."""
+class _Report:
+    """Runs suites, prints each test as it ends, and then the failures.
 
-    def __init__(self, color: str) -> None:
-        if color == "auto":
-            self._wanted = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
-        else:
-            self._wanted = color == "always"
+    Args:
+        color: ``auto``, ``always`` or ``never``.
+        verbose: also print the time of each test and the output of passed tests.
+    """
+
+    def __init__(self, color: str, verbose: bool) -> None:
+        on_terminal = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+        self._coloured = color == "always" or (color == "auto" and on_terminal)
+        self._verbose = verbose
         self._painted: set[str] = set()
 
-    def __call__(self, text: str, kind: str) -> str:
-        if not self._wanted:
+    def run(
+        self, suites: "Sequence[Suite]", options: "TrialOptions", pattern: str | None, first: bool
+    ) -> bool:
+        """Run all tests that match the pattern, or up to the *first* failed one; return whether all passed."""
+        from jacaros.testing.trial import run_suite
+
+        failures: list[str] = []
+        outcomes: list[Outcome] = []
+        errors = 0
+        for suite in suites:
+            for warning in suite.warnings:
+                click.echo(warning, err=True)
+            self._echo(self._paint(str(suite.path), "place"))
+            if suite.error is not None:
+                errors += 1
+                self._echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
+                failures += ("", self._paint(f"{suite.path}: cannot run the file", "failed"), suite.error)
+            for outcome in run_suite(suite, options, partial(_is_meant, suite, pattern=pattern)):
+                outcomes.append(outcome)
+                self._show(outcome)
+                if not outcome.passed:
+                    failures += ("", self._paint(f"{suite.path}::{outcome.test.name}", "failed"))
+                    failures += (f"  {line}" for line in outcome.lines())
+                    if first:
+                        break
+            if first and failures:
+                break
+        failed = sum(not outcome.passed for outcome in outcomes)
+        counts = [f"{len(outcomes) - failed} passed"]
+        if failed:
+            counts.append(f"{failed} failed")
+        if errors:
+            counts.append(f"{counted(errors, 'file')} cannot be run")
+        assertions = sum(outcome.assertions for outcome in outcomes)
+        summary = f"{', '.join(counts)}; {assertions} assertions, seed {options.seed}"
+        for line in (*failures, "", self._paint(summary, "failed" if failures else "passed")):
+            self._echo(line)
+        return not failures
+
+    def _show(self, outcome: "Outcome") -> None:
+        verdict = self._paint("ok    ", "passed") if outcome.passed else self._paint("FAILED", "failed")
+        took = self._paint(f"  {outcome.seconds:.2f} s", "quiet") if self._verbose else ""
+        self._echo(f"  {verdict}  {outcome.test.name}{took}")
+        if self._verbose and outcome.passed:
+            for text in outcome.output:
+                self._echo(self._paint(f"          {text}", "quiet"))
+
+    def _paint(self, text: str, kind: str) -> str:
+        if not self._coloured:
             return text
         painted = click.style(
             visible(text), fg=_COLOURS.get(kind), bold=kind == "failed" or None, dim=kind == "quiet" or None
@@ -147,54 +165,10 @@ class _Paint:
         self._painted.add(painted)
         return painted
 
-    def echo(self, line: str) -> None:
+    def _echo(self, line: str) -> None:
         """Print a line; control characters that are not painted here are escaped."""
         parts = (part if part in self._painted else visible(part) for part in _STYLED.split(line))
         click.echo("".join(parts), beneath(sys.stdout), color=True)
-
-
-class _Progress:
-    """Runs suites and prints each test as it ends."""
-
-    def __init__(
-        self, options: "TrialOptions", paint: _Paint, pattern: str | None, first: bool, verbose: bool
-    ) -> None:
-        self._options, self._paint, self._pattern = options, paint, pattern
-        self._first, self._verbose = first, verbose
-
-    def run(self, suites: "Sequence[Suite]") -> "list[SuiteOutcome]":
-        """Run all tests that match the pattern, or up to the first failed one."""
-        from jacaros.testing.run import SuiteOutcome
-
-        outcomes = []
-        for suite in suites:
-            for warning in suite.warnings:
-                click.echo(warning, err=True)
-            self._paint.echo(self._paint(str(suite.path), "place"))
-            outcome = SuiteOutcome(suite)
-            outcomes.append(outcome)
-            self._run(outcome)
-            if self._first and not outcome.passed:
-                break
-        return outcomes
-
-    def _run(self, suite: "SuiteOutcome") -> None:
-        from jacaros.testing.run import line_of
-        from jacaros.testing.trial import run_suite
-
-        if suite.suite.error is not None:
-            self._paint.echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
-            return
-        for outcome in run_suite(
-            suite.suite, self._options, lambda test: _is_meant(suite.suite, test, self._pattern)
-        ):
-            suite.outcomes.append(outcome)
-            self._paint.echo(line_of(outcome, self._paint, self._verbose))
-            if self._verbose and outcome.passed:
-                for text in outcome.output:
-                    self._paint.echo(self._paint(f"          {text}", "quiet"))
-            if self._first and not outcome.passed:
-                return
 
 
 def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) -> "list[Suite]":
@@ -214,10 +188,9 @@ def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) ->
         for suite in found
         if suite.error is not None or any(_is_meant(suite, test, pattern) for test in suite.tests)
     ]
-    if not any(suite.tests for suite in chosen) and not any(suite.error is not None for suite in chosen):
-        names = [f"{suite.path}::{test.name}" for suite in found for test in suite.tests]
-        shown = ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
-        raise usage_error(f"no test in {places} matches `-k {pattern}`", f"tests: {shown}")
+    if not chosen:
+        tests = listed(f"{suite.path}::{test.name}" for suite in found for test in suite.tests)
+        raise usage_error(f"no test in {places} matches `-k {pattern}`", f"tests: {tests}")
     return chosen
 
 

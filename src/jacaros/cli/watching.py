@@ -1,20 +1,20 @@
-"""Recording, replay page, ground truth and terminal view of a run."""
+"""Recording, replay page, ground truth and views of a run."""
 
 import sys
+import threading
+import webbrowser
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
-from jacaros.cli.outputs import Outputs
+from jacaros.cli.outputs import LOOPBACK, Outputs, has_display
 from jacaros.cli.usage import usage_error
 from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.recording import Recording
 from jacaros.inspector.watch import Watch, Watcher
 from jacaros.inspector.watch_of import watch_of
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
-from jacaros.sim import World
 from jacaros.sim.process import GroundTruthFile
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from jacaros.inspector.terminal_view import TerminalView
 
 
-class Watching:
-    """A console that also passes output to recordings and views.
+class Watching(ExitStack):
+    """A console that also passes output to recordings and views, and completes these when the context ends.
 
     Args:
         console: takes the output. The view is drawn on the current standard error output.
@@ -34,13 +34,13 @@ class Watching:
     """
 
     def __init__(self, console: Console, outputs: Outputs) -> None:
-        self._console = console
-        self._outputs = outputs
-        record, replay = outputs.record, outputs.replay
+        super().__init__()
+        self._console, self._outputs = console, outputs
         self._recorder: Recorder | None = None
-        if record or replay:
-            self._recorder = Recorder(record, replay is not None, self._warn, outputs.record_limit)
-        self._ground_truth: GroundTruthFile | None = None
+        if outputs.record or outputs.replay:
+            limit = outputs.record_limit * 1_000_000
+            self._recorder = Recorder(outputs.record, outputs.replay is not None, self._warn, limit)
+            self.callback(self._recorder.close)
         self._view: TerminalView | None = None
         self._terminal = sys.stderr
         self._watch: Watch | None = None
@@ -53,29 +53,26 @@ class Watching:
             UsageError: the ground truth is requested, but the run has no embedded world.
         """
         if self._outputs.ground_truth is not None:
-            self._ground_truth = _ground_truth_file(
-                self._outputs.ground_truth, mas.ros.world, mas, self._warn
-            )
+            self.enter_context(self._ground_truth(self._outputs.ground_truth, mas))
         watchers: list[Watcher] = []
         if self._recorder is not None:
             watchers.append(self._recorder)
+            if self._outputs.replay is not None:
+                self.callback(self._write_replay, self._recorder, self._outputs.replay)
         if self._outputs.view == "terminal":
             from jacaros.inspector.terminal_view import TerminalView  # here: it imports rich
 
             self._view = TerminalView(stream=self._terminal)
             watchers.append(self._view)
-        pages = self._serve(mas) if self._outputs.view == "page" else None
-        if pages is not None:
-            watchers.append(pages.watcher)
-        self._watch = watch_of(mas, watchers, live=pages is not None)
+            self.callback(self._view.close)
+        page = self._serve(mas) if self._outputs.view == "page" else None
+        if page is not None:
+            watchers.append(page.watcher)
+        self._watch = watch_of(mas, watchers, live=page is not None)
+        self.callback(self._watch.stop)
         self._watch.start()
-        if pages is not None:
-            pages.begin(self._watch)
-
-    def _serve(self, mas: System) -> "RunView":
-        from jacaros.cli.pages import serve_pages  # here: it imports a server
-
-        return serve_pages(mas, self._outputs, self._console)
+        if page is not None:
+            page.begin(self._watch)
 
     def print(self, agent: str, text: str) -> None:
         """Print a line of an agent's output, unless the view shows it."""
@@ -88,42 +85,64 @@ class Watching:
         """Log a line."""
         self._console.log(text, level)
 
-    def __enter__(self) -> "Watching":
-        return self
+    def _serve(self, mas: System) -> "RunView":
+        """Serve the live page of a started run, log its address, and open it if there is a display.
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._watch is not None:
-            self._watch.stop()
-        if self._view is not None:
-            self._view.close()
-        if self._recorder is not None:
-            self._recorder.close()
-            if self._outputs.replay is not None and self._watch is not None:
-                self._write_replay(self._recorder.recording, self._outputs.replay)
-        if self._ground_truth is not None:
-            self._ground_truth.__exit__(kind, error, trace)
+        Raises:
+            UsageError: the page cannot be served at the address.
+        """
+        from jacaros.inspector.live.run_view import Place, RunView  # here: it imports a server
 
-    def _write_replay(self, recording: Recording, path: Path) -> None:
+        place = Place(self._outputs.view_address, self._outputs.view_port, self._outputs.view_token)
+        view = RunView(mas, place)
+        log_address(view.address, place.address, self.log)
+        view.awaited = open_page(view.address) is not None
+        return view
+
+    def _ground_truth(self, path: Path, mas: System) -> GroundTruthFile:
+        world = mas.ros.world
+        if world is None:
+            raise usage_error(
+                "--ground-truth needs a world embedded in this run",
+                "give --ground-truth to the `jacaros sim` that runs the world",
+            )
+        return GroundTruthFile(path, world, mas.clock.now() - world.time, self._warn)
+
+    def _write_replay(self, recorder: Recorder, path: Path) -> None:
         from jacaros.inspector.page import write_replay  # here: few runs write a page
 
+        recorder.close()
         try:
-            write_replay(recording, path)
+            write_replay(recorder.recording, path)
         except OSError as error:
-            self._console.log(f"error: cannot write `{path}`: {error.strerror}", "error")
+            self.log(f"error: cannot write `{path}`: {error.strerror}", "error")
             self.incomplete = True
 
     def _warn(self, text: str) -> None:
-        self._console.log(f"warning: {text}", "warning")
+        self.log(f"warning: {text}", "warning")
 
 
-def _ground_truth_file(
-    path: Path, world: World | None, mas: System, warn: Callable[[str], None]
-) -> GroundTruthFile:
-    if world is None:
-        raise usage_error(
-            "--ground-truth needs a world embedded in this run",
-            "give --ground-truth to the `jacaros sim` that runs the world",
+def log_address(page: str, address: str, log: Callable[[str, str], object]) -> None:
+    """Log the address of a page; warn if other machines can reach it.
+
+    Args:
+        page: URL of the page.
+        address: IP address or name that the page is served at.
+        log: takes a line and its level.
+    """
+    log(f"view: {page}", "info")
+    if address not in (LOOPBACK, "localhost", "::1"):
+        log(
+            f"warning: every machine that reaches {address} and knows the token can see everything in this run, including "
+            "the programs, and can command its agents and robots; the connection is not encrypted",
+            "warning",
         )
-    return GroundTruthFile(path, world, mas.clock.now() - world.time, warn)
+
+
+def open_page(page: str) -> threading.Thread | None:
+    """Open a page in the user's browser in a thread; return the thread, or None without a display."""
+    if not has_display():
+        return None
+    opening = threading.Thread(target=webbrowser.open, args=(page,), name="jacaros browser", daemon=True)
+    opening.start()
+    return opening

@@ -5,10 +5,12 @@ from pathlib import Path
 
 import click
 
-from jacaros.cli.outputs import check_output
-from jacaros.cli.usage import examples, usage_error
+from jacaros.cli.options import PATH, option
+from jacaros.cli.outputs import check_output, write_output
+from jacaros.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
 from jacaros.sim.description import WorldDescription, WorldError
+from jacaros.sim.files.world import load_world
 
 _IMAGES = (".pgm", ".png")
 _WIDTH = 640
@@ -19,7 +21,7 @@ _ROWS = 48
 """Height of a picture in characters when the output is not a terminal, in lines."""
 
 
-@click.group("world", short_help="Check, show, create and export world files.")
+@click.group("world")
 def command() -> None:
     """Check, show, create and export world files.
 
@@ -35,8 +37,6 @@ def command() -> None:
 @click.argument("worlds", metavar="WORLD...", nargs=-1, required=True)
 def check_command(worlds: tuple[str, ...]) -> int:
     """Report all mistakes in each WORLD, or print a summary. The exit code is 1 if there is a mistake."""
-    from jacaros.sim.files.world import load_world  # here: YAML is slow to import
-
     code = 0
     for name in worlds:
         try:
@@ -53,23 +53,10 @@ def check_command(worlds: tuple[str, ...]) -> int:
     epilog=examples("jacaros world show house", "jacaros world show world.yaml --output world.svg"),
 )
 @click.argument("world")
-@click.option(
-    "--output",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write a picture to FILE.svg or FILE.png.",
-)
-@click.option(
-    "--width",
-    type=click.IntRange(100, 10_000),
-    default=_WIDTH,
-    show_default=True,
-    help="Width of the picture, in pixels.",
-)
+@option("--output FILE", "Write a picture to FILE.svg or FILE.png.", PATH)
+@option("--width", "Width of the picture, in pixels.", click.IntRange(100, 10_000), default=_WIDTH)
 def show_command(world: str, output: Path | None, width: int) -> None:
     """Draw WORLD in the terminal, with docks, closed doors and robots, or write a picture of it."""
-    from jacaros.sim.files.world import load_world
-
     if output is None:
         _draw(load_world(world))
         return
@@ -106,19 +93,17 @@ def _png(svg: str) -> bytes:
     short_help="Write a new world file.",
     epilog=examples("jacaros world new world.yaml", "jacaros world new lab.yaml --map map.yaml"),
 )
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option(
-    "--map",
-    "map_file",
-    type=click.Path(path_type=Path),
-    metavar="MAP",
-    help="Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
+@click.argument("file", type=PATH)
+@option(
+    "--map MAP",
+    "Use the walls of a map: a map file of ROS's map_server (.yaml) or an image (.pgm, .png).",
+    PATH,
+    name="map_file",
 )
-@click.option(
-    "--resolution",
-    type=click.FloatRange(0.001, 10.0),
-    metavar="M",
-    help="Resolution of the image, in metres per pixel (default: 0.05).",
+@option(
+    "--resolution M",
+    "Resolution of the image, in metres per pixel (default: 0.05).",
+    click.FloatRange(0.001, 10.0),
 )
 def new_command(file: Path, map_file: Path | None, resolution: float | None) -> None:
     """Write FILE, a commented world file to start from, with two rooms or the walls of a map.
@@ -134,7 +119,10 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
     if map_file is not None and map_file.suffix in _IMAGES:
         described = file.with_name(f"{file.stem}_map.yaml")
         files.append(described)
-    _refuse_existing(files)
+    for path in files:
+        if path.exists():
+            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
+        _check_yaml(path)
     if map_file is not None and described is not None and described != map_file:
         _write(described, described_map(map_file, described, resolution or _RESOLUTION))
     _write(file, new_world(file.stem) if described is None else world_of_map(file, described))
@@ -146,19 +134,14 @@ def new_command(file: Path, map_file: Path | None, resolution: float | None) -> 
     epilog=examples("jacaros world export house house_map.yaml"),
 )
 @click.argument("world")
-@click.argument("file", metavar="FILE.yaml", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.yaml", type=PATH)
 def export_command(world: str, file: Path) -> None:
     """Write the map of WORLD to FILE.yaml and FILE.pgm, in the format of ROS's map_server. Doors are open in the map."""
-    if file.suffix not in (".yaml", ".yml"):
-        raise usage_error(
-            f"expected a file name with the suffix .yaml, found `{file}`",
-            f"name it {file.with_suffix('.yaml')}",
-        )
+    _check_yaml(file)
     image = file.with_suffix(".pgm")
     check_output(file, "map")
     check_output(image, "map image")
     from jacaros.sim.files.map import map_of_world
-    from jacaros.sim.files.world import load_world
 
     text, pixels = map_of_world(load_world(world), image.name)
     _write(file, text)
@@ -167,20 +150,17 @@ def export_command(world: str, file: Path) -> None:
 
 def _summary(world: WorldDescription) -> str:
     left, bottom, right, top = world.bounds
-    parts = [
-        _count(len(world.rooms), "room"),
-        _count(len(world.segments), "wall"),
-        _count(len(world.doors), "door"),
-        _count(len(world.docks), "dock"),
-        _count(len(world.robots), "robot"),
-    ]
+    parts = {
+        "room": world.rooms,
+        "wall": world.segments,
+        "door": world.doors,
+        "dock": world.docks,
+        "robot": world.robots,
+    }
+    listed = [counted(len(things), what) for what, things in parts.items()]
     if world.people:
-        parts.append(f"{len(world.people)} {'person' if len(world.people) == 1 else 'people'}")
-    return f"{world.name}: {right - left:g} x {top - bottom:g} m, {', '.join(parts)}"
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
+        listed.append(counted(len(world.people), "person", "people"))
+    return f"{world.name}: {right - left:g} x {top - bottom:g} m, {', '.join(listed)}"
 
 
 def _draw(world: WorldDescription) -> None:
@@ -198,20 +178,14 @@ def _draw(world: WorldDescription) -> None:
     click.echo(_summary(world))
 
 
-def _refuse_existing(paths: list[Path]) -> None:
-    for path in paths:
-        if path.exists():
-            raise usage_error(f"file exists: `{path}`", "name another file, or delete it")
-        if path.suffix not in (".yaml", ".yml"):
-            raise usage_error(
-                f"expected a file name with the suffix .yaml, found `{path}`",
-                f"name it {path.with_suffix('.yaml')}",
-            )
+def _check_yaml(path: Path) -> None:
+    if path.suffix not in (".yaml", ".yml"):
+        raise usage_error(
+            f"expected a file name with the suffix .yaml, found `{path}`",
+            f"name it {path.with_suffix('.yaml')}",
+        )
 
 
 def _write(path: Path, content: str | bytes) -> None:
-    try:
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    except OSError as error:
-        raise usage_error(f"cannot write `{path}`: {error.strerror}", "name another file") from error
+    write_output(path, content)
     click.echo(f"wrote {path}")

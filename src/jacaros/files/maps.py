@@ -210,17 +210,16 @@ def read_header(document: Node) -> MapHeader:
         nodes,
         nodes["image"].text() if "image" in nodes else "",
         nodes["resolution"].number(0.001, 10.0, 1.0) if "resolution" in nodes else 1.0,
-        _origin(nodes["origin"]) if "origin" in nodes else (0.0, 0.0, 0.0),
+        _origin(nodes.get("origin")),
         _cells(nodes),
         {name.text(): place.pair() for name, place in places},
     )
 
 
-def _origin(node: Node) -> tuple[float, float, float]:
-    numbers = [item.number() for item in node.sequence()]
-    if isinstance(node.value, list) and len(numbers) != 3:
-        node.wrong(f"{node.what} must be three numbers", "write [x, y, yaw] of the lower left corner")
-    return (numbers[0], numbers[1], numbers[2]) if len(numbers) == 3 else (0.0, 0.0, 0.0)
+def _origin(node: Node | None) -> tuple[float, float, float]:
+    usual, help = (0.0, 0.0, 0.0), "write [x, y, yaw] of the lower left corner"
+    x, y, yaw = usual if node is None else node.numbers("three", help, usual)
+    return x, y, yaw
 
 
 def _cells(nodes: Mapping[str, Node]) -> bytes:

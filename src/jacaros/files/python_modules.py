@@ -23,7 +23,7 @@ from jacaros.errors import JacarosError
 from jacaros.files.texts import file_text
 
 _HARMLESS: Final = frozenset(
-    {
+    [
         "__future__",
         "abc",
         "collections",
@@ -33,7 +33,7 @@ _HARMLESS: Final = frozenset(
         "math",
         "numbers",
         "typing",
-    }
+    ]
 )
 """Modules beside jacaros that an outline imports: all that they do is known."""
 
@@ -90,11 +90,9 @@ def fill(module: ModuleType, file: Path, text: str, project: Callable[[str], Mod
     tree = ast.parse(text, str(file))
     outline = _Outline(module, project)
     for statement in _flat(tree.body):
-        for part in outline.visible(statement):
-            code = compile(
-                ast.fix_missing_locations(ast.Module([part], [])), str(file), "exec", dont_inherit=True
-            )
-            exec(code, module.__dict__)
+        if outline.declares(statement):
+            part = ast.fix_missing_locations(ast.Module([statement], []))
+            exec(compile(part, str(file), "exec", dont_inherit=True), module.__dict__)
     if (doc := ast.get_docstring(tree)) is not None:
         module.__doc__ = doc
 
@@ -127,19 +125,20 @@ class _Outline:
         self._names = module.__dict__
         self._names["__unseen__"] = Unseen
 
-    def visible(self, statement: ast.stmt) -> Iterator[ast.stmt]:
-        """Yield the statements to execute in place of one; imports and unknown names are bound here."""
-        if isinstance(statement, ast.Import | ast.ImportFrom):
-            self._import(statement)
-        elif isinstance(statement, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            if self._declares(statement):
-                yield statement
-            else:
+    def declares(self, statement: ast.stmt) -> bool:
+        """Return whether to execute a statement, reduced to its declaration; names of others are bound here."""
+        match statement:
+            case ast.Import() | ast.ImportFrom():
+                self._import(statement)
+            case ast.ClassDef() | ast.FunctionDef() | ast.AsyncFunctionDef():
+                if self._reduce(statement):
+                    return True
                 self._names[statement.name] = UNSEEN
-        elif isinstance(statement, ast.Assign | ast.AnnAssign):
-            yield from self._assigned(statement)
-        elif _binds_more(statement):
-            self._names[INCOMPLETE] = True
+            case ast.Assign() | ast.AnnAssign():
+                self._assign(statement)
+            case _ if _binds_more(statement):
+                self._names[INCOMPLETE] = True
+        return False
 
     # imports
 
@@ -186,46 +185,46 @@ class _Outline:
 
     # declarations
 
-    def _declares(self, node: _Declaration) -> bool:
+    def _reduce(self, node: _Declaration) -> bool:
         """Reduce a class or function to what it declares; return False if only running the file could show that."""
         node.type_params = []  # type: ignore[union-attr]  # annotations with them become texts
-        return self._class(node) if isinstance(node, ast.ClassDef) else self._function(node)
-
-    def _class(self, node: ast.ClassDef) -> bool:
-        bases = [base.value if isinstance(base, ast.Subscript) else base for base in node.bases]
-        found = [self._value(base) for base in bases]
-        if any(not isinstance(each, type) and not _is_typing(each) for each in found) or node.keywords:
-            return False
         if not all(map(self._is_known, node.decorator_list)):
-            return False
-        body: list[ast.stmt] = []
-        for statement in _flat(node.body):
-            if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef):
-                if _is_part_of_property(statement):
-                    continue
-                if not self._declares(statement):
-                    return False
-                body.append(statement)
-            elif isinstance(statement, ast.ClassDef):
-                body.append(statement if self._declares(statement) else _unseen(statement, statement.name))
-            elif isinstance(statement, ast.Assign | ast.AnnAssign):
-                body += _attributes(statement)
-            elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
-                body.append(statement)
-            elif _binds_more(statement):
-                return False
-        node.bases = [base for base, value in zip(bases, found, strict=True) if isinstance(value, type)]
-        node.body = body or [ast.Pass()]
-        return True
-
-    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-        """Empty the body of a function; return False if a decorator may turn it into anything."""
-        if not all(map(self._is_known, node.decorator_list)):
-            return False
+            return False  # they may turn it into anything
+        if isinstance(node, ast.ClassDef):
+            return self._reduce_class(node)
         documentation = node.body[:1] if ast.get_docstring(node) is not None else []
         node.body = [*documentation, ast.Expr(ast.Yield()) if _yields(node) else ast.Pass()]
         node.returns = _written(node.returns)
-        _reduce(node.args)
+        _reduce_parameters(node.args)
+        return True
+
+    def _reduce_class(self, node: ast.ClassDef) -> bool:
+        bases = [base.value if isinstance(base, ast.Subscript) else base for base in node.bases]
+        found = [self._value(base) for base in bases]
+        # Base classes of typing matter to type checkers only.
+        if node.keywords or not all(
+            isinstance(each, type) or getattr(each, "__module__", "") == "typing" for each in found
+        ):
+            return False
+        body: list[ast.stmt] = []
+        for statement in _flat(node.body):
+            match statement:
+                case ast.FunctionDef() | ast.AsyncFunctionDef():
+                    if _is_part_of_property(statement):
+                        continue
+                    if not self._reduce(statement):
+                        return False
+                    body.append(statement)
+                case ast.ClassDef(name=name):
+                    body.append(statement if self._reduce(statement) else _unseen(statement, name))
+                case ast.Assign() | ast.AnnAssign():
+                    body += _attributes(statement)
+                case ast.Expr(value=ast.Constant()):
+                    body.append(statement)
+                case _ if _binds_more(statement):
+                    return False
+        node.bases = [base for base, value in zip(bases, found, strict=True) if isinstance(value, type)]
+        node.body = body or [ast.Pass()]
         return True
 
     def _is_known(self, decorator: ast.expr) -> bool:
@@ -240,30 +239,27 @@ class _Outline:
         ours = module.startswith(("jacaros.", "dataclasses", "abc", "typing", "builtins"))
         return value is not UNSEEN and ours and getattr(value, "__name__", "") in _DECORATORS
 
-    def _assigned(self, statement: ast.Assign | ast.AnnAssign) -> Iterator[ast.stmt]:
-        targets: list[ast.expr] = (
-            statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-        )
-        value = statement.value
-        if value is None:
+    def _assign(self, statement: ast.Assign | ast.AnnAssign) -> None:
+        if statement.value is None:
             return
-        if _is_constant(value) and all(isinstance(each, ast.Name) for each in targets):
-            yield ast.copy_location(ast.Assign(targets=targets, value=value), statement)
-            return
-        found = self._value(value)
-        for target in targets:
+        value = self._value(statement.value)
+        for target in _targets(statement):
             for each in ast.walk(target):
                 if isinstance(each, ast.Name):
-                    self._names[each.id] = found if isinstance(target, ast.Name) else UNSEEN
+                    self._names[each.id] = value if each is target else UNSEEN
 
     def _value(self, node: ast.expr) -> Any:
-        """Return the value of a name, with or without dots; `UNSEEN` for anything else."""
+        """Return the value of a constant, or of a name with or without dots; `UNSEEN` for anything else."""
         if isinstance(node, ast.Name):
             return self._names.get(node.id, getattr(builtins, node.id, UNSEEN))
         if isinstance(node, ast.Attribute):
             owner = self._value(node.value)
             return UNSEEN if owner is UNSEEN else getattr(owner, node.attr, UNSEEN)
-        return UNSEEN
+        return ast.literal_eval(node) if _is_constant(node) else UNSEEN
+
+
+def _targets(statement: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
+    return statement.targets if isinstance(statement, ast.Assign) else [statement.target]
 
 
 def _is_part_of_property(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
@@ -271,11 +267,6 @@ def _is_part_of_property(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
         isinstance(each, ast.Attribute) and each.attr in ("setter", "getter", "deleter")
         for each in node.decorator_list
     )
-
-
-def _is_typing(value: object) -> bool:
-    """Return whether a base class matters to type checkers only."""
-    return getattr(value, "__module__", "") == "typing"
 
 
 def _is_constant(node: ast.expr) -> bool:
@@ -299,12 +290,10 @@ def _unseen(node: ast.stmt, name: str) -> ast.stmt:
 def _attributes(statement: ast.Assign | ast.AnnAssign) -> list[ast.stmt]:
     """Attributes of a class: constants as they are, others unseen."""
     if isinstance(statement, ast.Assign):
-        names = [
-            each.id for target in statement.targets for each in ast.walk(target) if isinstance(each, ast.Name)
-        ]
         if _is_constant(statement.value) and all(isinstance(each, ast.Name) for each in statement.targets):
             return [statement]
-        return [_unseen(statement, name) for name in names]
+        parts = (each for target in statement.targets for each in ast.walk(target))
+        return [_unseen(statement, each.id) for each in parts if isinstance(each, ast.Name)]
     if not isinstance(statement.target, ast.Name):
         return []
     value = statement.value
@@ -314,7 +303,7 @@ def _attributes(statement: ast.Assign | ast.AnnAssign) -> list[ast.stmt]:
     return [ast.copy_location(ast.AnnAssign(statement.target, annotation, value, 1), statement)]
 
 
-def _reduce(given: ast.arguments) -> None:
+def _reduce_parameters(given: ast.arguments) -> None:
     """Keep annotations of parameters as texts, and constants as default values."""
     for each in ast.walk(given):
         if isinstance(each, ast.arg):
@@ -325,17 +314,7 @@ def _reduce(given: ast.arguments) -> None:
     ]
 
 
-_OF_TYPES: Final = (
-    ast.Name,
-    ast.Attribute,
-    ast.Subscript,
-    ast.BinOp,
-    ast.BitOr,
-    ast.Tuple,
-    ast.List,
-    ast.Constant,
-    ast.Load,
-)
+_OF_TYPES: Final = (ast.Name, ast.Attribute, ast.Subscript, ast.BinOp, ast.BitOr, ast.Tuple, ast.List)
 
 
 def _written(annotation: ast.expr | None) -> ast.expr | None:
@@ -347,10 +326,11 @@ def _written(annotation: ast.expr | None) -> ast.expr | None:
             annotation = ast.parse(annotation.value, mode="eval").body
         except (SyntaxError, ValueError):
             return None
-    if not all(isinstance(each, _OF_TYPES) for each in ast.walk(annotation)):
-        return None
-    if any(isinstance(each, ast.Constant) and isinstance(each.value, str) for each in ast.walk(annotation)):
-        return None  # texts within texts would be evaluated in turn
+    for each in ast.walk(annotation):
+        # Texts within texts would be evaluated in turn.
+        is_constant = isinstance(each, ast.Constant) and not isinstance(each.value, str)
+        if not (is_constant or isinstance(each, (*_OF_TYPES, ast.Load))):
+            return None
     return ast.copy_location(ast.Constant(ast.unparse(annotation)), annotation)
 
 
@@ -369,14 +349,15 @@ def _yields(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 def _binds_more(statement: ast.stmt) -> bool:
     """Return whether a statement may bind names of a module or class that cannot be determined."""
     for node in ast.walk(statement):
-        if isinstance(node, ast.Name) and (isinstance(node.ctx, ast.Store) or node.id in _BINDING_CALLS):
-            return True
-        if isinstance(
-            node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Import | ast.ImportFrom
-        ):
-            return True
-        if isinstance(node, ast.Attribute) and node.attr in ("import_module", "modules", "update"):
-            return True
+        match node:
+            case (
+                ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef() | ast.Import() | ast.ImportFrom()
+            ):
+                return True
+            case ast.Name(ctx=ast.Store()) | ast.Attribute(attr="import_module" | "modules" | "update"):
+                return True
+            case ast.Name(id=name) if name in _BINDING_CALLS:
+                return True
     return False
 
 
@@ -449,9 +430,11 @@ class ProjectModules:
             place = self.place(name)
             if place is None:
                 return ()
-            found = self._loaded[name] = (
-                (self._file(name, place),) if place.is_file() else self._package(name, place)
-            )
+            # Nothing of a package, if it is a file.
+            rest = [file for file in sorted(place.glob("*.py")) if file.name != "__init__.py"]
+            first = self._module(name, place)
+            found = (first, *(self._file(f"{name}.{file.stem}", file) for file in rest))
+            self._loaded[name] = found
         return found
 
     def require_seen(self, module: ModuleType, name: str) -> None:
@@ -477,11 +460,11 @@ class ProjectModules:
         """The name by which the project knows a module, such as ``my.geometry``."""
         return module.__name__.removeprefix(f"{self._prefix}.")
 
-    def _package(self, name: str, folder: Path) -> tuple[ModuleType, ...]:
-        entry = folder / "__init__.py"
-        first = self._file(name, entry, folder) if entry.is_file() else self._empty_package(name, folder)
-        rest = [file for file in sorted(folder.glob("*.py")) if file != entry]
-        return (first, *(self._file(f"{name}.{file.stem}", file) for file in rest))
+    def _module(self, name: str, place: Path) -> ModuleType:
+        if place.is_file():
+            return self._file(name, place)
+        entry = place / "__init__.py"
+        return self._file(name, entry, place) if entry.is_file() else self._empty_package(name, place)
 
     def _empty_package(self, name: str, folder: Path) -> ModuleType:
         module = self._modules.get(name) or ModuleType(f"{self._prefix}.{name}")
@@ -516,37 +499,29 @@ class ProjectModules:
         """Return the outline of another module of the project that one imports."""
         name = name.removeprefix(f"{self._prefix}.")
         place = self.place(name)
-        if place is None:
-            return None
-        if place.is_file():
-            return self._file(name, place)
-        entry = place / "__init__.py"
-        return self._file(name, entry, place) if entry.is_file() else self._empty_package(name, place)
+        return None if place is None else self._module(name, place)
 
     @contextmanager
     def _importing(self) -> Iterator[None]:
         """Let imports find the project's files first, and take those files out of the module table again."""
         with _import_path:
-            yield from self._shown()
-
-    def _shown(self) -> Iterator[None]:
-        before = set(sys.modules)
-        shown = {name: module for name, module in self._modules.items() if name not in before}
-        sys.modules.update(shown)
-        paths = [str(folder) for folder in self.folders]
-        sys.path[:0] = paths
-        try:
-            yield
-        finally:
-            for path in paths:
-                sys.path.remove(path)
-            for name in [name for name in list(sys.modules) if name not in before]:
-                module = sys.modules[name]
-                if name.startswith(f"{self._prefix}."):
-                    self._modules.setdefault(name.removeprefix(f"{self._prefix}."), module)
-                elif name in shown or self._is_own(module):
-                    self._modules.setdefault(name, module)
-                    del sys.modules[name]
+            before = set(sys.modules)
+            shown = {name: module for name, module in self._modules.items() if name not in before}
+            sys.modules.update(shown)
+            paths = [str(folder) for folder in self.folders]
+            sys.path[:0] = paths
+            try:
+                yield
+            finally:
+                for path in paths:
+                    sys.path.remove(path)
+                for name in [name for name in list(sys.modules) if name not in before]:
+                    module = sys.modules[name]
+                    if name.startswith(f"{self._prefix}."):
+                        self._modules.setdefault(name.removeprefix(f"{self._prefix}."), module)
+                    elif name in shown or self._is_own(module):
+                        self._modules.setdefault(name, module)
+                        del sys.modules[name]
 
     def _is_own(self, module: ModuleType) -> bool:
         file = getattr(module, "__file__", None)

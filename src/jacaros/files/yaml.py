@@ -3,7 +3,7 @@
 import math
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -78,15 +78,13 @@ def syntax_problem(error: YAMLError, text: str) -> Problem:
     line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
     if opened is not None and ("<stream end>" in told or "end of stream" in told):
         what = "quote" if "scalar" in str(error.context) else "bracket"
-        return Problem(
-            opened.line + 1, opened.column + 1, f"this {what} is never closed", f"close the {what}"
-        )
+        message = f"this {what} is never closed"
+        return Problem(opened.line + 1, opened.column + 1, message, f"close the {what}")
     problem = _explained(told, line, column)
     if opened is not None and "flow" in str(error.context) and "but got '['" not in told:
         where = f"the bracket of line {opened.line + 1}, column {opened.column + 1}"
-        return Problem(
-            line, column, f"{problem.message}, within {where}", "check commas, quotes and brackets"
-        )
+        help = "check commas, quotes and brackets"
+        return Problem(line, column, f"{problem.message}, within {where}", help)
     return problem
 
 
@@ -94,9 +92,8 @@ def _explained(told: str, line: int, column: int) -> Problem:
     for pattern, message, help in _EXPLAINED:
         if (found := re.search(pattern, told)) is not None:
             parts = found.groups()
-            return Problem(
-                line, column, f"not YAML: {message.format(*parts, problem=told)}", help.format(*parts)
-            )
+            meaning = f"not YAML: {message.format(*parts, problem=told)}"
+            return Problem(line, column, meaning, help.format(*parts))
     return Problem(line, column, f"not YAML: {told.splitlines()[0]}", "check indents, colons and quotes")
 
 
@@ -128,9 +125,8 @@ def read_text(path: Path) -> tuple[str, Problem | None]:
             return "", Problem(1, 1, what, "save it as UTF-8" if wide else "give a YAML file")
         before = data[: error.start].decode("utf-8", "replace")
         line, column = before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1
-        return text, Problem(
-            line, column, f"the byte {data[error.start]:#04x} is not UTF-8", "save the file as UTF-8"
-        )
+        message = f"the byte {data[error.start]:#04x} is not UTF-8"
+        return text, Problem(line, column, message, "save the file as UTF-8")
 
 
 # YAML values with their place in the file, and readers that collect errors instead of stopping at the first.
@@ -197,17 +193,17 @@ class Node:
 
         With *anchors*, keys that begin with ``x-`` are free for the author, for example for values that aliases repeat.
         """
-        if self.value is None and not required:
-            return {}
         if self.value is None:
-            self.wrong(f"{self.what} is empty", f"write its keys below it, indented: {', '.join(known)}")
+            if required:
+                self.wrong(f"{self.what} is empty", f"write its keys below it, indented: {', '.join(known)}")
             return {}
         if not isinstance(self.value, CommentedMap):
             self.wrong(f"{self.what} must be a mapping of keys to values", f"keys: {', '.join(known)}")
             return {}
         for key in self.value:
             if known and key not in known and not (anchors and str(key).startswith("x-")):
-                self._unknown_key(key, known)
+                help = suggestion(str(key), known, f"known keys: {', '.join(known)}")
+                self.problems.append(Problem(*self._place(key), f"{self.what} has no key '{key}'", help))
         for key in required:
             if key not in self.value:
                 self.wrong(f"{self.what} lacks the key '{key}'", f"add '{key}: ...'")
@@ -226,10 +222,6 @@ class Node:
         line, column = places.value(key) if at_value else places.key(key)
         return line + 1, column + 1
 
-    def _unknown_key(self, key: object, known: tuple[str, ...]) -> None:
-        help = suggestion(str(key), known, f"known keys: {', '.join(known)}")
-        self.problems.append(Problem(*self._place(key), f"{self.what} has no key '{key}'", help))
-
     def entries(self) -> Iterator[tuple["Node", "Node"]]:
         """Yield names and values of a mapping whose keys the author chooses; nothing for a missing value."""
         if self.value is None:
@@ -247,10 +239,9 @@ class Node:
         if not isinstance(self.value, CommentedSeq):
             self.wrong(f"{self.what} must be a list", "write '- item' lines or [item, item]")
             return
-        for index in range(len(self.value)):
+        for index, item in enumerate(self.value):
             line, column = self.value.lc.item(index)
-            what = f"item {index + 1} of {self.what}"
-            yield Node(self.value[index], line + 1, column + 1, self.problems, what)
+            yield Node(item, line + 1, column + 1, self.problems, f"item {index + 1} of {self.what}")
 
     def number(self, minimum: float = -math.inf, maximum: float = math.inf, default: float = 0.0) -> float:
         """Return a finite number within the limits (both included)."""
@@ -259,7 +250,9 @@ class Node:
             self.wrong(f"{self.what} must be a number, not {value!r}", "write a figure such as 0.5")
             return default
         if not minimum <= value <= maximum:
-            self.wrong(f"{self.what} is {value}, but must {_limits(minimum, maximum)}")
+            upper = f"lie between {minimum:g} and {maximum:g}"
+            limits = f"be at least {minimum:g}" if maximum == math.inf else upper
+            self.wrong(f"{self.what} is {value}, but must {limits}")
             return default
         return float(value)
 
@@ -293,16 +286,17 @@ class Node:
 
     def pair(self) -> tuple[float, float]:
         """Return two numbers: ``[x, y]``."""
+        x, y = self.numbers("two", "write [x, y], in metres", (0.0, 0.0))
+        return x, y
+
+    def numbers(self, count: str, help: str, default: Sequence[float]) -> Sequence[float]:
+        """Return as many numbers as the default has; *count* is their number in a message."""
         numbers = [item.number() for item in self.sequence()]
-        if isinstance(self.value, CommentedSeq) and len(numbers) != 2:
-            self.wrong(f"{self.what} must be two numbers", "write [x, y], in metres")
-        return (numbers[0], numbers[1]) if len(numbers) == 2 else (0.0, 0.0)
-
-
-def _limits(minimum: float, maximum: float) -> str:
-    if maximum == math.inf:
-        return f"be at least {minimum:g}"
-    return f"lie between {minimum:g} and {maximum:g}"
+        if len(numbers) == len(default):
+            return numbers
+        if isinstance(self.value, list):
+            self.wrong(f"{self.what} must be {count} numbers", help)
+        return default
 
 
 def read_document(text: str, problems: list[Problem], what: str) -> Node:
@@ -336,12 +330,12 @@ def _loaded(reader: YAML, text: str, problems: list[Problem]) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # YAML 1.2 allows an anchor to be given again
-            unusable = _unusable(reader.compose(StringIO(text)), twice)
-            if unusable is None:
-                document = reader.load(StringIO(text))
-                problems += twice
-                return document
-        problems.append(unusable)
+            _check(reader.compose(StringIO(text)), twice)
+            document = reader.load(StringIO(text))
+        problems += twice
+        return document
+    except _Unusable as unusable:
+        problems.append(unusable.problem)
     except YAMLError as error:
         problems.append(syntax_problem(error, text))
     except RecursionError:
@@ -361,6 +355,12 @@ _TAGS: Final = frozenset(
 """Kinds of values; `!robot` and `!!python/object` are others."""
 
 
+class _Unusable(Exception):
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem.message)
+        self.problem = problem
+
+
 class _Placing:
     """Makes values of nodes, and reports where a value is invalid, such as the date 2001-99-99."""
 
@@ -370,9 +370,8 @@ class _Placing:
             return super().construct_object(node, deep)  # type: ignore[misc]
         except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             kind = str(node.tag).rpartition(":")[2]
-            raise ConstructorError(
-                None, None, f"not a valid {kind}: {str(error).partition(';')[0]}", node.start_mark
-            ) from error
+            message = f"not a valid {kind}: {str(error).partition(';')[0]}"
+            raise ConstructorError(None, None, message, node.start_mark) from error
 
 
 class _PlacingConstructor(_Placing, RoundTripConstructor):
@@ -383,48 +382,44 @@ class _PlacingSafeConstructor(_Placing, SafeConstructor):
     """For plain values."""
 
 
-def _parts(node: Any) -> Iterator[Any]:
-    """The values within a value."""
-    if isinstance(node, MappingNode):
-        yield from (each for pair in node.value for each in pair)
-    elif isinstance(node, SequenceNode):
-        yield from node.value
-
-
-def _unusable(document: Any, twice: list[Problem]) -> Problem | None:
-    """Return the error of an unknown tag, an alias inside its own value, or aliases that make the document endless.
+def _check(document: Any, twice: list[Problem]) -> None:
+    """Check for unknown tags, aliases inside their own values, and aliases that make the document endless.
 
     Keys that occur twice in one mapping are added to *twice*.
+
+    Raises:
+        _Unusable: the document has one of them.
     """
     sizes: dict[int, int] = {}
     depths: dict[int, int] = {}
     within: set[int] = set()
 
-    def measure(node: Any) -> Problem | None:
+    def measure(node: Any) -> None:
         if id(node) in sizes:
-            return None
+            return
         line, column = node.start_mark.line + 1, node.start_mark.column + 1
         if node.tag not in _TAGS:
-            return Problem(
-                line, column, f"unknown tag `{node.tag}`", "remove the tag: values have no other kinds"
-            )
+            help = "remove the tag: values have no other kinds"
+            raise _Unusable(Problem(line, column, f"unknown tag `{node.tag}`", help))
         if id(node) in within:
-            return Problem(line, column, f"&{node.anchor} contains itself", "remove the alias")
+            raise _Unusable(Problem(line, column, f"&{node.anchor} contains itself", "remove the alias"))
         within.add(id(node))
+        parts = node.value if isinstance(node, SequenceNode) else []
         if isinstance(node, MappingNode):
             twice.extend(_twice(node))
-        parts = list(_parts(node))
+            parts = [each for pair in node.value for each in pair]
         for part in parts:
-            if (wrong := measure(part)) is not None:
-                return wrong
+            measure(part)
         within.discard(id(node))
         sizes[id(node)] = size = 1 + sum(sizes[id(part)] for part in parts)
         depths[id(node)] = depth = 1 + max((depths[id(part)] for part in parts), default=0)
         if size > LARGEST:
-            return Problem(line, column, f"it has more than {LARGEST} values", "use fewer aliases")
-        return _TOO_DEEP if depth > _DEEPEST else None
+            raise _Unusable(Problem(line, column, f"it has more than {LARGEST} values", "use fewer aliases"))
+        if depth > _DEEPEST:
+            raise _Unusable(_TOO_DEEP)
 
-    return None if document is None else measure(document)
+    if document is not None:
+        measure(document)
 
 
 def _twice(mapping: MappingNode) -> Iterator[Problem]:

@@ -4,9 +4,8 @@
 """
 
 from jacaros.metrics.charts import Series, bar_chart, measure_chart
-from jacaros.metrics.counted_file import MEASURES, CountedFile, Counts, counts_of
-from jacaros.metrics.groups import Group, ProgramMetrics
-from jacaros.metrics.measuring import MetricsError, measure
+from jacaros.metrics.counting import MEASURES, CountedFile, Counts, Group, ProgramMetrics, counts_of
+from jacaros.metrics.programs import MetricsError, measure
 from jacaros.metrics.tables import Table, as_csv, as_markdown, as_text, file_table, group_table, measure_table
 
 __all__ = [

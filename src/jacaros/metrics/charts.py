@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from jacaros.metrics.counted_file import MEASURES
-from jacaros.metrics.groups import Group, ProgramMetrics
+from jacaros.metrics.counting import MEASURES, Group, ProgramMetrics
 
 _STYLE: Final = """
   text{fill:#23282e;font:12px system-ui,sans-serif} .title{font-weight:600;font-size:14px}
@@ -69,14 +68,13 @@ def bar_chart(title: str, categories: Sequence[str], stacks: Sequence[Sequence[S
     """
     width = max(_NARROWEST, _LEFT + _RIGHT + _CATEGORY * len(categories))
     height = _TOP + _HEIGHT + _BOTTOM
-    step = _step(max((_height(stack, i) for stack in stacks for i in range(len(categories))), default=0))
-    plot = _Plot(width - _LEFT - _RIGHT, len(categories), len(stacks), step)
+    sums = [sum(values) for stack in stacks for values in zip(*(each.values for each in stack), strict=True)]
+    step = _step(max(sums, default=0))
     parts = [
         f'<text class="title" x="{_LEFT}" y="20">{html.escape(title)}</text>',
         *_legend(stacks),
-        *_axis(plot, width),
-        *_bars(plot, categories, stacks),
-        *_names(plot, categories),
+        *_axis(step, width),
+        *_bars(step, width, categories, stacks),
     ]
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
@@ -85,37 +83,20 @@ def bar_chart(title: str, categories: Sequence[str], stacks: Sequence[Sequence[S
     )
 
 
-@dataclass(frozen=True)
-class _Plot:
-    """The layout of the plot; *step* is the value of one tick of the axis."""
-
-    width: float
-    categories: int
-    stacks: int
-    step: int
-
-    def y(self, value: float) -> float:
-        return round(_TOP + _HEIGHT * (1 - value / (self.step * _TICKS)), 1)
-
-    def middle(self, category: int) -> float:
-        return round(_LEFT + self.width * (category + 0.5) / self.categories, 1)
-
-    def bar(self, category: int, stack: int) -> tuple[float, float]:
-        """Return the left side and the width of a bar."""
-        size = self.width / self.categories * (1 - _GAP)
-        left = self.middle(category) - size / 2 + size * stack / self.stacks
-        return round(left + 1, 1), round(size / self.stacks - 2, 1)
-
-
-def _height(stack: Sequence[Series], category: int) -> int:
-    return sum(each.values[category] for each in stack)
-
-
 def _step(highest: int) -> int:
     """Return a round step, of which a few reach the highest value."""
     least = max(1, math.ceil(highest / _TICKS))
     power = int(10 ** math.floor(math.log10(least)))
     return next(power * factor for factor in (1, 2, 3, 4, 5, 6, 8, 10) if power * factor >= least)
+
+
+def _y(value: float, step: int) -> float:
+    return round(_TOP + _HEIGHT * (1 - value / (step * _TICKS)), 1)
+
+
+def _colour(stack: int, level: int) -> str:
+    """Return the class of a colour; each stack has two similar ones."""
+    return f"c{(2 * stack + level) % _COLOURS}"
 
 
 def _legend(stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
@@ -128,37 +109,35 @@ def _legend(stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
                 x += 40 + 7 * len(each.name)
 
 
-def _colour(stack: int, level: int) -> str:
-    """Return the class of a colour; each stack has two similar ones."""
-    return f"c{(2 * stack + level) % _COLOURS}"
+def _axis(step: int, width: int) -> Iterator[str]:
+    for value in range(0, (_TICKS + 1) * step, step):
+        y = _y(value, step)
+        yield f'<path class="{"grid" if value else "axis"}" d="M{_LEFT} {y}H{width - _RIGHT}"/>'
+        yield f'<text class="tick" text-anchor="end" x="{_LEFT - 6}" y="{y + 4:.1f}">{value}</text>'
 
 
-def _axis(plot: _Plot, width: int) -> Iterator[str]:
-    for tick in range(_TICKS + 1):
-        y = plot.y(tick * plot.step)
-        kind = "grid" if tick else "axis"
-        yield f'<path class="{kind}" d="M{_LEFT} {y}H{width - _RIGHT}"/>'
-        yield f'<text class="tick" text-anchor="end" x="{_LEFT - 6}" y="{y + 4:.1f}">{tick * plot.step}</text>'
-
-
-def _bars(plot: _Plot, categories: Sequence[str], stacks: Sequence[Sequence[Series]]) -> Iterator[str]:
-    for category, name in enumerate(categories):
+def _bars(
+    step: int, width: int, categories: Sequence[str], stacks: Sequence[Sequence[Series]]
+) -> Iterator[str]:
+    """Yield the bars with their sums, and then the names of the categories."""
+    category_width = (width - _LEFT - _RIGHT) / max(1, len(categories))
+    bar_width = category_width * (1 - _GAP) / max(1, len(stacks))
+    names = []
+    for number, category in enumerate(categories):
+        middle = round(_LEFT + category_width * (number + 0.5), 1)
         for place, stack in enumerate(stacks):
-            left, width = plot.bar(category, place)
+            left = middle + bar_width * (place - len(stacks) / 2)
             below = 0
             for level, each in enumerate(stack):
-                value = each.values[category]
-                top, bottom = plot.y(below + value), plot.y(below)
+                value = each.values[number]
+                top, bottom = _y(below + value, step), _y(below, step)
                 below += value
                 if value:
-                    about = html.escape(f"{name}, {each.name}: {value}")
-                    size = f'x="{left}" y="{top}" width="{width}" height="{bottom - top:.1f}"'
+                    about = html.escape(f"{category}, {each.name}: {value}")
+                    size = f'x="{left + 1:.1f}" y="{top}" width="{bar_width - 2:.1f}" height="{bottom - top:.1f}"'
                     yield f'<rect class="{_colour(place, level)}" {size}><title>{about}</title></rect>'
-            x = round(left + width / 2, 1)
-            yield f'<text text-anchor="middle" x="{x}" y="{plot.y(below) - 4:.1f}">{below}</text>'
-
-
-def _names(plot: _Plot, categories: Sequence[str]) -> Iterator[str]:
-    for category, name in enumerate(categories):
-        shown = html.escape(name.replace("_", " "))
-        yield f'<text text-anchor="middle" x="{plot.middle(category)}" y="{_TOP + _HEIGHT + 18}">{shown}</text>'
+            x = round(left + bar_width / 2, 1)
+            yield f'<text text-anchor="middle" x="{x}" y="{_y(below, step) - 4:.1f}">{below}</text>'
+        shown = html.escape(category.replace("_", " "))
+        names.append(f'<text text-anchor="middle" x="{middle}" y="{_TOP + _HEIGHT + 18}">{shown}</text>')
+    yield from names

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from jacaros.metrics.counted_file import MEASURES, Counts
-from jacaros.metrics.groups import Group, ProgramMetrics
+from jacaros.metrics.counting import MEASURES, Counts, Group, ProgramMetrics
 
 Cell = str | int
 

@@ -12,7 +12,7 @@ from typing import Any
 from jacaros.ros.backend import Backend
 from jacaros.ros.message import to_seconds
 from jacaros.ros.qos import QoS
-from jacaros.runtime.clock import Timer, TimerQueue
+from jacaros.runtime.clock import Clock, Timer
 
 CLOCK_TOPIC = "/clock"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
@@ -33,7 +33,7 @@ SILENT_AFTER = 3.0
 """Seconds of real time after which a clock that does not move is reported."""
 
 
-class RosClock:
+class RosClock(Clock):
     """Time from ``/clock``; it is 0 until the first message, as in all ROS nodes.
 
     Args:
@@ -44,14 +44,12 @@ class RosClock:
         paused: whether no timer fires, although the simulator may continue.
     """
 
-    virtual = False
+    elapsed = 0.0
 
     def __init__(self, log: Callable[[str], None]) -> None:
-        self.elapsed = 0.0
+        super().__init__()
         self._log = log
         self._time: float | None = None
-        self.paused = False
-        self._timers = TimerQueue()
         self._on_jump: list[Callable[[float], None]] = []
         self._watch: asyncio.TimerHandle | None = None
         self._moved = False
@@ -69,22 +67,10 @@ class RosClock:
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* when ``/clock`` has advanced by *delay* seconds."""
-        timer = self._timers.add(self.elapsed + max(0.0, delay), callback)
+        timer = super().call_later(delay, callback)
         if delay <= 0.0:
             asyncio.get_running_loop().call_soon(self._ring)
         return timer
-
-    async def sleep(self, delay: float) -> None:
-        """Wait until ``/clock`` has advanced by *delay* seconds."""
-        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        timer = self.call_later(delay, lambda: None if done.done() else done.set_result(None))
-        try:
-            await done
-        finally:
-            timer.cancel()
-
-    def busy(self, cycles: int) -> None:
-        """Do nothing: the simulator moves the time."""
 
     def pause(self) -> None:
         """Stop timers until `resume`; `now` still follows the simulator, which is not paused."""

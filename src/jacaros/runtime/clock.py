@@ -13,19 +13,20 @@ import _thread
 import asyncio
 import contextvars
 import heapq
-import itertools
+import math
 import selectors
 import signal
 import sys
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Coroutine, Iterator, Sequence
-from concurrent.futures import Executor, Future
-from contextlib import contextmanager
+from concurrent.futures import Future
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from types import FrameType
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 # An alarm that interrupts the main thread in the middle of whatever Python code it executes.
 #
@@ -98,17 +99,17 @@ COMPACT_ABOVE = 100
 """Cancelled timers that a queue may hold before it looks whether they are more than half of all."""
 
 
-class QueuedTimer:
+class Timer:
     """A call at a moment.
 
     Attributes:
         when: the moment, in seconds of the clock.
     """
 
-    __slots__ = ("_queue", "callback", "number", "when")
+    __slots__ = ("_queue", "callback", "when")
 
-    def __init__(self, when: float, number: int, callback: Callable[[], None], queue: "TimerQueue") -> None:
-        self.when, self.number = when, number
+    def __init__(self, when: float, callback: Callable[[], None], queue: "TimerQueue") -> None:
+        self.when = when
         self.callback: Callable[[], None] | None = callback
         self._queue = queue
 
@@ -125,32 +126,32 @@ class QueuedTimer:
             callback()
 
 
-_Entry = tuple[float, int, QueuedTimer]
+_Entry = tuple[float, int, Timer]
 """A moment, a number that no other timer has, and the timer: tuples compare without calling Python functions."""
 
 
 class TimerQueue:
-    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set."""
+    """The pending timers of a clock, earliest first; equal moments keep the order in which they were set.
 
-    __slots__ = ("_cancelled", "_heap", "_numbers")
+    Attributes:
+        newest: number of the timer that was set last.
+    """
+
+    __slots__ = ("_cancelled", "_heap", "newest")
 
     def __init__(self) -> None:
         self._heap: list[_Entry] = []
-        self._numbers = itertools.count()
-        self._cancelled = 0
+        self.newest = self._cancelled = 0
 
     def __len__(self) -> int:
         return len(self._heap)
 
-    def add(self, when: float, callback: Callable[[], None]) -> QueuedTimer:
+    def add(self, when: float, callback: Callable[[], None]) -> Timer:
         """Set a timer."""
-        timer = QueuedTimer(when, next(self._numbers), callback, self)
-        heapq.heappush(self._heap, (when, timer.number, timer))
+        self.newest += 1
+        timer = Timer(when, callback, self)
+        heapq.heappush(self._heap, (when, self.newest, timer))
         return timer
-
-    def put_back(self, timer: QueuedTimer) -> None:
-        """Put back a timer that `next_due` returned and that has not rung."""
-        heapq.heappush(self._heap, (timer.when, timer.number, timer))
 
     def first_moment(self) -> float | None:
         """The moment of the earliest timer; None without one."""
@@ -159,16 +160,16 @@ class TimerQueue:
             heapq.heappop(heap)
         return heap[0][0] if heap else None
 
-    def next_due(self, moment: float) -> QueuedTimer | None:
-        """Remove and return the earliest timer that is due at *moment*; None if none is."""
+    def next_due(self, moment: float, newest: float = math.inf) -> Timer | None:
+        """Remove and return the earliest timer that is due at *moment*; None if none is, or if it is newer."""
         heap = self._heap
-        while heap and heap[0][0] <= moment:
+        while heap and heap[0][0] <= moment and heap[0][1] <= newest:
             timer = heapq.heappop(heap)[2]
             if timer.callback is not None:
                 return timer
         return None
 
-    def pending(self) -> Sequence[QueuedTimer]:
+    def pending(self) -> Sequence[Timer]:
         """The pending timers, in no order."""
         return [timer for _, _, timer in self._heap if timer.callback is not None]
 
@@ -190,43 +191,50 @@ real_time = time.monotonic
 T = TypeVar("T")
 
 
-class Timer(Protocol):
-    """A pending call, which can be cancelled."""
+class Clock(ABC):
+    """The one source of time for agents, artifacts and the world.
 
-    def cancel(self) -> None:
-        """Cancel the call; no effect once it has been made."""
+    Attributes:
+        virtual: whether time moves in jumps.
+        paused: whether time and timers stand still.
+    """
 
+    virtual = False
+    paused = False
 
-class Clock(Protocol):
-    """The one source of time for agents, artifacts and the world."""
+    def __init__(self) -> None:
+        self._timers = TimerQueue()
 
     @property
-    def virtual(self) -> bool:
-        """True if time moves in jumps."""
-
-    @property
+    @abstractmethod
     def elapsed(self) -> float:
         """Seconds since some moment, as `call_later` counts them; never decreases, whatever `now` does."""
 
+    @abstractmethod
     def now(self) -> float:
         """Return seconds since the Unix epoch."""
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
         """Call *callback* on the loop after *delay* seconds; calls for the same moment keep their order."""
+        return self._timers.add(self.elapsed + max(0.0, delay), callback)
 
     async def sleep(self, delay: float) -> None:
         """Wait for *delay* seconds."""
+        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        timer = self.call_later(delay, lambda: None if done.done() else done.set_result(None))
+        try:
+            await done
+        finally:
+            timer.cancel()
 
-    def busy(self, cycles: int) -> None:
+    def busy(self, cycles: int) -> None:  # noqa: B027 - other time moves anyway
         """Report that agents made *cycles* reasoning cycles without becoming idle."""
 
-    @property
-    def paused(self) -> bool:
-        """Whether the clock is paused."""
-
+    @abstractmethod
     def pause(self) -> None:
         """Stop time and timers until `resume`; no effect on a paused clock."""
 
+    @abstractmethod
     def resume(self) -> None:
         """Let time continue: pending timers ring after the rest of their delays."""
 
@@ -236,23 +244,18 @@ _OF_RUN: contextvars.ContextVar[bool] = contextvars.ContextVar("jacaros_of_run",
 
 
 @contextmanager
-def of_run() -> Iterator[None]:
+def of_run(belongs: bool = True) -> Iterator[None]:
     """Mark callbacks and tasks started inside, and those that they start, as parts of a run."""
-    token = _OF_RUN.set(True)
+    token = _OF_RUN.set(belongs)
     try:
         yield
     finally:
         _OF_RUN.reset(token)
 
 
-@contextmanager
-def outside_run() -> Iterator[None]:
+def outside_run() -> AbstractContextManager[None]:
     """Mark code started inside as independent of a run: a paused virtual clock does not hold it."""
-    token = _OF_RUN.set(False)
-    try:
-        yield
-    finally:
-        _OF_RUN.reset(token)
+    return of_run(False)
 
 
 def run_context() -> contextvars.Context:
@@ -262,7 +265,7 @@ def run_context() -> contextvars.Context:
     return context
 
 
-class WallClock:
+class WallClock(Clock):
     """The time of day; delays are measured on the monotonic clock.
 
     Until it is paused or its speed changes, `now` is exactly the machine's time of day. After that, it continues from
@@ -272,16 +275,13 @@ class WallClock:
         speed: seconds of this clock per second of real time, greater than 0.
     """
 
-    virtual = False
-
     def __init__(self, speed: float = 1.0) -> None:
+        super().__init__()
         self._speed = 1.0
-        self._paused = False
         self._reached = self._began = 0.0
         """Seconds of this clock, and of the monotonic clock, at the last pause, resumption or change of speed."""
         self._ahead: float | None = None
         """`now` minus `elapsed`; None while `now` is the time of day."""
-        self._timers = TimerQueue()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._alarm: asyncio.TimerHandle | None = None
         self._alarm_at = 0.0
@@ -292,7 +292,7 @@ class WallClock:
     @property
     def elapsed(self) -> float:
         """Seconds of the monotonic clock, as far as this clock followed it; it cannot be set."""
-        if self._paused:
+        if self.paused:
             return self._reached
         return self._reached + (time.monotonic() - self._began) * self._speed
 
@@ -310,33 +310,25 @@ class WallClock:
         self._speed = speed
         self._set_alarm()
 
-    @property
-    def paused(self) -> bool:
-        """Whether the clock is paused."""
-        return self._paused
-
     def pause(self) -> None:
-        """Stop time and timers until `resume`; no effect on a paused clock."""
-        if not self._paused:
+        if not self.paused:
             self._note_day()
             self.pause_timers()
 
     def pause_timers(self) -> None:
         """Stop timers until `resume`; `now` continues, as messages of real robots carry the time of day."""
-        if not self._paused:
+        if not self.paused:
             self._note_moment()
-            self._paused = True
+            self.paused = True
             self._set_alarm()
 
     def resume(self) -> None:
-        """Let time continue: pending timers ring after the rest of their delays."""
-        if self._paused:
+        if self.paused:
             self._began = time.monotonic()
-            self._paused = False
+            self.paused = False
             self._set_alarm()
 
     def now(self) -> float:
-        """Return seconds since the Unix epoch."""
         return time.time() if self._ahead is None else self._ahead + self.elapsed
 
     def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
@@ -344,18 +336,10 @@ class WallClock:
         loop = asyncio.get_running_loop()
         if loop is not self._loop:
             self._move_to_loop(loop)
-        when = self.elapsed + max(0.0, delay)
-        timer = self._timers.add(when, callback)
-        if (self._alarm is None or when < self._alarm_at) and not self._ringing:
+        timer = super().call_later(delay, callback)
+        if (self._alarm is None or timer.when < self._alarm_at) and not self._ringing:
             self._set_alarm()
         return timer
-
-    async def sleep(self, delay: float) -> None:
-        """Wait for *delay* seconds."""
-        await _sleep(self, delay)
-
-    def busy(self, cycles: int) -> None:
-        """Do nothing: the wall clock moves anyway."""
 
     def _note_day(self) -> None:
         """From now on, `now` follows this clock instead of the time of day."""
@@ -377,7 +361,7 @@ class WallClock:
             self._alarm.cancel()
             self._alarm = None
         moment = self._timers.first_moment()
-        if moment is None or self._paused or self._loop is None or self._loop.is_closed():
+        if moment is None or self.paused or self._loop is None or self._loop.is_closed():
             return
         self._alarm_at = moment
         self._alarm = self._loop.call_later(max(0.0, moment - self.elapsed) / self._speed, self._ring)
@@ -386,28 +370,21 @@ class WallClock:
         """Ring the timers that are due; those that they set ring in a later pass of the loop."""
         self._alarm = None
         moment = max(self._alarm_at, self.elapsed)  # the loop may be a billionth of a second early
-        due = deque(iter(lambda: self._timers.next_due(moment), None))
+        newest = self._timers.newest
         self._ringing = True
         try:
-            while due and not self._paused:
-                due.popleft().ring()
+            while not self.paused and (timer := self._timers.next_due(moment, newest)) is not None:
+                timer.ring()
         finally:
             self._ringing = False
-            for timer in due:
-                self._timers.put_back(timer)
             self._set_alarm()
 
 
-async def _sleep(clock: Clock, delay: float) -> None:
-    done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-    timer = clock.call_later(delay, partial(_wake, done))
-    try:
-        await done
-    finally:
-        timer.cancel()
+def _ignore(*_: object) -> None:
+    """Take the place of a callback that is held, or of a loop that is not there."""
 
 
-class VirtualClock:
+class VirtualClock(Clock):
     """Discrete-event time: it starts at a fixed epoch and jumps to the next timer when all agents wait.
 
     Attributes:
@@ -416,43 +393,31 @@ class VirtualClock:
     """
 
     virtual = True
+    elapsed = 0.0
     CYCLES_PER_MILLISECOND = 10_000
     """Time moves 1 ms per this number of busy cycles, so a plan that never ends cannot freeze the world."""
 
     def __init__(self, start: float = VIRTUAL_EPOCH) -> None:
+        super().__init__()
         self.start = start
-        self.elapsed = 0.0
-        self.paused = False
-        self._timers = TimerQueue()
         self._cycles = 0
         self._context = run_context()
-        self.when_paused: list[Callable[[bool], None]] = []
+        self.when_paused: Callable[[bool], None] = _ignore
 
     def now(self) -> float:
-        """Return seconds since the Unix epoch."""
         return self.start + self.elapsed
-
-    def call_later(self, delay: float, callback: Callable[[], None]) -> Timer:
-        """Call *callback* after *delay* seconds of virtual time."""
-        return self._timers.add(self.elapsed + max(0.0, delay), callback)
-
-    async def sleep(self, delay: float) -> None:
-        """Wait for *delay* seconds of virtual time."""
-        await _sleep(self, delay)
 
     def pause(self) -> None:
         """Stop jumping, and hold the callbacks of the run, until `resume`; no effect on a paused clock."""
         if not self.paused:
             self.paused = True
-            for watcher in tuple(self.when_paused):
-                watcher(True)
+            self.when_paused(True)
 
     def resume(self) -> None:
         """Continue exactly where the clock was paused."""
         if self.paused:
             self.paused = False
-            for watcher in tuple(self.when_paused):
-                watcher(False)
+            self.when_paused(False)
 
     def busy(self, cycles: int) -> None:
         """Move 1 ms for every 10,000 cycles that agents made without becoming idle.
@@ -490,7 +455,7 @@ class VirtualClock:
         if moment > self.elapsed:
             self.elapsed = moment
 
-    def _call_soon(self, timer: QueuedTimer) -> None:
+    def _call_soon(self, timer: Timer) -> None:
         """Let the running loop ring a timer, so that its handler gets errors; without a loop, ring it now."""
         try:
             loop = asyncio.get_running_loop()
@@ -498,11 +463,6 @@ class VirtualClock:
             timer.ring()
         else:
             loop.call_soon(timer.ring, context=self._context)
-
-
-def _wake(sleeper: asyncio.Future[None]) -> None:
-    if not sleeper.done():
-        sleeper.set_result(None)
 
 
 class _VirtualSelector(selectors.DefaultSelector):
@@ -519,7 +479,7 @@ class _VirtualSelector(selectors.DefaultSelector):
         self._passed = 0
         self.ready: deque[asyncio.Handle] = deque()
         self.held: deque[asyncio.Handle] = deque()
-        clock.when_paused.append(self._hold)
+        clock.when_paused = self._hold
 
     def _hold(self, paused: bool) -> None:
         """Hold the callbacks of the run, or release them."""
@@ -532,7 +492,7 @@ class _VirtualSelector(selectors.DefaultSelector):
             if _is_of_run(handle):
                 self.held.append(handle)
                 # The loop has counted the callbacks of this pass: put something in its place.
-                self.ready[place] = asyncio.Handle(_nothing, (), asyncio.get_running_loop())
+                self.ready[place] = asyncio.Handle(_ignore, (), asyncio.get_running_loop())
 
     def _select_paused(self, timeout: float | None) -> list[tuple[selectors.SelectorKey, int]]:
         """Serve sockets, and callbacks that do not belong to the run."""
@@ -561,27 +521,9 @@ class _VirtualSelector(selectors.DefaultSelector):
         return super().select(timeout)
 
 
-def _nothing() -> None:
-    """Take the place of a callback that is held."""
-
-
 def _is_of_run(handle: asyncio.Handle) -> bool:
     context: contextvars.Context = handle._context  # type: ignore[attr-defined]
     return context.get(_OF_RUN, False)
-
-
-class _DaemonThreads(Executor):
-    """Runs each piece of work in a daemon thread.
-
-    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
-    """
-
-    def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
-        """Call *fn* in a thread of its own."""
-        done: Future[T] = Future()
-        work = partial(fn, *args, **kwargs)
-        threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
-        return done
 
 
 def _work(work: Callable[[], T], done: Future[T]) -> None:
@@ -598,9 +540,14 @@ def _work(work: Callable[[], T], done: Future[T]) -> None:
         done.set_result(result)
 
 
-def start_thread(work: Callable[[], T]) -> asyncio.Future[T]:
-    """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result."""
-    return asyncio.wrap_future(_DaemonThreads().submit(work))
+def start_thread(work: Callable[[], T], loop: asyncio.AbstractEventLoop | None = None) -> asyncio.Future[T]:
+    """Run *work* in a daemon thread, during which a virtual clock continues; return a future with its result.
+
+    At its end, a process waits for the threads of asyncio's own executor, forever if one never returns.
+    """
+    done: Future[T] = Future()
+    threading.Thread(target=_work, args=(work, done), name="jacaros work", daemon=True).start()
+    return asyncio.wrap_future(done, loop=loop)
 
 
 class _Loop(asyncio.BaseEventLoop):
@@ -610,7 +557,9 @@ class _Loop(asyncio.BaseEventLoop):
         self, executor: Any, func: Any, *args: Any
     ) -> Any:
         """Run *func* in a thread of *executor*, or in a daemon thread if that is None."""
-        return super().run_in_executor(executor or _DaemonThreads(), func, *args)
+        if executor is None:
+            return start_thread(partial(func, *args), self)
+        return super().run_in_executor(executor, func, *args)
 
 
 class VirtualEventLoop(_Loop, asyncio.SelectorEventLoop):

@@ -33,7 +33,7 @@ _ATOMIC = 4096 if os.name == "posix" else _PIECE
 A console of Windows takes no part of a character.
 """
 _MOMENT = 0.01
-"""Seconds that a writer waits for its text to be written, until the sink is once too slow for that."""
+"""Seconds that a writer waits for its text to be written, unless earlier text still waits."""
 
 
 PLAIN = "jacaros.plain"
@@ -106,9 +106,8 @@ class Output:
         self._waiting = 0
         self._progress = 0.0
         self._thread: threading.Thread | None = None
-        self._hurry = self._closed = False
+        self._closed = self._blocked = False
         self._retry_at: float | None = None
-        self._behind = self._blocked = False
         self._failures = self._lost = 0
         self._cut = self._in_line = False
 
@@ -121,9 +120,10 @@ class Output:
         """Write whole lines; bytes only to a file that was opened for them (`io.FileIO`)."""
         if isinstance(text, str) and not self._raw:
             text = visible(text)
+        lines = text.count("\n") if isinstance(text, str) else text.count(b"\n")
         with self._changed:
             if self._retry_at is not None and time.monotonic() < self._retry_at:
-                self._lost += _line_ends(text)
+                self._lost += lines
                 return
             if self._closed and self._waiting:
                 return
@@ -131,24 +131,25 @@ class Output:
             if stream is not self._stream:
                 self._stream, self._sink = stream, _sink_of(stream)
             if self._sink is None or self._closed or not self._has_thread():
-                self._write_to_stream(text)
+                self._write_to_stream(text, lines)
                 return
             data = text if isinstance(text, bytes) else self._sink.encode(text)
             if not self._has_room(len(data)):
-                self._lost += data.count(b"\n")
+                self._lost += lines
                 return
+            keeps_up = not self._waiting
             self._enqueue(data)
-            if not (self._delay or self._behind or threading.current_thread() is self._thread):
-                self._behind = not self._changed.wait_for(lambda: not self._waiting, _MOMENT)
+            if keeps_up and not self._delay and threading.current_thread() is not self._thread:
+                self._changed.wait_for(lambda: not self._waiting, _MOMENT)
 
-    def _write_to_stream(self, text: str | bytes) -> None:
+    def _write_to_stream(self, text: str | bytes, lines: int) -> None:
         try:
             if self._stream is None:
                 raise OSError(errno.EBADF, "it is closed")
             self._stream.write(text)
             self._stream.flush()
         except Exception as error:
-            self._lost += _line_ends(text)
+            self._lost += lines
             self._fail(error)
         else:
             self._recover()
@@ -196,8 +197,8 @@ class Output:
                     if self._closed:
                         return
                     self._changed.wait()
-                due = time.monotonic() + self._delay
-                while self._waiting < _PIECE and not self._hurry and (left := due - time.monotonic()) > 0:
+                begun = time.monotonic()
+                while self._waiting < _PIECE and (left := begun + self._delay - time.monotonic()) > 0:
                     self._changed.wait(left)
                 stream, sink, piece = self._stream, self._sink, self._next_piece()
             written, error = 0, None
@@ -231,7 +232,6 @@ class Output:
             if written < len(piece):
                 self._queue.appendleft(piece[written:])
             self._waiting -= written
-            self._behind = self._behind and self._waiting > 0
             if written:
                 self._in_line = piece[written - 1] != 10  # a line feed
                 self._progress = time.monotonic()
@@ -253,7 +253,8 @@ class Output:
             return
         self._failures += 1
         if is_worth_a_line(self._failures):
-            why = "the reader accepts nothing" if error is None else _said(error)
+            known = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            why = "the reader accepts nothing" if error is None else known
             self._report(f"cannot write to {self._name}: {why}; dropping lines until it works again")
 
     def _recover(self) -> None:
@@ -282,7 +283,7 @@ class Output:
             limit: total seconds to wait; None for no limit.
         """
         with self._changed:
-            self._hurry = True
+            self._delay = 0.0
             self._changed.notify_all()
             self._wait_until_written(patience, limit)
             self._closed = True
@@ -446,14 +447,6 @@ def _sink_of(stream: Stream | None) -> _Sink | None:
     if not isinstance(file, io.RawIOBase):
         return None
     return _Sink(file, stream.encoding, stream.errors or "strict", os.linesep)
-
-
-def _line_ends(text: str | bytes) -> int:
-    return text.count(b"\n") if isinstance(text, bytes) else text.count("\n")
-
-
-def _said(error: Exception) -> str:
-    return str(getattr(error, "strerror", None) or error or type(error).__name__)
 
 
 def _lines(number: int) -> str:

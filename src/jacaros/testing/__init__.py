@@ -9,9 +9,8 @@ from jacaros.exports import exported
 
 if TYPE_CHECKING:
     from jacaros.mas.embedding.running_agent import PursuedGoal
-    from jacaros.testing.harness import AgentHarness
+    from jacaros.testing.harness import ActionFailed, AgentHarness, RecordedAct, SentMessage
     from jacaros.testing.paths import Verdict, judge
-    from jacaros.testing.recorded import ActionFailed, RecordedAct, SentMessage
     from jacaros.testing.run import RunResult, run_project
 
 __all__ = [
@@ -28,9 +27,8 @@ __all__ = [
 
 _MODULES = {
     "jacaros.mas.embedding.running_agent": "PursuedGoal",
-    "jacaros.testing.harness": "AgentHarness",
+    "jacaros.testing.harness": "ActionFailed AgentHarness RecordedAct SentMessage",
     "jacaros.testing.paths": "Verdict judge",
-    "jacaros.testing.recorded": "ActionFailed RecordedAct SentMessage",
     "jacaros.testing.run": "RunResult run_project",
 }
 

@@ -9,19 +9,151 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NamedTuple
 
 from jacaros.agents.language.diagnostics import Span
 from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, WrongArguments, members
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.rules.failure_reason import place_of_call
+from jacaros.agents.mind.state.act import Act, Completion
 from jacaros.agents.mind.state.intention import GOAL, PLAN
-from jacaros.agents.terms.substitution import equal
+from jacaros.agents.terms.substitution import equal, free_variables, rename, resolve
 from jacaros.agents.terms.text import display, text
-from jacaros.agents.terms.unifier import undo
-from jacaros.agents.terms.values import FALSE, TRUE, Term, functor_of, is_list, list_items
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import (
+    ACTION,
+    FALSE,
+    TRUE,
+    String,
+    Term,
+    atom,
+    functor,
+    functor_of,
+    is_list,
+    list_items,
+)
 from jacaros.errors import InternalError
-from jacaros.testing.recorded import Fakes, matches
+
+_STOP: Final = ".stopMAS"
+ERROR_MSG = functor("error_msg", 1)
+REASON = functor("env_failure_reason", 1)
+
+Complete = Callable[[int, Completion], None]
+Later = Callable[[float, Callable[[], None]], object]
+
+
+def matches(pattern: Term, term: Term) -> bool:
+    """Return whether a pattern unifies with a term; annotations count only if the pattern has some."""
+    trail = Trail()
+    found = unify(pattern, rename(term), trail)
+    undo(trail, 0)
+    return found
+
+
+def failed(reason: Term, message: Term = None) -> Completion:
+    """Return the completion of a failed action, in the form that environments use."""
+    message = String(text(reason)) if message is None else String(message)
+    return Completion(False, (), ((ERROR_MSG, message), (REASON, reason)))
+
+
+# Fake actions answer external actions instead of an environment.
+
+
+class _Fake(NamedTuple):
+    pattern: Term
+    outcome: Term
+
+
+class Fakes:
+    """The fake actions of one agent, and all actions that it has started.
+
+    Args:
+        complete: reports the end of an action to the agent.
+        later: calls a function after a number of seconds on the run's clock.
+
+    Attributes:
+        acts: every action started, fake or not, oldest first, with the outputs returned by a fake.
+    """
+
+    def __init__(self, complete: Complete, later: Later) -> None:
+        self._complete = complete
+        self._later = later
+        self._fakes: list[_Fake] = []
+        self.acts: list[Term] = []
+        self._fakes_stop = False
+
+    def add(self, pattern: Term, outcome: Term = None) -> None:
+        """Answer actions that match *pattern*; the fake added last wins.
+
+        Where the action has an unbound variable, the value in the pattern becomes its output.
+
+        Args:
+            pattern: an atom or structure; ``.stopMAS`` matches all its forms.
+            outcome: ``done`` (the default), ``after(Ms)``, ``failed(Reason)``, ``failed(Reason, Message)`` or ``never``.
+
+        Raises:
+            ValueError: the outcome or the pattern is invalid.
+        """
+        outcome = atom("done") if outcome is None else resolve(outcome)
+        if not _is_outcome(outcome):
+            raise ValueError(
+                f"invalid outcome {text(outcome)}: expected done, after(Ms), failed(Reason), failed(Reason, Message) or "
+                "never"
+            )
+        symbol = functor_of(pattern)
+        if symbol is None or (symbol.name[:1] == "." and symbol.name != _STOP):
+            raise ValueError(f"{text(pattern)} is not an external action")
+        if symbol.name == _STOP:
+            self._fakes_stop = True
+            return
+        self._fakes.append(_Fake(rename(pattern), outcome))
+
+    def begin(self, act: Act) -> bool:
+        """Answer an action; return False if no fake matches."""
+        term = (act.functor, *act.arguments) if act.arguments else act.functor
+        variables = free_variables(term)
+        trail = Trail()
+        for fake in reversed(self._fakes):
+            if not unify(rename(fake.pattern), term, trail):
+                undo(trail, 0)
+                continue
+            values = [(variable, resolve(variable)) for variable in variables]
+            self.acts.append(resolve(term))
+            undo(trail, 0)
+            self._answer(act.id, fake.outcome, tuple((v, value) for v, value in values if value is not v))
+            return True
+        self.acts.append(term)
+        return False
+
+    def stop(self, delay: float, exit_code: int) -> bool:
+        """Record a call of ``.stopMAS``; return False if it is not faked and must end the run."""
+        if self._fakes_stop:
+            given = [delay * 1000.0, float(exit_code)] if exit_code else [delay * 1000.0] if delay else []
+            symbol = functor(_STOP, len(given), kind=ACTION)
+            self.acts.append((symbol, *given) if given else symbol)
+        return self._fakes_stop
+
+    def _answer(self, number: int, outcome: Term, outputs: tuple[tuple[Term, Term], ...]) -> None:
+        done = Completion(True, outputs)
+        if outcome is atom("done"):
+            self._complete(number, done)
+        elif outcome is not atom("never"):
+            if outcome[0].name == "after":
+                self._later(outcome[1] / 1000.0, lambda: self._complete(number, done))
+            else:
+                self._complete(number, failed(*outcome[1:]))
+
+
+def _is_outcome(term: Term) -> bool:
+    symbol = functor_of(term)
+    if symbol is None:
+        return False
+    if (symbol.name, symbol.arity) == ("after", 1):
+        return isinstance(term[1], float)
+    if (symbol.name, symbol.arity) == ("failed", 2):
+        return isinstance(term[2], str)
+    return (symbol.name, symbol.arity) in {("done", 0), ("never", 0), ("failed", 1)}
+
 
 # A test's view of one agent, and the path from assertions of the agent to the test.
 

@@ -21,14 +21,18 @@ from random import Random
 from typing import Any, NoReturn
 
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.body.values import References, to_term, to_value
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import load_program, parse_term
 from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import goals
 from jacaros.agents.mind.rules.goals import WatchedGoal
-from jacaros.agents.mind.state.act import Act, SpeechAct
+from jacaros.agents.mind.state.act import Act, Completion, SpeechAct
 from jacaros.agents.mind.state.budget import Options
+from jacaros.agents.terms.substitution import free_variables
+from jacaros.agents.terms.text import text
+from jacaros.agents.terms.values import Term, Var
 from jacaros.errors import UsageError
 from jacaros.files.python_modules import ProjectModules
 from jacaros.files.texts import file_text
@@ -37,9 +41,128 @@ from jacaros.mas.agents.programs import Programs
 from jacaros.mas.agents.python_code import PythonCode
 from jacaros.mas.embedding.running_agent import OpenMind, PursuedGoal, literal
 from jacaros.runtime.clock import Timer, VirtualClock, run
-from jacaros.testing.recorded import Action, RecordedAct, SentMessage, matches
+from jacaros.testing.assertions import Complete, failed, matches
 
-# Port of an agent under test to its harness.
+Action = Callable[..., object]
+"""A function that answers an external action; see `RecordedAct.answer`."""
+
+
+class ActionFailed(Exception):
+    """Raised by a fake action to make the step fail.
+
+    Args:
+        reason: reason term as text: ``blocked(wall)`` reaches the plan as ``env_failure_reason(blocked(wall))``.
+        message: message for the log (default: the reason).
+    """
+
+    def __init__(self, reason: str, message: str | None = None) -> None:
+        super().__init__(message or reason)
+        self.reason, self.message = reason, message
+
+
+class RecordedAct:
+    """An external action started by the agent.
+
+    Attributes:
+        name: name of the action.
+        arguments: plain values (numbers, strings, `jacaros.artifacts.env.values.Atom`, `Structure`, lists); None for an
+            output.
+        pending: whether the action has not ended yet.
+        term: the action as a term.
+        cancelled: whether its intention was dropped.
+        paused: whether its intention is suspended.
+    """
+
+    def __init__(self, act: Act, complete: Complete) -> None:
+        self._act = act
+        self._complete = complete
+        self.term: Term = (act.functor, *act.arguments) if act.arguments else act.functor
+        self._outputs = free_variables(self.term)
+        self.name = act.functor.name
+        self.arguments = tuple(None if a.__class__ is Var else to_value(a) for a in act.arguments)
+        self.pending = True
+        self.cancelled = False
+        self.paused = False
+
+    def complete(self, *outputs: object) -> None:
+        """Let the action succeed; *outputs* are the values of its unbound variables, in order.
+
+        Raises:
+            ValueError: the action has already ended, or the number of outputs differs from that of the unbound variables.
+        """
+        if outputs and len(outputs) != len(self._outputs):
+            raise ValueError(f"{self} has {len(self._outputs)} unbound variables, not {len(outputs)}")
+        values = [
+            (variable, to_term(value, References()))
+            for variable, value in zip(self._outputs, outputs, strict=False)
+        ]
+        self._end(Completion(True, tuple(values)))
+
+    def fail(self, reason: str = "failed", message: str | None = None) -> None:
+        """Let the action fail.
+
+        Args:
+            reason: reason term as text.
+            message: message for the log (default: the reason).
+
+        Raises:
+            ValueError: the action has already ended.
+        """
+        self._end(failed(lower_value(parse_term(reason)), message))
+
+    def _end(self, completion: Completion) -> None:
+        if not self.pending:
+            raise ValueError(f"{self} has already ended{' with its intention' if self.cancelled else ''}")
+        self.pending = False
+        self._complete(self._act.id, completion)
+
+    def answer(self, function: Action) -> None:
+        """Let a function answer the action: it receives the bound arguments and returns the outputs.
+
+        It returns a single output as such, several as a tuple; without outputs, False makes the action fail.
+        `AgentHarness.run` raises any exception other than `ActionFailed`.
+        """
+        values = [
+            a
+            for a, term in zip(self.arguments, self._act.arguments, strict=True)
+            if term.__class__ is not Var
+        ]
+        try:
+            result = function(*values)
+        except ActionFailed as end:
+            self.fail(end.reason, end.message)
+            return
+        if not self._outputs:
+            self.fail() if result is False else self.complete()
+        elif len(self._outputs) == 1:
+            self.complete(result)
+        else:
+            self.complete(*(result if isinstance(result, tuple) else (result,)))
+
+    def __str__(self) -> str:
+        return text(self.term)
+
+    def __repr__(self) -> str:
+        return f"<act {self}{' pending' if self.pending else ''}>"
+
+
+class SentMessage:
+    """A message sent by the agent.
+
+    Attributes:
+        receiver: name of the receiving agent.
+        performative: performative, such as ``tell``.
+        content: content as text.
+    """
+
+    def __init__(self, message: SpeechAct) -> None:
+        self.receiver = message.receiver
+        self.performative = message.performative
+        self.content = text(message.content)
+        self.term = message.content
+
+    def __repr__(self) -> str:
+        return f".send({self.receiver}, {self.performative}, {self.content})"
 
 
 class HarnessPort:

@@ -1,7 +1,7 @@
 """Plugin for pytest that collects tests of agent programs.
 
 It is active wherever JaCaROS is installed (``-p no:jacaros`` disables it). In folders it collects the same files as
-``jacaros test``, see `jacaros.testing.run`; a file named on the command line is collected whatever its name.
+``jacaros test``, see `jacaros.testing.suites`; a file named on the command line is collected whatever its name.
 """
 
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ import pytest
 # No other imports: every run of pytest loads this plugin, even without agents.
 
 if TYPE_CHECKING:
-    from jacaros.testing.run import AgentTest, Suite
+    from jacaros.testing.suites import AgentTest, Suite
 
 _SUFFIXES = (".asl", ".jcm", ".mas2j")
 
@@ -23,7 +23,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "AgentFile
     """Collect test programs and test projects."""
     if file_path.suffix not in _SUFFIXES:
         return None
-    from jacaros.testing.run import is_test_file
+    from jacaros.testing.suites import is_test_file
 
     if not parent.session.isinitpath(file_path) and not is_test_file(file_path):
         return None
@@ -40,7 +40,7 @@ class AgentFile(pytest.File):
         Raises:
             CollectError: the file cannot be read.
         """
-        from jacaros.testing.run import suite_of
+        from jacaros.testing.suites import suite_of
 
         suite = suite_of(_relative(self.path))
         if suite.error is not None:

@@ -28,9 +28,8 @@ from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import NO_WORLD
 from jacaros.mas.system import System
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
-from jacaros.testing.assertions import Assertion, Probe, actions
-from jacaros.testing.recorded import Fakes
-from jacaros.testing.run import AgentTest, Outcome, Problem, Suite, with_assertions
+from jacaros.testing.assertions import Assertion, Fakes, Probe, actions
+from jacaros.testing.suites import AgentTest, Outcome, Problem, Suite, with_assertions
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
@@ -69,17 +68,12 @@ def run_suite(
     """
     options = options or TrialOptions()
     options.check()
-    if suite.error is None:
-        for test in suite.tests:
-            if chosen(test):
-                yield _outcome(suite, test, options)
-
-
-def _outcome(suite: Suite, test: AgentTest, options: TrialOptions) -> Outcome:
-    try:
-        return Trial(suite, test, options).run()
-    except ProjectError as wrong:
-        return Outcome(test, [Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)])
+    for test in filter(chosen, suite.tests if suite.error is None else ()):
+        try:
+            yield Trial(suite, test, options).run()
+        except ProjectError as wrong:
+            problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)
+            yield Outcome(test, [problem])
 
 
 class TookTooLong(BaseException):
@@ -101,9 +95,8 @@ class Trial:
         self._began = self._began_run = 0.0
         self._probes: dict[str, Probe] = {}
         self._actions = actions(self._probes)
-        clock = _MeteredVirtualClock() if options.fast else _MeteredWallClock()
-        clock.on_busy = self._busy
-        self._clock: Clock = clock
+        self._clock: Clock = VirtualClock() if options.fast else WallClock()
+        self._move, self._clock.busy = self._clock.busy, self._busy  # type: ignore[method-assign]
         self._mappings = tuple(dict.fromkeys((*options.mappings, *test.mappings)))
         self._mas = self._system(suite.deployment)
 
@@ -157,9 +150,8 @@ class Trial:
         self._clock.call_later(limit, lambda: self._timed_out(limit))
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
-            self._fail(
-                Problem(f"the test was not started: agent {test.agent} no longer exists", (), test.span)
-            )
+            message = f"the test was not started: agent {test.agent} no longer exists"
+            self._fail(Problem(message, (), test.span))
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
@@ -208,7 +200,8 @@ class Trial:
             self._give_up(f"the test did not end within {limit:g} s of the run's clock")
 
     def _busy(self, cycles: int) -> None:
-        """Count reasoning cycles."""
+        """Count reasoning cycles that agents report to the clock."""
+        self._move(cycles)
         self._cycles += cycles
         if self._done or not self._began:
             return
@@ -216,9 +209,8 @@ class Trial:
             if self._cycles > LINGER_CYCLES:
                 self._finish()
         elif self._cycles > self._options.cycles:
-            self._give_up(
-                f"the test did not end within {self._options.cycles} reasoning cycles: an endless loop?"
-            )
+            limit = f"{self._options.cycles} reasoning cycles"
+            self._give_up(f"the test did not end within {limit}: an endless loop?")
 
     def _idle(self) -> None:
         """Handle an idle run: no agent has anything to do, or waits for anything but the environment."""
@@ -239,9 +231,8 @@ class Trial:
         self._fail(problem)
 
     def _hangs(self) -> None:
-        message = (
-            f"the test did not end within {self._options.patience:g} s of real time: a step that never ends?"
-        )
+        seconds = f"{self._options.patience:g} s of real time"
+        message = f"the test did not end within {seconds}: a step that never ends?"
         intentions = self._goal.intentions() if self._goal is not None else []
         self._end_run(_stuck(message, intentions, self._outcome.test))
 
@@ -324,24 +315,6 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
         what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
         return Problem(message, (what,), place)
     return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
-
-
-class _Metered:
-    """A clock that reports reasoning cycles."""
-
-    on_busy: Callable[[int], None]
-
-    def busy(self, cycles: int) -> None:
-        super().busy(cycles)  # type: ignore[misc]
-        self.on_busy(cycles)
-
-
-class _MeteredVirtualClock(_Metered, VirtualClock):
-    pass
-
-
-class _MeteredWallClock(_Metered, WallClock):
-    pass
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome
 
 from jacaros.cli.main import call
 from jacaros.runtime import clock
@@ -21,25 +22,18 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Return exit code, standard output and standard error output of a command."""
-    code = call(list(arguments))
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
+def test_a_program_prints_and_sets_the_exit_code(folder: Path, outcome: Outcome) -> None:
+    assert outcome("run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
 
 
-def test_a_program_prints_and_sets_the_exit_code(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
-
-
-def test_signal_handlers_are_restored_after_a_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_signal_handlers_are_restored_after_a_run(folder: Path, outcome: Outcome) -> None:
     before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)]
-    outcome(capsys, "run", "hello.asl", "--clock", "fast")
+    outcome("run", "hello.asl", "--clock", "fast")
     assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)] == before
 
 
-def test_run_is_the_default_command(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "hello.asl")[:2] == (3, "[hello] hi\n")
+def test_run_is_the_default_command(folder: Path, outcome: Outcome) -> None:
+    assert outcome("hello.asl")[:2] == (3, "[hello] hi\n")
 
 
 @pytest.mark.parametrize(
@@ -73,9 +67,9 @@ def test_run_is_the_default_command(folder: Path, capsys: pytest.CaptureFixture[
     ],
 )
 def test_wrong_usage_exits_with_code_2(
-    folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
+    folder: Path, outcome: Outcome, arguments: list[str], told: str
 ) -> None:
-    code, output, errors = outcome(capsys, *arguments)
+    code, output, errors = outcome(*arguments)
     assert (code, output) == (2, "")
     assert told in errors
     assert "Traceback" not in errors
@@ -90,61 +84,57 @@ def test_wrong_usage_exits_with_code_2(
     ],
 )
 def test_an_error_in_a_project_exits_with_code_1(
-    folder: Path, capsys: pytest.CaptureFixture[str], name: str, text: str, told: str
+    folder: Path, outcome: Outcome, name: str, text: str, told: str
 ) -> None:
     (folder / name).write_text(text, encoding="utf-8")
-    code, output, errors = outcome(capsys, "run", name)
+    code, output, errors = outcome("run", name)
     assert (code, output) == (1, "")
     assert told in errors
     assert "Traceback" not in errors
 
 
-def test_an_unknown_world_lists_the_shipped_ones(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, _, errors = outcome(capsys, "run", "hello.asl", "--world", "nowhere")
+def test_an_unknown_world_lists_the_shipped_ones(folder: Path, outcome: Outcome) -> None:
+    code, _, errors = outcome("run", "hello.asl", "--world", "nowhere")
     assert code == 1
     assert "empty, flat, house, maze" in errors
 
 
-def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unhandled_failure_logs_a_warning_with_a_suggestion(folder: Path, outcome: Outcome) -> None:
     (folder / "a.asl").write_text(
         '!go. +!go <- makeArtifact("m", "ArtCmdVel", [], M); moveForwad(1).', encoding="utf-8"
     )
-    code, output, errors = outcome(capsys, "run", "a.asl", "--clock", "fast", "--until-idle")
+    code, output, errors = outcome("run", "a.asl", "--clock", "fast", "--until-idle")
     assert (code, output) == (0, "")
     assert "did you mean `moveForward/1` of 'm'" in errors
 
 
-def test_a_run_can_be_recorded_and_replayed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_can_be_recorded_and_replayed(folder: Path, outcome: Outcome) -> None:
     arguments = ["run", "hello.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]
-    assert outcome(capsys, *arguments)[:2] == (3, "[hello] hi\n")
+    assert outcome(*arguments)[:2] == (3, "[hello] hi\n")
     kinds = [json.loads(line)["kind"] for line in (folder / "r.jsonl").read_text().splitlines()]
     assert kinds[0] == "world"
     assert "text" in kinds
     assert "<html" in (folder / "r.html").read_text()
 
 
-def test_an_agent_in_python_is_run_recorded_checked_and_described(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_agent_in_python_is_run_recorded_checked_and_described(folder: Path, outcome: Outcome) -> None:
     program = "from jacaros import PythonAgent\nclass A(PythonAgent):\n    async def run(self):\n"
     (folder / "a.py").write_text(
         f"{program}        self.print('hi')\n        self.stop_system(3)\n", encoding="utf-8"
     )
-    assert outcome(capsys, "a.py", "--clock", "fast") == (3, "[a] hi\n", "")
+    assert outcome("a.py", "--clock", "fast") == (3, "[a] hi\n", "")
     arguments = ["run", "a.py", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]
-    assert outcome(capsys, *arguments)[:2] == (3, "[a] hi\n")
+    assert outcome(*arguments)[:2] == (3, "[a] hi\n")
     assert '"agent": "a", "text": "hi"' in (folder / "r.jsonl").read_text()
     (folder / "m.jcm").write_text("mas m { agent a: a.py }", encoding="utf-8")
-    assert outcome(capsys, "check", "a.py", "m.jcm") == (0, "", "nothing wrong in 2 files\n")
-    assert "agent a: a.py" in outcome(capsys, "describe", "m.jcm")[1]
+    assert outcome("check", "a.py", "m.jcm") == (0, "", "nothing wrong in 2 files\n")
+    assert "agent a: a.py" in outcome("describe", "m.jcm")[1]
     (folder / "b.py").write_text("x = 1", encoding="utf-8")
-    code, output, _ = outcome(capsys, "check", "b.py")
+    code, output, _ = outcome("check", "b.py")
     assert (code, "no subclass of jacaros.PythonAgent in b.py" in output) == (1, True)
 
 
-def test_a_world_runs_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_world_runs_alone(folder: Path, outcome: Outcome) -> None:
     arguments = [
         "sim",
         "empty",
@@ -157,40 +147,40 @@ def test_a_world_runs_alone(folder: Path, capsys: pytest.CaptureFixture[str]) ->
         "--ground-truth",
         "t.jsonl",
     ]
-    assert outcome(capsys, *arguments)[0] == 0
+    assert outcome(*arguments)[0] == 0
     last = json.loads((folder / "t.jsonl").read_text().splitlines()[-1])
     assert last["kind"] == "end"
     assert last["time"] == pytest.approx(2.0)
 
 
-def test_types_and_projects_are_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, _ = outcome(capsys, "describe", "ArtCmdVel")
+def test_types_and_projects_are_described(folder: Path, outcome: Outcome) -> None:
+    code, output, _ = outcome("describe", "ArtCmdVel")
     assert code == 0
     assert "moveForward(length: a number)" in output
-    assert "agent hello: hello.asl" in outcome(capsys, "describe", "hello.asl")[1]
+    assert "agent hello: hello.asl" in outcome("describe", "hello.asl")[1]
 
 
-def test_version_prints_the_versions(capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, _ = outcome(capsys, "version")
+def test_version_prints_the_versions(outcome: Outcome) -> None:
+    code, output, _ = outcome("version")
     assert code == 0
     assert output.startswith("jacaros 0.")
-    assert outcome(capsys, "--version") == (0, output.splitlines()[0] + "\n", "")
+    assert outcome("--version") == (0, output.splitlines()[0] + "\n", "")
 
 
-def test_help_lists_the_commands(capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, _ = outcome(capsys, "--help")
+def test_help_lists_the_commands(outcome: Outcome) -> None:
+    code, output, _ = outcome("--help")
     assert code == 0
     assert "Run an agent program or a project." in output
 
 
 def test_an_internal_error_prints_a_traceback_and_the_command(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def broken(*_: object) -> int:
         raise ZeroDivisionError("oh")
 
     monkeypatch.setattr("jacaros.cli.run.launch", broken)
-    code, _, errors = outcome(capsys, "run", "hello.asl")
+    code, _, errors = outcome("run", "hello.asl")
     assert code == 1
     assert "Traceback" in errors
     assert "internal error: oh; please file an issue" in errors
@@ -233,25 +223,25 @@ def test_a_program_without_robots_loads_only_what_it_needs(folder: Path) -> None
     assert result.stdout == "[hello] hi\n[]\n"
 
 
-def test_a_run_writes_the_ground_truth(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_writes_the_ground_truth(folder: Path, outcome: Outcome) -> None:
     (folder / "drive.asl").write_text(
         '!go. +!go <- makeArtifact("w", "ArtCmdVel"); moveForward(0.5); .stopMAS.', encoding="utf-8"
     )
     arguments = ("run", "drive.asl", "--clock", "fast", "--ground-truth", "truth.jsonl")
-    assert outcome(capsys, *arguments) == (0, "", "")
+    assert outcome(*arguments) == (0, "", "")
     truth = GroundTruth.read("truth.jsonl")
     assert truth.pose().x == pytest.approx(0.5, abs=0.02)
     assert '"kind": "end"' in Path("truth.jsonl").read_text(encoding="utf-8").splitlines()[-1]
 
 
-def test_low_batteries_are_logged_by_sim(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_low_batteries_are_logged_by_sim(folder: Path, outcome: Outcome) -> None:
     world = ["sim", "house", "--ros", "memory", "--clock", "fast", "--for", "400"]
-    code, _, errors = outcome(capsys, *world)
+    code, _, errors = outcome(*world)
     assert code == 0
     assert "`turtlebot` is at 20 %" in errors
     assert "`turtlebot` is empty" in errors
     assert "--full-battery" in errors
-    assert outcome(capsys, *world, "--full-battery")[2] == ""
+    assert outcome(*world, "--full-battery")[2] == ""
 
 
 @pytest.mark.parametrize("arguments", [[], ["ros"], ["world"]])

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome
 
-from jacaros.cli.main import call
+COMMAND = ("test",)
 
 TESTS = """
 @adds[test]   +!adding   <- .print(quiet); !assert_equals(3, 1 + 2).
@@ -21,15 +22,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Exit code, standard output and standard error output of ``jacaros test``."""
-    code = call(["test", *arguments])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
-def test_a_failing_test_is_reported_with_its_cause(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "tests") == (
+def test_a_failing_test_is_reported_with_its_cause(folder: Path, outcome: Outcome) -> None:
+    assert outcome("tests") == (
         1,
         """\
 tests/sums.asl
@@ -52,63 +46,63 @@ tests/sums.asl::breaks
     )
 
 
-def test_the_exit_code_is_0_when_all_tests_pass(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, errors = outcome(capsys, "tests/sums.asl", "-k", "sums.asl::*s", "-k", "adds")
+def test_the_exit_code_is_0_when_all_tests_pass(folder: Path, outcome: Outcome) -> None:
+    code, output, errors = outcome("tests/sums.asl", "-k", "sums.asl::*s", "-k", "adds")
     assert (code, errors) == (0, "")
     assert output.endswith("1 passed; 1 assertions, seed 0\n")
     assert "quiet" not in output
 
 
-def test_the_default_is_the_current_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, _ = outcome(capsys, "-k", "END")
+def test_the_default_is_the_current_folder(folder: Path, outcome: Outcome) -> None:
+    code, output, _ = outcome("-k", "END")
     assert code == 0
     assert output.startswith("tests/sums.asl\n  ok      ends\n")
 
 
-def test_verbose_shows_the_output_of_passed_tests(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert "[sums] quiet" in outcome(capsys, "-v")[1]
+def test_verbose_shows_the_output_of_passed_tests(folder: Path, outcome: Outcome) -> None:
+    assert "[sums] quiet" in outcome("-v")[1]
 
 
-def test_x_stops_after_the_first_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_x_stops_after_the_first_failure(folder: Path, outcome: Outcome) -> None:
     (folder / "tests" / "xyz.asl").write_text("@later[test] +!later.", encoding="utf-8")
-    code, output, _ = outcome(capsys, "-x")
+    code, output, _ = outcome("-x")
     assert code == 1
     assert "1 passed, 1 failed" in output
     assert "later" not in output
 
 
-def test_a_run_without_tests_is_wrong_usage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_without_tests_is_wrong_usage(folder: Path, outcome: Outcome) -> None:
     (folder / "none.asl").write_text("!go. +!go.", encoding="utf-8")
-    code, output, errors = outcome(capsys, "none.asl")
+    code, output, errors = outcome("none.asl")
     assert (code, output) == (2, "")
     assert errors == (
         "error: no tests in none.asl\n"
         "  = help: a test is a plan for a goal with the label test: @name[test] +!goal <- ...\n"
     )
-    code, _, errors = outcome(capsys, "tests", "-k", "nothing")
+    code, _, errors = outcome("tests", "-k", "nothing")
     assert code == 2
     assert "no test in tests matches `-k nothing`\n  = help: tests: tests/sums.asl::adds" in errors
-    assert outcome(capsys, "nowhere")[0] == 2
-    assert outcome(capsys, "--timeout", "0")[0] == 2
+    assert outcome("nowhere")[0] == 2
+    assert outcome("--timeout", "0")[0] == 2
 
 
-def test_a_program_with_errors_fails(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_program_with_errors_fails(folder: Path, outcome: Outcome) -> None:
     (folder / "tests" / "test_wrong.asl").write_text("@a[test] +!g <- .print(.", encoding="utf-8")
-    code, output, _ = outcome(capsys)
+    code, output, _ = outcome()
     assert code == 1
     assert "  ERROR   cannot run the file" in output
     assert "tests/test_wrong.asl:1:24: error: " in output
     assert "2 passed, 1 failed, 1 file cannot be run" in output
 
 
-def test_output_is_coloured_only_on_terminals(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert "\x1b[" not in outcome(capsys)[1]
-    assert "\x1b[32mok" in outcome(capsys, "--color", "always")[1]
+def test_output_is_coloured_only_on_terminals(folder: Path, outcome: Outcome) -> None:
+    assert "\x1b[" not in outcome()[1]
+    assert "\x1b[32mok" in outcome("--color", "always")[1]
 
 
-def test_warnings_go_to_the_standard_error_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_warnings_go_to_the_standard_error_output(folder: Path, outcome: Outcome) -> None:
     (folder / "warn.asl").write_text("@a[test] +!a : false <- !missing.", encoding="utf-8")
-    code, output, errors = outcome(capsys, "warn.asl")
+    code, output, errors = outcome("warn.asl")
     assert code == 1
     assert "no plan for `!missing/0`" in errors
     assert "no plan for `!missing/0`" not in output

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from jacaros.agents.language.formatting import format_program
-from jacaros.cli import demo, pages, run
+from jacaros.cli import run
 from jacaros.cli.main import call
 from jacaros.errors import UsageError
 
@@ -33,7 +33,7 @@ def test_the_run_is_shown_where_the_user_can_see_it(
     monkeypatch: pytest.MonkeyPatch, display: bool, given: tuple[str, ...], view: str
 ) -> None:
     calls: list[list[str]] = []
-    monkeypatch.setattr(pages, "has_display", lambda: display)
+    monkeypatch.setattr(run, "has_display", lambda: display)
     monkeypatch.setattr(run.command, "main", lambda arguments, *_, **__: calls.append(arguments) or 0)
     assert call(["demo", *given, "--seed", "1"]) == 0
     (arguments,) = calls
@@ -43,15 +43,15 @@ def test_the_run_is_shown_where_the_user_can_see_it(
 
 def test_the_program_is_saved_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert "jacaros run patrol.asl --world patrol" in CliRunner().invoke(demo.command, ["--save"]).output
+    assert "jacaros run patrol.asl --world patrol" in CliRunner().invoke(run.demo, ["--save"]).output
     saved = tmp_path / "patrol.asl"
-    assert saved.read_bytes() == demo.PROGRAM.read_bytes()
+    assert saved.read_bytes() == run.PROGRAM.read_bytes()
     saved.write_text("mine", encoding="utf-8")
     with pytest.raises(UsageError, match=r"file exists: `patrol[.]asl`"):
-        CliRunner().invoke(demo.command, ["--save"], standalone_mode=False, catch_exceptions=False)
+        CliRunner().invoke(run.demo, ["--save"], standalone_mode=False, catch_exceptions=False)
     assert saved.read_text(encoding="utf-8") == "mine"
 
 
 def test_the_program_has_the_layout_of_the_formatter() -> None:
-    text = demo.PROGRAM.read_text(encoding="utf-8")
+    text = run.PROGRAM.read_text(encoding="utf-8")
     assert format_program("patrol", text) == text

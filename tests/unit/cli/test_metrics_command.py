@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome
 
-from jacaros.cli.main import call
 from jacaros.metrics import MEASURES
+
+COMMAND = ("metrics",)
 
 
 @pytest.fixture
@@ -19,14 +21,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    code = call(["metrics", *arguments])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
-def test_each_measure_has_a_table(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, errors = outcome(capsys, "square", "--baseline", "square.py")
+def test_each_measure_has_a_table(folder: Path, outcome: Outcome) -> None:
+    code, output, errors = outcome("square", "--baseline", "square.py")
     assert (code, errors) == (0, "")
     tables = output.rstrip("\n").split("\n\n")
     assert [table.split("\n")[0] for table in tables] == list(MEASURES.values())
@@ -40,8 +36,8 @@ def test_each_measure_has_a_table(folder: Path, capsys: pytest.CaptureFixture[st
     assert rows[3] == ["square", "4", "0", "4", "2"]
 
 
-def test_tables_in_markdown_and_csv(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, _ = outcome(capsys, "square", "--format", "markdown")
+def test_tables_in_markdown_and_csv(folder: Path, outcome: Outcome) -> None:
+    code, output, _ = outcome("square", "--format", "markdown")
     assert code == 0
     assert output.startswith(
         "**Identifiers**\n\n"
@@ -49,7 +45,7 @@ def test_tables_in_markdown_and_csv(folder: Path, capsys: pytest.CaptureFixture[
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
         "| square | 3 | 0 | 3 | 0 | 0 | 0 |\n\n"
     )
-    code, output, _ = outcome(capsys, "square", "--format", "csv", "--files")
+    code, output, _ = outcome("square", "--format", "csv", "--files")
     assert code == 0
     assert output.startswith(
         "program,group,file,identifiers,names,lines,code_lines,gzip_bytes,gzip_code_bytes\n"
@@ -57,21 +53,19 @@ def test_tables_in_markdown_and_csv(folder: Path, capsys: pytest.CaptureFixture[
     )
 
 
-def test_charts_are_written_and_other_files_kept(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "square", "--charts", "made/charts")[0] == 0
+def test_charts_are_written_and_other_files_kept(folder: Path, outcome: Outcome) -> None:
+    assert outcome("square", "--charts", "made/charts")[0] == 0
     charts = folder / "made" / "charts"
     assert {path.name for path in charts.iterdir()} == {f"{name}.svg" for name in MEASURES}
     assert all(path.read_text().startswith("<svg ") for path in charts.iterdir())
-    assert outcome(capsys, "square", "--charts", "made/charts")[0] == 0, "again"
+    assert outcome("square", "--charts", "made/charts")[0] == 0, "again"
     (charts / "lines.svg").write_text("mine")
-    code, output, errors = outcome(capsys, "square", "--charts", "made/charts")
+    code, output, errors = outcome("square", "--charts", "made/charts")
     assert (code, output) == (2, "")
     assert "`made/charts/lines.svg` exists and is not a picture" in errors
 
 
-def test_all_that_cannot_be_counted_is_reported_in_one_pass(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_all_that_cannot_be_counted_is_reported_in_one_pass(folder: Path, outcome: Outcome) -> None:
     for name in ("wrong", "empty", "binary"):
         (folder / name).mkdir()
     (folder / "wrong" / "robot.asl").write_text("!go.\n+!go <- move(1)).\n")
@@ -81,7 +75,7 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(
     (folder / "empty" / "notes.txt").write_text("none\n")
     (folder / "binary" / "robot.asl").write_bytes(b"\x7fELF\0\1")
     (folder / "binary" / "arm.yaml").write_bytes(b"caf\xe9: 1\n")
-    code, output, errors = outcome(capsys, "wrong", "empty", "binary", "sqare", "square.py")
+    code, output, errors = outcome("wrong", "empty", "binary", "sqare", "square.py")
     assert (code, output) == (1, "")
     assert errors == (
         "wrong/bad.jcm:1:23: error: program of agent `ann` not found: none.asl\n"
@@ -117,13 +111,11 @@ def test_all_that_cannot_be_counted_is_reported_in_one_pass(
     )
 
 
-def test_wrong_baselines_are_reported_with_wrong_programs(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_wrong_baselines_are_reported_with_wrong_programs(folder: Path, outcome: Outcome) -> None:
     (folder / "nothing").mkdir()
     (folder / "wrong.py").write_text("x = \n")
     code, _, errors = outcome(
-        capsys, *["square"] * 3, *("--baseline", "wrong.py", "--baseline", "nothing", "--baseline", "none.py")
+        *["square"] * 3, *("--baseline", "wrong.py", "--baseline", "nothing", "--baseline", "none.py")
     )
     assert code == 1
     assert [line for line in errors.splitlines() if "error: " in line] == [
@@ -133,8 +125,8 @@ def test_wrong_baselines_are_reported_with_wrong_programs(
     ]
 
 
-def test_each_folder_has_its_baseline(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, _, errors = outcome(capsys, "square", "square", "--baseline", "square.py")
+def test_each_folder_has_its_baseline(folder: Path, outcome: Outcome) -> None:
+    code, _, errors = outcome("square", "square", "--baseline", "square.py")
     assert code == 2
     assert errors == (
         "error: expected 2 baselines, found 1\n"

@@ -5,7 +5,8 @@ import webbrowser
 
 import pytest
 
-from jacaros.cli.pages import has_display, log_address, open_page
+from jacaros.cli.outputs import has_display
+from jacaros.cli.watching import log_address, open_page
 
 PAGE = "http://localhost:1/token/"
 

@@ -7,8 +7,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from jacaros.cli.main import main as jacaros_main
+from jacaros.cli.recordings import view as view_command
 from jacaros.cli.run import command as run_command
-from jacaros.cli.view import command as view_command
 from jacaros.errors import UsageError
 
 PROGRAM = "!start. +!start <- .print(hello); .stopMAS."

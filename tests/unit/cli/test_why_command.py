@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from jacaros.cli.why import command as why_command
+from jacaros.cli.recordings import why as why_command
 from jacaros.errors import UsageError
 
 RECORDING = (

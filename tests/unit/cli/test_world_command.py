@@ -6,9 +6,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from command_lab import Outcome
 
-from jacaros.cli.main import call
 from jacaros.sim.files.world import load_world, shipped_worlds, world_problems
+
+COMMAND = ("world",)
 
 
 @pytest.fixture
@@ -17,15 +19,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    code = call(["world", *arguments])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
-def test_check_reports_all_mistakes_in_all_worlds(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_reports_all_mistakes_in_all_worlds(folder: Path, outcome: Outcome) -> None:
     Path("bad.yaml").write_text("wals: []\nrobots: [{nam: a}]\n")
-    assert outcome(capsys, "check", "house", "bad.yaml", "huose", "three_robots") == (
+    assert outcome("check", "house", "bad.yaml", "huose", "three_robots") == (
         1,
         (
             "house: 4.4 x 4.4 m, 4 rooms, 24 walls, 0 doors, 1 dock, 1 robot\n"
@@ -45,20 +41,20 @@ def test_check_reports_all_mistakes_in_all_worlds(folder: Path, capsys: pytest.C
     )
 
 
-def test_shipped_worlds_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "check", *shipped_worlds())[0] == 0
+def test_shipped_worlds_have_no_mistakes(outcome: Outcome) -> None:
+    assert outcome("check", *shipped_worlds())[0] == 0
 
 
-def test_a_world_is_drawn_as_text_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
-    code, output, errors = outcome(capsys, "show", "three_robots")
+def test_a_world_is_drawn_as_text_without_a_terminal(outcome: Outcome) -> None:
+    code, output, errors = outcome("show", "three_robots")
     assert (code, errors) == (0, "")
     assert output.count("◎") == output.count("→") == 3
     assert output.endswith("3 docks, 3 robots\n")
     assert "\x1b" not in output
 
 
-def test_a_picture_of_a_world_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "show", "house", "--output", "house.svg", "--width", "300") == (
+def test_a_picture_of_a_world_is_written(folder: Path, outcome: Outcome) -> None:
+    assert outcome("show", "house", "--output", "house.svg", "--width", "300") == (
         0,
         "wrote house.svg\n",
         "",
@@ -68,57 +64,53 @@ def test_a_picture_of_a_world_is_written(folder: Path, capsys: pytest.CaptureFix
     assert "living room" in (folder / "house.svg").read_text()
 
 
-def test_a_picture_of_a_world_is_written_as_png(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "show", "house", "--output", "house.png", "--width", "300")[0] == 0
+def test_a_picture_of_a_world_is_written_as_png(folder: Path, outcome: Outcome) -> None:
+    assert outcome("show", "house", "--output", "house.png", "--width", "300")[0] == 0
     picture = (folder / "house.png").read_bytes()
     assert picture.startswith(b"\x89PNG")
     assert int.from_bytes(picture[16:20], "big") == 300
 
 
 def test_a_missing_png_library_suggests_what_to_install(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "resvg_py", None)
-    code, _, errors = outcome(capsys, "show", "house", "--output", "house.png")
+    code, _, errors = outcome("show", "house", "--output", "house.png")
     assert code == 2
     assert "pip install 'jacaros[maps]', or --output FILE.svg" in errors
 
 
-def test_a_new_world_is_valid_with_its_comments_enabled(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert outcome(capsys, "new", "new.yaml")[0] == 0
+def test_a_new_world_is_valid_with_its_comments_enabled(folder: Path, outcome: Outcome) -> None:
+    assert outcome("new", "new.yaml")[0] == 0
     first, *lines = Path("new.yaml").read_text().splitlines()
     Path("new.yaml").write_text("\n".join([first, *(re.sub(r"^( *)# ", r"\1", line) for line in lines)]))
-    assert outcome(capsys, "check", "new.yaml")[1].endswith("1 door, 1 dock, 1 robot, 1 person\n")
+    assert outcome("check", "new.yaml")[1].endswith("1 door, 1 dock, 1 robot, 1 person\n")
 
 
-def test_a_new_world_is_valid_and_never_overwritten(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert outcome(capsys, "new", 'my "lab".yaml') == (0, 'wrote my "lab".yaml\n', "")
+def test_a_new_world_is_valid_and_never_overwritten(folder: Path, outcome: Outcome) -> None:
+    assert outcome("new", 'my "lab".yaml') == (0, 'wrote my "lab".yaml\n', "")
     assert world_problems(Path('my "lab".yaml'))[1] == []
     world = load_world('my "lab".yaml')
     assert (world.name, len(world.rooms), len(world.docks)) == ('my "lab"', 2, 1)
-    code, _, errors = outcome(capsys, "new", 'my "lab".yaml')
+    code, _, errors = outcome("new", 'my "lab".yaml')
     assert code == 2
     assert errors.startswith("error: file exists:")
 
 
-def test_a_world_survives_export_and_import_as_a_map(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert outcome(capsys, "export", "house", "h.yaml") == (0, "wrote h.yaml\nwrote h.pgm\n", "")
+def test_a_world_survives_export_and_import_as_a_map(folder: Path, outcome: Outcome) -> None:
+    assert outcome("export", "house", "h.yaml") == (0, "wrote h.yaml\nwrote h.pgm\n", "")
     (folder / "worlds").mkdir()
-    assert outcome(capsys, "new", "worlds/again.yaml", "--map", "h.yaml")[0] == 0
+    assert outcome("new", "worlds/again.yaml", "--map", "h.yaml")[0] == 0
     world = load_world("worlds/again.yaml")
     assert world.bounds == load_world("house").bounds
     (robot,) = world.robots
     assert (robot.pose.x, robot.pose.y) == (world.docks[0].pose.x, world.docks[0].pose.y)
-    assert outcome(capsys, "export", "worlds/again.yaml", "h.yaml")[0] == 0
+    assert outcome("export", "worlds/again.yaml", "h.yaml")[0] == 0
 
 
-def test_an_image_gets_a_map_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    outcome(capsys, "export", "house", "h.yaml")
-    assert outcome(capsys, "new", "lab.yaml", "--map", "h.pgm", "--resolution", "0.1") == (
+def test_an_image_gets_a_map_file(folder: Path, outcome: Outcome) -> None:
+    outcome("export", "house", "h.yaml")
+    assert outcome("new", "lab.yaml", "--map", "h.pgm", "--resolution", "0.1") == (
         0,
         "wrote lab_map.yaml\nwrote lab.yaml\n",
         "",
@@ -151,12 +143,12 @@ def test_an_image_gets_a_map_file(folder: Path, capsys: pytest.CaptureFixture[st
     ],
 )
 def test_wrong_usage_suggests_a_fix(
-    folder: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], code: int, told: str
+    folder: Path, outcome: Outcome, arguments: tuple[str, ...], code: int, told: str
 ) -> None:
     for name in ("notes.svg", "notes.yaml"):
         Path(name).write_text("my notes")
     Path("broken.yaml").write_text("image: h.pgm\nresolution: 0.1\n")
-    found, output, errors = outcome(capsys, *arguments)
+    found, output, errors = outcome(*arguments)
     assert (found, output) == (code, "")
     assert told in errors
     assert not Path("a.yaml").exists()

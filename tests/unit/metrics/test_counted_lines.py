@@ -9,7 +9,7 @@ from jacaros.agents.language.diagnostics import SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.language.nodes import Program
 from jacaros.metrics import CountedFile, Group, MetricsError, measure
-from jacaros.metrics.agentspeak import comments_of
+from jacaros.metrics.sources import agentspeak_comments
 
 
 def counted(folder: Path, name: str, text: str) -> CountedFile:
@@ -219,7 +219,7 @@ def test_the_code_lines_of_a_program_are_the_same_program(path: Path) -> None:
         return read_program(SourceFile("a.asl", text), lambda *_: ("included.asl", ""))[0]
 
     text = path.read_text(encoding="utf-8")
-    file = CountedFile(path, b"", text, comments_of(SourceFile("a.asl", text)))
+    file = CountedFile(path, b"", text, agentspeak_comments(text))
     assert len(file.code) < len(text)
     assert tree(file.code) == tree(text)
 

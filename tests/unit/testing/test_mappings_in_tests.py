@@ -9,7 +9,7 @@ import pytest
 from jacaros.mas.system import System
 from jacaros.ros.qos import LATCHED
 from jacaros.testing import run_project
-from jacaros.testing.run import Outcome, suite_of
+from jacaros.testing.suites import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
 
 MAPPING = """

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.errors import UsageError
-from jacaros.testing.run import collect, suite_of
+from jacaros.testing.suites import collect, suite_of
 
 Write = Callable[..., Path]
 

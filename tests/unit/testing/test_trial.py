@@ -11,7 +11,7 @@ import pytest
 from jacaros.mas.agents.programs import SourcePath
 from jacaros.mas.checks.files import check_files
 from jacaros.runtime import clock
-from jacaros.testing.run import Outcome, suite_of
+from jacaros.testing.suites import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
 
 Outcomes = Callable[..., list[Outcome]]

@@ -1,14 +1,16 @@
-"""A source file with its counts, and the counts of a group of files."""
+"""Source files with their counts, and the programs that consist of them."""
 
 import gzip
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from jacaros.metrics.comments import Stretch
+Stretch = tuple[int, int]
+"""A part of a text: the offset of its first character, and the offset after its last one."""
 
 _LEVEL: Final = 9
 """Compression level of gzip (the highest)."""
@@ -50,7 +52,7 @@ class Counts:
 
     def __add__(self, other: "Counts") -> "Counts":
         """Return the sum, as a total of groups; a name in both groups counts twice, as in the thesis."""
-        return Counts(*(getattr(self, name) + getattr(other, name) for name in Counts.__dataclass_fields__))
+        return Counts(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ class CountedFile:
         path: path of the file.
         data: content as bytes.
         text: content as text, with line feeds as line ends.
-        comments: comments and docstrings, in order.
+        comments: comments and docstrings, in order; a docstring of several literals may have comments in it.
         identifiers: names counted by `Counts.identifiers`.
         names: names counted by `Counts.names`.
     """
@@ -86,7 +88,7 @@ class CountedFile:
         for start, stop in self.comments:
             # Code before and after a long comment stays on separate lines.
             pieces += (self.text[at:start], "\n" * self.text.count("\n", start, stop))
-            at = stop
+            at = max(at, stop)
         pieces.append(self.text[at:])
         kept = [line.rstrip() for line in "".join(pieces).split("\n")]
         return "".join(f"{line}\n" for line in kept if line)
@@ -107,8 +109,6 @@ def counts_of(files: Iterable[CountedFile]) -> Counts:
         files: files in the order of compression.
     """
     group = list(files)
-    if not group:
-        return Counts()
     code = "".join(each.code for each in group)
     return Counts(
         identifiers=len(frozenset[str]().union(*(each.identifiers for each in group))),
@@ -123,3 +123,50 @@ def counts_of(files: Iterable[CountedFile]) -> Counts:
 
 def _compressed(data: bytes) -> int:
     return len(gzip.compress(data, _LEVEL, mtime=0)) if data else 0
+
+
+class Group(StrEnum):
+    """The role of source files."""
+
+    AGENTS = "agents"
+    """Agent programs (.asl), and Python files with agents."""
+
+    ARTIFACTS = "artifacts"
+    """All other Python code of a program, and its mapping files."""
+
+    PROJECTS = "projects"
+    """Project files (.jcm, .mas2j) and launch files."""
+
+    WORLDS = "worlds"
+    """World files and fault files."""
+
+    LIBRARY = "library"
+    """Parts of the artifacts and plans of jacaros, and of other libraries, that the program uses."""
+
+    BASELINE = "baseline"
+    """Python files of a program without agents and with the same behaviour."""
+
+    BASELINE_LIBRARY = "baseline_library"
+    """Library code that the baseline uses."""
+
+
+@dataclass(frozen=True)
+class ProgramMetrics:
+    """A program with its files.
+
+    Attributes:
+        name: name of its folder.
+        files: files by group, sorted by path; groups without files may be missing.
+    """
+
+    name: str
+    files: Mapping[Group, tuple[CountedFile, ...]]
+
+    def counts(self, group: Group) -> Counts:
+        """Return the counts of one group."""
+        return counts_of(self.files.get(group, ()))
+
+    @property
+    def total(self) -> Counts:
+        """Counts of the code that the program author wrote: agents and artifacts, as in the thesis; no configuration."""
+        return self.counts(Group.AGENTS) + self.counts(Group.ARTIFACTS)

@@ -1,0 +1,6 @@
+"""What a call of a command returns to a test."""
+
+from collections.abc import Callable
+
+Outcome = Callable[..., tuple[int, str, str]]
+"""Exit code, standard output and standard error output; made by the fixture ``outcome``."""
