@@ -10,7 +10,7 @@ from typing import NamedTuple
 from jacaros.errors import UsageError
 from jacaros.sim.contact import WallIndex, push_apart
 from jacaros.sim.robot.robot import Robot
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle
 
 
 class Obstacle(NamedTuple):

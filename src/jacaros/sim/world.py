@@ -23,8 +23,7 @@ from jacaros.sim.objects import Objects
 from jacaros.sim.obstacles import Obstacle, Obstacles, overlapping
 from jacaros.sim.people import People, Person
 from jacaros.sim.robot.robot import Robot
-from jacaros.sim.robot.sensors.laser import Laser
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle, Laser
 
 STEP = 0.02
 """Length of a step in seconds: 50 Hz."""
@@ -176,7 +175,7 @@ class World:
         radius = max((robot.radius for robot in self.description.robots), default=0.17)
         self._walls = WallIndex(self.segments, radius)
         for laser in self._lasers.values():
-            laser.look_at(self.segments)
+            laser.segments = self.segments
 
     def move_door(self, name: str, opened: bool) -> str | None:
         """Open or close a door.

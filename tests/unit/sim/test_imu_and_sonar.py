@@ -7,7 +7,7 @@ import pytest
 from sensor_lab import heard
 
 from jacaros.sim.description import Segment
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle
 from jacaros.sim.robot.sensors.sonar import FIELD, echo
 
 

@@ -18,7 +18,7 @@ from jacaros.ros.backend import Publisher
 from jacaros.sim.description import Segment
 from jacaros.sim.navigation.frames import CAMERA
 from jacaros.sim.robot.on_graph import RobotOnGraph
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle
 from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
 
 _TICKS_PER_IMAGE = 4

@@ -1,77 +1,109 @@
-"""The laser range finder, in plain Python or numpy, whichever is faster for the world; the ranges are equal."""
+"""The laser range finder: exact, and equal on every machine.
 
+The sweep intersects a wall only with the beams between the bearings of its two ends. The bearings come from the C
+library's arctangent, which only *selects* candidates (one more beam on each side makes its last bit irrelevant); the
+ranges themselves are computed with ``+ - * /`` and square roots.
+"""
+
+import math
 import random
 from collections.abc import Iterable, Sequence
-from typing import Any
 
+from jacaros.plane.trigonometry import PI, TWO_PI, sine_cosine
 from jacaros.sim.description import LaserSettings, Segment
-from jacaros.sim.robot.sensors.laser_plain import Beams, Circle, sweep_circles, sweep_walls
 
-FEW_WALLS = 4
-"""Number of walls up to which plain Python is as fast as numpy, and saves its import."""
-
-FEW_CIRCLES = 2
-"""The same for the number of robots and people in range."""
+Circle = tuple[float, float, float]
+"""A round obstacle: centre and radius, in metres."""
 
 
 class Laser:
-    """One robot's laser.
+    """One robot's laser: beam 0 of a full turn points backwards (-pi), the others follow counter-clockwise.
 
     Attributes:
         settings: settings from the world file.
-        beams: its beams, with ``angle_min``, ``angle_max`` and ``angle_increment``.
+        segments: all walls.
+        angle_min, angle_max, angle_increment: bearings of the first and the last beam in the field of view, and the step
+            between two beams, in radians.
     """
 
-    def __init__(
-        self, settings: LaserSettings, segments: Sequence[Segment], seed: str, with_numpy: bool | None = None
-    ) -> None:
-        """Create the laser; *with_numpy* selects an implementation, None the faster one. Both return the same bits."""
-        self.settings = settings
-        self.beams = Beams(settings)
-        self._segments = segments
+    def __init__(self, settings: LaserSettings, segments: Sequence[Segment], seed: str) -> None:
+        self.settings, self.segments = settings, segments
+        self._count = settings.beams_per_turn
+        self.angle_increment = TWO_PI / self._count
+        self._first, self._last = 0, self._count
+        if settings.field < TWO_PI:
+            half = math.floor(settings.field / 2.0 / self.angle_increment + 1e-9)
+            ahead = self._count // 2
+            self._first, self._last = max(0, ahead - half), min(self._count, ahead + half + 1)
+        self.angle_min = -PI + self._first * self.angle_increment
+        self.angle_max = -PI + (self._last - 1) * self.angle_increment
+        # As sines and cosines.
+        self._beams = [sine_cosine(-PI + index * TWO_PI / self._count) for index in range(self._count)]
         self._draw = random.Random(seed).random
-        self._with_numpy = len(segments) > FEW_WALLS if with_numpy is None else with_numpy
-        self._arrays: Any = None
-
-    def look_at(self, segments: Sequence[Segment]) -> None:
-        """Replace the walls."""
-        self._segments, self._arrays = segments, None
 
     def scan(self, x: float, y: float, yaw: float, others: Iterable[Circle] = ()) -> list[float]:
         """Return ranges (metres) of the field of view, counter-clockwise; ``inf`` for no echo in range."""
         noise, reach = self.settings.noise, self.settings.range_max
-        swept = self._sweep(x, y, yaw, [each for each in others if _near(each, x, y, reach + noise)])
-        swept = swept[self.beams.first : self.beams.last]
+        sine, cosine = sine_cosine(yaw)
+        xs = [cosine * c - sine * s for s, c in self._beams]
+        ys = [sine * c + cosine * s for s, c in self._beams]
+        ranges = [math.inf] * self._count
+        self._meet_walls(ranges, x, y, yaw, xs, ys)
+        self._meet_circles(ranges, others, x, y, yaw, xs, ys)
+        swept = ranges[self._first : self._last]
         if noise:
             swept = [value + (self._draw() * 2.0 - 1.0) * noise for value in swept]
-        return [value if value <= reach else float("inf") for value in swept]
+        return [value if value <= reach else math.inf for value in swept]
 
-    def _sweep(self, x: float, y: float, yaw: float, circles: list[Circle]) -> list[float]:
-        if self._with_numpy and self._arrays is None:
-            self._arrays = self._wall_arrays()
-        if not self._with_numpy:
-            ranges = sweep_walls(self._segments, x, y, yaw, self.beams)
-            sweep_circles(ranges, circles, x, y, yaw, self.beams)
-            return ranges
-        if len(circles) > FEW_CIRCLES:
-            swept: list[float] = self._arrays.sweep(x, y, yaw, circles)
-        else:
-            swept = self._arrays.sweep(x, y, yaw)
-            sweep_circles(swept, circles, x, y, yaw, self.beams)
-        return swept
+    def _meet_walls(
+        self, ranges: list[float], x: float, y: float, yaw: float, xs: list[float], ys: list[float]
+    ) -> None:
+        """Shorten *ranges* where a beam meets a wall; *xs* and *ys* are the beams' directions."""
+        count, scale, far = self._count, self._count / TWO_PI, self.settings.range_max + self.settings.noise
+        for segment_ax, segment_ay, segment_bx, segment_by in self.segments:
+            ax, ay, bx, by = segment_ax - x, segment_ay - y, segment_bx - x, segment_by - y
+            if (ax > far and bx > far) or (ax < -far and bx < -far):
+                continue
+            if (ay > far and by > far) or (ay < -far and by < -far):
+                continue
+            dx, dy = bx - ax, by - ay
+            area = ax * by - ay * bx
+            of_a, of_b = math.atan2(ay, ax), math.atan2(by, bx)
+            start, end = (of_a, of_b) if area > 0.0 else (of_b, of_a)
+            first = math.floor((start - yaw + PI) * scale) - 1
+            last = first + math.ceil(((end - start) % TWO_PI) * scale) + 3
+            for number in range(first, last):
+                beam = number % count
+                c, s = xs[beam], ys[beam]
+                across = c * dy - s * dx
+                if not across:
+                    continue
+                distance = area / across
+                if 0.0 <= distance < ranges[beam] and 0.0 <= (ax * s - ay * c) / across <= 1.0:
+                    ranges[beam] = distance
 
-    def _wall_arrays(self) -> Any:
-        """Return the walls as arrays; None where numpy, which is optional, is not installed."""
-        try:
-            # numpy takes a third of a second to import: only the first wanted scan pays for it.
-            from jacaros.sim.robot.sensors.laser_numpy import WallArrays
-        except ImportError:
-            self._with_numpy = False
-            return None
-        return WallArrays(self._segments, self.beams)
-
-
-def _near(circle: Circle, x: float, y: float, reach: float) -> bool:
-    """Return whether a beam of *reach* metres can meet a circle."""
-    ex, ey, far = circle[0] - x, circle[1] - y, reach + circle[2]
-    return ex * ex + ey * ey < far * far
+    def _meet_circles(
+        self,
+        ranges: list[float],
+        circles: Iterable[Circle],
+        x: float,
+        y: float,
+        yaw: float,
+        xs: list[float],
+        ys: list[float],
+    ) -> None:
+        """Shorten *ranges* where a beam meets a circle first."""
+        count, scale, far = self._count, self._count / TWO_PI, self.settings.range_max + self.settings.noise
+        for circle_x, circle_y, radius in circles:
+            ex, ey = circle_x - x, circle_y - y
+            apart2, radius2 = ex * ex + ey * ey, radius * radius
+            if not radius2 < apart2 < (far + radius) * (far + radius):
+                continue
+            half = math.asin(radius / math.sqrt(apart2))
+            first = math.floor((math.atan2(ey, ex) - half - yaw + PI) * scale) - 1
+            for number in range(first, first + math.ceil(2.0 * half * scale) + 3):
+                beam = number % count
+                along, across = ex * xs[beam] + ey * ys[beam], ex * ys[beam] - ey * xs[beam]
+                root = radius2 - across * across
+                if root >= 0.0 and along > 0.0 and (distance := along - math.sqrt(root)) < ranges[beam]:
+                    ranges[beam] = distance

@@ -29,8 +29,8 @@ class LaserSensor:
         laser = world.laser(name)
         message = publisher.message(ranges=world.scan(name))
         self._at.fill_header(message.header, "base_scan")
-        message.angle_min, message.angle_max = laser.beams.angle_min, laser.beams.angle_max
-        message.angle_increment = laser.beams.angle_increment
+        message.angle_min, message.angle_max = laser.angle_min, laser.angle_max
+        message.angle_increment = laser.angle_increment
         message.scan_time = _TICKS_PER_SCAN / TICKS_PER_SECOND
         message.range_min, message.range_max = laser.settings.range_min, laser.settings.range_max
         publisher.publish(message)

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 from jacaros.plane.trigonometry import radians, sine_cosine
 from jacaros.sim.description import Segment
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle
 
 WIDTH, HEIGHT = 80, 60
 """Columns and rows of an image."""

@@ -7,7 +7,7 @@ from jacaros.plane.trigonometry import radians, sine_cosine
 from jacaros.ros.message import constant
 from jacaros.sim.description import Segment
 from jacaros.sim.robot.on_graph import RobotOnGraph
-from jacaros.sim.robot.sensors.laser_plain import Circle
+from jacaros.sim.robot.sensors.laser import Circle
 
 FIELD = radians(30.0)
 """Width of the cone, in radians."""
