@@ -2,10 +2,10 @@
 
 from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
 from jacaros.sim.files.world import read_world, shipped_worlds
+from jacaros.sim.graph.robot_node import RobotNode
 from jacaros.sim.ground_truth import Event, GroundTruth, Sample
 from jacaros.sim.node import SimNode
 from jacaros.sim.process import serve
-from jacaros.sim.robot.node import RobotNode
 from jacaros.sim.world import World
 
 __all__ = [

@@ -14,7 +14,7 @@ from jacaros.errors import UsageError
 from jacaros.plane.pose import Pose
 from jacaros.sim.cleaning import Cleaning
 from jacaros.sim.contact import WallIndex, push_apart
-from jacaros.sim.description import PersonDescription, WorldDescription
+from jacaros.sim.description import Dock, PersonDescription, WorldDescription
 from jacaros.sim.faults.description import Fault
 from jacaros.sim.faults.schedule import Faults
 from jacaros.sim.files.world import load_world, read_world
@@ -24,7 +24,10 @@ from jacaros.sim.obstacles import Obstacle, Obstacles, overlapping
 from jacaros.sim.people import People, Person
 from jacaros.sim.robot.robot import Robot
 from jacaros.sim.robot.sensors.laser import Circle, Laser
+from jacaros.sim.sight import hidden
 
+DOCK_SEEN_FROM = 2.0
+"""Distance in metres at which a robot detects a dock."""
 STEP = 0.02
 """Length of a step in seconds: 50 Hz."""
 SAMPLES_PER_SECOND = 10
@@ -161,10 +164,6 @@ class World:
         self._note(robot, "task", {"task": text, "room": self.room_at(robot.x, robot.y)})
         self.cleaning.use(robot, text.partition(" ")[0])
 
-    def note(self, name: str, kind: str, data: dict[str, Any]) -> None:
-        """Add an event of a robot to the ground truth."""
-        self._note(self.robot(name), kind, data)
-
     def use_tool(self, name: str, tool: str) -> None:
         """Start a cleaning tool of a robot, instead of the running one; "" or an unknown name only stops it."""
         self.cleaning.use(self.robot(name), tool)
@@ -219,6 +218,18 @@ class World:
         if self.obstacles.by_name:
             others += self.obstacles.circles()
         return others
+
+    def visible_dock(self, robot: Robot) -> Dock | None:
+        """Return the nearest dock that a robot detects: within 2 m, and not behind a wall."""
+        seen = []
+        for dock in self.description.docks:
+            dx, dy = robot.x - dock.pose.x, robot.y - dock.pose.y
+            apart = math.sqrt(dx * dx + dy * dy)
+            if apart <= DOCK_SEEN_FROM and not hidden(
+                self.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
+            ):
+                seen.append((apart, dock))
+        return min(seen, key=lambda pair: pair[0])[1] if seen else None
 
     def laser(self, name: str) -> Laser:
         """Return a robot's laser, created on first use."""

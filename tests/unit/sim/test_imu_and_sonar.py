@@ -8,7 +8,7 @@ from sensor_lab import heard
 
 from jacaros.sim.description import Segment
 from jacaros.sim.robot.sensors.laser import Circle
-from jacaros.sim.robot.sensors.sonar import FIELD, echo
+from jacaros.sim.sight import FIELD, echo
 
 
 def test_the_imu_measures_rotation_and_centripetal_acceleration() -> None:

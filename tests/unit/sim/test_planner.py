@@ -13,16 +13,17 @@ from jacaros.plane.pose import distance
 from jacaros.sim import World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.driver import Route
-from jacaros.sim.navigation.failure import (
+from jacaros.sim.navigation.grid import REACH, RESOLUTION, Grid
+from jacaros.sim.navigation.planner import (
     GOAL_OCCUPIED,
     GOAL_OUTSIDE_MAP,
+    MARGIN,
     NO_VALID_PATH,
     START_OCCUPIED,
     START_OUTSIDE_MAP,
     NavigationFailure,
+    Planner,
 )
-from jacaros.sim.navigation.grid import REACH, RESOLUTION, Grid
-from jacaros.sim.navigation.planner import MARGIN, Planner
 
 RADIUS = 0.17
 SHIPPED = ["empty", "house", "patrol", "two_robots"]

@@ -13,9 +13,8 @@ from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
 from jacaros.sim.description import Rectangle, Segment, WorldDescription
 from jacaros.sim.navigation.driver import Driver, Pace, Route
-from jacaros.sim.navigation.failure import GOAL_OCCUPIED, NavigationFailure
 from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.planner import Planner
+from jacaros.sim.navigation.planner import GOAL_OCCUPIED, NavigationFailure, Planner
 
 RADIUS = 0.17
 

@@ -6,12 +6,9 @@ from collections.abc import Callable
 from jacaros.plane.pose import Placement, distance
 from jacaros.sim.description import Dock
 from jacaros.sim.navigation.driver import STOP
-from jacaros.sim.navigation.failure import NavigationFailure
-from jacaros.sim.navigation.laser_perception import hidden
-from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.planner import GOAL_MARGIN
+from jacaros.sim.navigation.navigator import PERIOD, Navigator
+from jacaros.sim.navigation.planner import GOAL_MARGIN, NavigationFailure
 from jacaros.sim.navigation.trip import go
-from jacaros.sim.navigation.wheels import PERIOD
 
 STAGING = 0.5
 """Distance of the staging pose from the dock, in metres."""
@@ -20,13 +17,11 @@ DOCKING_TIMEOUT = 907
 """Error codes of Nav2's ``DockRobot`` and ``UndockRobot``."""
 NAV_TO_STAGING_POSE, INITIAL_PERCEPTION, CONTROLLING, WAIT_FOR_CHARGE = 1, 2, 3, 4
 """States of the feedback of ``DockRobot``."""
-SEEN_FROM = 2.0
-"""Distance at which a robot detects a dock, in metres."""
 _CHARGES_WITHIN = 2.0
 _UNDOCKED = 0.12
 _BACK_SPEED = 0.2
 
-TellState = Callable[[int], None]
+TellState = Callable[[int], object]
 
 
 class Docking:
@@ -51,7 +46,7 @@ class Docking:
         Raises:
             NavigationFailure: the name is unknown.
         """
-        docks = self.navigator.docks()
+        docks = self.navigator.time.world.description.docks
         for dock in docks:
             if dock.name == name:
                 return dock
@@ -68,7 +63,7 @@ class Docking:
         def apart(dock: Dock) -> float:
             return distance((place.x, place.y), (dock.pose.x, dock.pose.y))
 
-        near = [dock for dock in self.navigator.docks() if apart(dock) <= within]
+        near = [dock for dock in self.navigator.time.world.description.docks if apart(dock) <= within]
         if not near:
             raise NavigationFailure(DOCK_NOT_VALID, f"no dock at ({place.x:.2f}, {place.y:.2f})")
         return min(near, key=apart)
@@ -76,14 +71,7 @@ class Docking:
     def visible_dock(self) -> Dock | None:
         """Return the nearest dock that the robot detects from its pose."""
         self.navigator.time.catch_up()
-        robot, seen = self.navigator.robot, []
-        for dock in self.navigator.docks():
-            apart = distance((robot.x, robot.y), (dock.pose.x, dock.pose.y))
-            if apart <= SEEN_FROM and not hidden(
-                self.navigator.time.world.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
-            ):
-                seen.append((apart, dock))
-        return min(seen, key=lambda pair: pair[0])[1] if seen else None
+        return self.navigator.time.world.visible_dock(self.navigator.robot)
 
     async def dock(self, dock: Dock, stage: bool, tell: TellState, limit: float = math.inf) -> None:
         """Drive to the staging pose (if *stage*, within *limit* seconds), into the dock, and wait for the charging current.
@@ -140,7 +128,7 @@ class Docking:
         if place is None:
             return
         try:
-            await go(self.navigator, [place], lambda progress: None, limit)
+            await go(self.navigator, [place], bool, limit)
         except NavigationFailure as failure:
             raise NavigationFailure(code, failure.text) from None
 

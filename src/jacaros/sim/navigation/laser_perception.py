@@ -7,6 +7,7 @@ from jacaros.plane.pose import Placement, Point, distance
 from jacaros.sim.description import Door, Segment
 from jacaros.sim.navigation.planner import Circle
 from jacaros.sim.robot.robot import Robot
+from jacaros.sim.sight import hidden
 from jacaros.sim.world import World
 
 RANGE = 3.0
@@ -76,16 +77,3 @@ def _points(door: Door) -> list[Point]:
     ax, ay, bx, by = door.segment
     pieces = max(2, math.ceil(distance((ax, ay), (bx, by)) / _BETWEEN))
     return [(ax + (bx - ax) * n / pieces, ay + (by - ay) * n / pieces) for n in range(pieces + 1)]
-
-
-def hidden(walls: Iterable[Segment], ax: float, ay: float, bx: float, by: float) -> bool:
-    """Return whether a wall crosses the straight line between two points."""
-    dx, dy = bx - ax, by - ay
-    for cx, cy, ex, ey in walls:
-        of_c, of_e = dx * (cy - ay) - dy * (cx - ax), dx * (ey - ay) - dy * (ex - ax)
-        if (of_c > 0.0) == (of_e > 0.0):
-            continue
-        wx, wy = ex - cx, ey - cy
-        if (wx * (ay - cy) - wy * (ax - cx) > 0.0) != (wx * (by - cy) - wy * (bx - cx) > 0.0):
-            return True
-    return False

@@ -5,11 +5,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from jacaros.plane.pose import Placement, Point, distance
-from jacaros.sim.navigation.driver import STOP, Route, in_the_way
-from jacaros.sim.navigation.failure import FAILED_TO_MAKE_PROGRESS, NO_VALID_PATH, TIMEOUT, NavigationFailure
-from jacaros.sim.navigation.navigator import Navigator
-from jacaros.sim.navigation.planner import Circle, coordinates
-from jacaros.sim.navigation.wheels import PERIOD, Claim
+from jacaros.sim.navigation.driver import STOP, Driver, Route, in_the_way
+from jacaros.sim.navigation.navigator import PERIOD, Claim, Navigator
+from jacaros.sim.navigation.planner import (
+    FAILED_TO_MAKE_PROGRESS,
+    NO_VALID_PATH,
+    TIMEOUT,
+    Circle,
+    NavigationFailure,
+    coordinates,
+)
 
 TOLERANCE = 0.05
 """Distance from the goal in metres at which the robot has arrived."""
@@ -45,7 +50,7 @@ class Progress:
     recoveries: int
 
 
-Tell = Callable[[Progress], None]
+Tell = Callable[[Progress], object]
 
 
 async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf) -> None:
@@ -258,7 +263,7 @@ class Trip:
             points = [points[0], points[0]]
         self.navigator.path = points
         self._route = Route(points)
-        self._driver = self.navigator.driver()
+        self._driver = Driver(self.navigator.planner, self.navigator.pace)
 
     async def _recover(self, claim: Claim) -> None:
         """Recover: step back if there is room, wait a moment, and replan."""

@@ -40,7 +40,7 @@ class Robot:
     """
 
     def __init__(
-        self, description: RobotDescription, seed: int, tell: Callable[["Robot", str, dict[str, Any]], None]
+        self, description: RobotDescription, seed: int, note: Callable[["Robot", str, dict[str, Any]], None]
     ) -> None:
         self.description = description
         self.name = description.name
@@ -59,7 +59,7 @@ class Robot:
         self.contacts: dict[str, str] = {}
         self._silence = math.inf
         self._touched: dict[str, str] = {}
-        self._tell = tell
+        self._note = note
 
     @property
     def pose(self) -> Pose:
@@ -81,6 +81,10 @@ class Robot:
         """Whether the base moves or has a command to move."""
         return self.speed != 0.0 or self.turn_rate != 0.0 or self._has_command()
 
+    def tell(self, kind: str, data: dict[str, Any]) -> None:
+        """Add an event of the robot to the ground truth."""
+        self._note(self, kind, data)
+
     def sample(self, time: float) -> Sample:
         """Return the state as a point of the path."""
         return Sample(time, *self.state(), self.odometer)
@@ -93,7 +97,7 @@ class Robot:
     def command(self, speed: float, turn_rate: float) -> None:
         """Set a velocity command (m/s, rad/s) for the next step; numbers that are not finite mean stop."""
         if not (math.isfinite(speed) and math.isfinite(turn_rate)):
-            self._tell(self, "bad_command", {"speed": repr(speed), "turn_rate": repr(turn_rate)})
+            self.tell("bad_command", {"speed": repr(speed), "turn_rate": repr(turn_rate)})
             speed = turn_rate = 0.0
         if self.fallen:
             return
@@ -159,7 +163,7 @@ class Robot:
         late = self._silence + 1e-9 > self.description.limits.command_timeout
         self._silence += dt
         if late and self._has_command():
-            self._tell(self, "command_timeout", {"speed": self.speed, "turn_rate": self.turn_rate})
+            self.tell("command_timeout", {"speed": self.speed, "turn_rate": self.turn_rate})
         if late or self.battery.empty:
             self.wanted_speed = self.wanted_turn_rate = 0.0
             self.speed = self.turn_rate = 0.0
@@ -210,9 +214,9 @@ class Robot:
         for other, side in self._touched.items():
             if other not in self.touching:
                 if other == WALL:
-                    self._tell(self, "bump", {"side": side})
+                    self.tell("bump", {"side": side})
                 else:
-                    self._tell(self, "collision", {"with": other, "side": side})
+                    self.tell("collision", {"with": other, "side": side})
         self.touching = frozenset(self._touched)
         self.contacts = self._touched
 
@@ -221,7 +225,7 @@ class Robot:
         if not self.fallen and any(cliff.contains(self.x, self.y) for cliff in cliffs):
             self.fallen = True
             self.speed = self.turn_rate = self.wanted_speed = self.wanted_turn_rate = 0.0
-            self._tell(self, "fell", {})
+            self.tell("fell", {})
 
     def settle_dock(self, docks: tuple[Dock, ...]) -> None:
         """End a step: update the dock. Passing through a dock is not docking."""
@@ -230,9 +234,9 @@ class Robot:
             dock = next((dock for dock in docks if self._within(dock)), None)
         if dock is not self.dock:
             if self.dock is not None:
-                self._tell(self, "undocked", {"dock": self.dock.name})
+                self.tell("undocked", {"dock": self.dock.name})
             if dock is not None:
-                self._tell(self, "docked", {"dock": dock.name})
+                self.tell("docked", {"dock": dock.name})
             self.dock = dock
             # Immediately, not in the next step: a docked robot that is not charging would seem to be full.
             self.battery.feed(self.fed)

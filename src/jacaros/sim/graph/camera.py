@@ -16,8 +16,8 @@ from typing import Any, Final
 
 from jacaros.ros.backend import Publisher
 from jacaros.sim.description import Segment
-from jacaros.sim.navigation.frames import CAMERA
-from jacaros.sim.robot.on_graph import RobotOnGraph
+from jacaros.sim.graph.frames import CAMERA
+from jacaros.sim.graph.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.laser import Circle
 from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
 
@@ -32,7 +32,7 @@ _OBJECT: Final = Look(0.12, (90, 160, 90))
 _DOCK_RADIUS = 0.1
 
 
-class CameraSensor:
+class Camera:
     """The camera of one robot."""
 
     def __init__(self, at: RobotOnGraph) -> None:

@@ -1,20 +1,30 @@
-"""The sonar of a robot, whose echo comes from the nearest point in its cone."""
+"""What hides what, and the echo of a sonar, which comes from the nearest point in its cone."""
 
 import math
 from collections.abc import Iterable
 
 from jacaros.plane.trigonometry import radians, sine_cosine
-from jacaros.ros.message import constant
 from jacaros.sim.description import Segment
-from jacaros.sim.robot.on_graph import RobotOnGraph
 from jacaros.sim.robot.sensors.laser import Circle
 
 FIELD = radians(30.0)
 """Width of the cone, in radians."""
 RANGE_MIN, RANGE_MAX = 0.02, 4.0
 """Maximum range in metres; there is no echo from farther away."""
-_TICKS_PER_ECHO = 2
 _EDGE_SINE, _EDGE_COSINE = sine_cosine(0.5 * FIELD)
+
+
+def hidden(walls: Iterable[Segment], ax: float, ay: float, bx: float, by: float) -> bool:
+    """Return whether a wall crosses the straight line between two points."""
+    dx, dy = bx - ax, by - ay
+    for cx, cy, ex, ey in walls:
+        of_c, of_e = dx * (cy - ay) - dy * (cx - ax), dx * (ey - ay) - dy * (ex - ax)
+        if (of_c > 0.0) == (of_e > 0.0):
+            continue
+        wx, wy = ex - cx, ey - cy
+        if (wx * (ay - cy) - wy * (ax - cx) > 0.0) != (wx * (by - cy) - wy * (bx - cx) > 0.0):
+            return True
+    return False
 
 
 def echo(segments: Iterable[Segment], circles: Iterable[Circle], x: float, y: float, yaw: float) -> float:
@@ -62,24 +72,3 @@ def _of_circle(cx: float, cy: float, radius: float) -> float:
     along, across = _EDGE_COSINE * cx + _EDGE_SINE * cy, _EDGE_COSINE * cy - _EDGE_SINE * cx
     root = radius * radius - across * across
     return along - math.sqrt(root) if root >= 0.0 and along > 0.0 else math.inf
-
-
-class SonarSensor:
-    """``/sonar``: metres to the nearest thing in a cone of 30 degrees ahead, 10 Hz with subscribers."""
-
-    def __init__(self, at: RobotOnGraph) -> None:
-        self._at = at
-        self._publisher = at.publisher("/sonar", "sensor_msgs/msg/Range")
-
-    def publish(self, ticks: int) -> None:
-        """Publish if due."""
-        if ticks % _TICKS_PER_ECHO or not self._publisher.subscription_count:
-            return
-        world, robot = self._at.time.world, self._at.robot
-        found = echo(world.segments, world.others(robot), robot.x, robot.y, robot.yaw)
-        message = self._publisher.message()
-        self._at.fill_header(message.header, "base_link")
-        message.radiation_type = constant(message, "ULTRASOUND")
-        message.field_of_view, message.min_range, message.max_range = FIELD, RANGE_MIN, RANGE_MAX
-        message.range = found if found <= RANGE_MAX else math.inf  # REP 117: no echo
-        self._publisher.publish(message)

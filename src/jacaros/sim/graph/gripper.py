@@ -8,10 +8,9 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from jacaros.sim.navigation.servers import Goal, Servers
+from jacaros.sim.graph.on_graph import Goal, RobotOnGraph
 from jacaros.sim.objects import Thing
 from jacaros.sim.robot.motion import approach
-from jacaros.sim.robot.on_graph import RobotOnGraph
 
 OPENING: Final = 0.1
 """Metres between the open fingers, which is their initial position."""
@@ -19,19 +18,21 @@ _SPEED = 0.1
 _PERIOD = 0.1
 
 
-class Gripper:
-    """Moves the fingers of one robot, and picks up and puts down objects; does nothing for a robot without a gripper."""
+def offer_gripper(at: RobotOnGraph) -> None:
+    """Offer the gripper of a robot, if it has one."""
+    if at.robot.description.gripper_reach:
+        name = "/gripper_controller/gripper_cmd"
+        at.action(name, "control_msgs/action/GripperCommand", _Gripper(at).move, _refuse)
+
+
+class _Gripper:
+    """Moves the fingers of one robot, and picks up and puts down objects."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
-        servers = at.keep(Servers(at.backend, at.robot.description))
-        if at.robot.description.gripper_reach:
-            servers.action(
-                "/gripper_controller/gripper_cmd", "control_msgs/action/GripperCommand", self._move, _refuse
-            )
 
-    async def _move(self, goal: Goal) -> Mapping[str, Any]:
+    async def move(self, goal: Goal) -> Mapping[str, Any]:
         wanted = min(max(float(goal.request.command.position), 0.0), OPENING)
         stalled = False
         while not stalled and self._opening != wanted:

@@ -1,0 +1,125 @@
+"""The ROS interfaces of one robot of the world; docs/reference/worlds.md lists them with types and rates.
+
+Navigation and docking are in `jacaros.sim.navigation`.
+"""
+
+import math
+from typing import Any, Final
+
+from jacaros.errors import UsageError
+from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.errors import MessageMismatch, UnknownInterface
+from jacaros.ros.message import plain, to_seconds
+from jacaros.ros.names import response_type
+from jacaros.sim.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
+from jacaros.sim.graph.gripper import offer_gripper
+from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, RobotOnGraph, WorldTime
+from jacaros.sim.graph.sensors import SENSORS, Tick
+from jacaros.sim.interface import OwnService, OwnTopic, absolute
+from jacaros.sim.robot.robot import Robot
+
+COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
+"""Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
+
+
+class RobotNode(RobotOnGraph):
+    """One robot with its sensors and commands, and the topics and services that a world file adds to it.
+
+    Raises:
+        UsageError: an added type is not installed, or does not have the fields that the world file states.
+    """
+
+    def __init__(self, time: WorldTime, robot: Robot, backend: Backend) -> None:
+        super().__init__(time, robot, backend)
+        self._ticks = 0
+        self._sensors: list[Tick] = [sensor(self) for sensor in SENSORS]
+        self._colors: list[str] = []
+        interface = robot.description.interface
+        added: list[OwnTopic | OwnService] = [*interface.topics, *interface.services]
+        for each in added:
+            try:
+                self._add(each, absolute(each.name, self.prefix))
+            except (UnknownInterface, MessageMismatch) as error:
+                raise UsageError(f"`{each.name}` of the robot `{robot.name}`: {error}") from None
+        self.subscribe("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light)
+        self.subscribe("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play)
+        offer_gripper(self)
+        for topic in COMMANDS:
+            self.subscribe(topic, "geometry_msgs/msg/Twist", self._command)
+        self.subscribe("/cleaning/task", "std_msgs/msg/String", self._task)
+        self.subscribe("/initialpose", POSE_WITH_COVARIANCE, self._receive_pose)
+        if robot.description.tools:
+            self.subscribe("/cleaning/tool", "std_msgs/msg/String", self._use_tool)
+
+    def publish(self) -> None:
+        """Publish the sensors that are due at this 20 Hz tick, after the world has caught up."""
+        for sensor in self._sensors:
+            sensor(self._ticks)
+        self._ticks += 1
+
+    def _add(self, added: OwnTopic | OwnService, name: str) -> None:
+        """Offer a topic or a service of a world file: constant messages or responses; received messages are recorded."""
+        if isinstance(added, OwnService):
+            self.backend.message(response_type(added.type_name), **added.response)
+            self.keep(self.backend.service(name, added.type_name, lambda request: added.response))
+        elif not added.rate:
+            self.keep(self.backend.subscription(name, added.type_name, self._record))
+        else:
+            self._sensors.append(self._repeat(added, name))
+
+    def _repeat(self, topic: OwnTopic, name: str) -> Tick:
+        publisher = self.keep(self.backend.publisher(name, topic.type_name))
+        publisher.message(**topic.message)  # finds mistakes
+        period = max(1, round(TICKS_PER_SECOND / topic.rate))
+
+        def publish(ticks: int) -> None:
+            if ticks % period == 0:
+                message = publisher.message(**topic.message)
+                if hasattr(message, "header"):
+                    self.fill_header(message.header, message.header.frame_id or "base_link")
+                publisher.publish(message)
+
+        return publish
+
+    def _record(self, sample: Sample) -> None:
+        self.time.catch_up()
+        self.robot.tell("received", {"topic": sample.topic, "message": plain(sample.message)})
+
+    def _light(self, sample: Sample) -> None:
+        """Record colours as ``#rrggbb``, counter-clockwise from the front; none if the robot controls its lights."""
+        leds = sample.message.leds if sample.message.override_system else ()
+        colors = [f"#{led.red:02x}{led.green:02x}{led.blue:02x}" for led in leds]
+        if colors != self._colors:
+            self._colors = colors
+            self.robot.tell("lights", {"colors": colors})
+
+    def _play(self, sample: Sample) -> None:
+        """Record notes as pairs of frequency (Hz) and duration (s)."""
+        notes = [[int(note.frequency), to_seconds(note.max_runtime)] for note in sample.message.notes]
+        self.robot.tell("sound", {"notes": notes, "append": bool(sample.message.append)})
+
+    def _command(self, sample: Sample) -> None:
+        twist: Any = sample.message
+        self.robot.command(float(twist.linear.x), float(twist.angular.z))
+
+    def _task(self, sample: Sample) -> None:
+        self.time.world.log_task(self.robot.name, str(sample.message.data))
+
+    def _use_tool(self, sample: Sample) -> None:
+        self.time.world.use_tool(self.robot.name, str(sample.message.data))
+
+    def _receive_pose(self, sample: Sample) -> None:
+        """Receive a pose for the robot, for example from rviz; as AMCL does, accept only poses in the map frame."""
+        header, received = sample.message.header, sample.message.pose
+        covariance = [float(value) for value in received.covariance]
+        fault = pose_fault(received.pose)
+        if header.frame_id.strip("/") not in ("", MAP, self.frame_prefix + MAP):
+            fault = f"it must be in the frame '{MAP}', not '{header.frame_id}'"
+        if not all(math.isfinite(value) and value >= 0.0 for value in covariance[::7]):
+            fault = "its covariance is invalid"
+        if fault is not None:
+            self.backend.rosout("warn", f"the pose on {sample.topic} is ignored: {fault}")
+            return
+        radius = 2.0 * math.sqrt(max(covariance[0], covariance[7]))
+        turn = 2.0 * math.sqrt(covariance[35])
+        self.localisation.believe(pose_of(received.pose), radius, turn, self.time.world.time)
