@@ -48,7 +48,7 @@ def median(figures: list[float]) -> float:
 def speed(name: str, seconds: float) -> float:
     """Simulated seconds in a second of the processor."""
     from jacaros.sim import World
-    from jacaros.sim.fingerprint import fingerprint
+    from jacaros.sim.physics.fingerprint import fingerprint
 
     world = World.load(name)
     began = time.process_time()

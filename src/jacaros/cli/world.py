@@ -8,7 +8,7 @@ import click
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.runtime.output import beneath
-from jacaros.sim.description import WorldDescription, WorldError
+from jacaros.sim.data.world import WorldDescription, WorldError
 
 _IMAGES = (".pgm", ".png")
 _WIDTH = 640

@@ -23,7 +23,7 @@ from jacaros.metrics.counted_file import CountedFile
 from jacaros.metrics.groups import Group
 from jacaros.metrics.library import Library
 from jacaros.metrics.sources import PythonFile, Sources, counted
-from jacaros.sim.faults.file import fault_file_problems, is_fault_file
+from jacaros.sim.files.faults import fault_file_problems, is_fault_file
 from jacaros.sim.files.world import is_world, shipped_worlds, world_problems
 
 _TEST_FOLDERS: Final = frozenset({"test", "tests"})

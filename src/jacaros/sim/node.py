@@ -8,13 +8,13 @@ from typing import Any, cast
 from jacaros.ros.backend import Backend, Publisher
 from jacaros.ros.message import stamp
 from jacaros.runtime.clock import Clock, Timer
-from jacaros.sim.faults.graph import FaultyGraph
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.graph.faulty_graph import FaultyGraph
 from jacaros.sim.graph.frames import MAP
 from jacaros.sim.graph.on_graph import LATCHED, TICKS_PER_SECOND, OnGraph, WorldTime
 from jacaros.sim.graph.robot_node import RobotNode
-from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.servers import RobotNavigation
-from jacaros.sim.world import World
+from jacaros.sim.physics.world import World
 
 _GRID = "nav_msgs/msg/OccupancyGrid"
 

@@ -16,9 +16,9 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.output import Output
-from jacaros.sim.ground_truth import Record, event_record, header
+from jacaros.sim.data.ground_truth import Record, event_record, header
 from jacaros.sim.node import SimNode
-from jacaros.sim.world import World
+from jacaros.sim.physics.world import World
 
 _FLUSH = 0.2
 """Maximum delay in seconds until a record is in the file."""
@@ -93,7 +93,7 @@ async def serve(
         backend: backend for this node; it is started and closed here.
         clock: clock that the world follows.
         duration: seconds; None for no limit.
-        ground_truth_path: file to write, for `jacaros.sim.ground_truth.GroundTruth.read`.
+        ground_truth_path: file to write, for `jacaros.sim.data.ground_truth.GroundTruth.read`.
         publish_clock: whether to publish *clock* on ``/clock``, for nodes in simulated time.
         when_open: called as soon as the robots have joined the graph.
 

@@ -12,7 +12,7 @@ from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.sim import GroundTruth, World
-from jacaros.sim.ground_truth import FIELDS
+from jacaros.sim.data.ground_truth import FIELDS
 
 WORLD = """
 size: [4, 4]

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.sim.description import WorldError
-from jacaros.sim.faults.file import fault_file_problems, is_fault_file, load_faults, read_faults
+from jacaros.sim.data.world import WorldError
+from jacaros.sim.files.faults import fault_file_problems, is_fault_file, load_faults, read_faults
 from jacaros.sim.files.world import read_world
 
 WORLD = read_world("""

@@ -4,7 +4,7 @@ import pytest
 
 from jacaros.cli.main import call
 from jacaros.sim import World
-from jacaros.sim.fingerprint import fingerprint
+from jacaros.sim.physics.fingerprint import fingerprint
 
 WORLD = """
 name: two rooms

@@ -6,9 +6,8 @@ import random
 import pytest
 from sensor_lab import heard
 
-from jacaros.sim.description import Segment
-from jacaros.sim.robot.sensors.laser import Circle
-from jacaros.sim.sight import FIELD, echo
+from jacaros.plane.shapes import Circle, Segment
+from jacaros.sim.physics.ranging import FIELD, echo
 
 
 def test_the_imu_measures_rotation_and_centripetal_acceleration() -> None:

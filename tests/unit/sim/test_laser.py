@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import pytest
 
+from jacaros.plane.shapes import Rectangle, Segment
 from jacaros.plane.trigonometry import PI, TWO_PI, sine_cosine
-from jacaros.sim.description import LaserSettings, Rectangle, Segment
-from jacaros.sim.robot.sensors.laser import Laser
+from jacaros.sim.data.robot import LaserSettings
+from jacaros.sim.physics.ranging import Laser
 
 
 def random_walls(draw: random.Random, count: int) -> list[Segment]:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from jacaros.inspector.live.commands import Command, Given, Refused, flag_in, number_in, text_in
 from jacaros.mas.system import System
 from jacaros.sim import World
-from jacaros.sim.description import PersonDescription
+from jacaros.sim.data.world import PersonDescription
 
 RADIUS = 0.2
 """Default radius of an obstacle, in metres."""

@@ -26,8 +26,9 @@ from jacaros.files.maps import (
 )
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
-from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.navigation.grid import Grid
+from jacaros.plane.shapes import Rectangle, Segment
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.data.world import WorldDescription
 
 _ROOM_FOR_ROBOT = 0.4
 """Metres of free floor around an automatically placed robot."""

@@ -13,26 +13,22 @@ from typing import Any
 
 from jacaros.files.entries import Reader, declared_entries, values
 from jacaros.files.texts import is_file, suggestion
-from jacaros.files.yaml import Node, read_document, read_text, top_keys
+from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 from jacaros.plane.pose import Pose
-from jacaros.sim.description import (
-    Dock,
-    Door,
-    Furniture,
-    Problem,
-    Rectangle,
-    RobotDescription,
-    Segment,
-    UnknownWorld,
-    WorldDescription,
-    WorldError,
+from jacaros.plane.shapes import Rectangle, Segment
+from jacaros.sim.data.robot import RobotDescription
+from jacaros.sim.data.world import Dock, Door, Furniture, UnknownWorld, WorldDescription, WorldError
+from jacaros.sim.files.floor import (
+    check_people,
+    place_problem,
+    read_box,
+    read_objects,
+    read_person,
+    read_rectangle,
+    read_rooms,
 )
 from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
-from jacaros.sim.files.objects import read_box, read_objects
-from jacaros.sim.files.people import check_people, read_person
-from jacaros.sim.files.places import place_problem
 from jacaros.sim.files.robot import read_pose, read_robot
-from jacaros.sim.files.room import read_rectangle, read_rooms
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
 _KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))

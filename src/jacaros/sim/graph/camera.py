@@ -14,12 +14,11 @@ Nothing is rendered without subscribers.
 from collections.abc import Iterator
 from typing import Any, Final
 
+from jacaros.plane.shapes import Circle, Segment
 from jacaros.ros.backend import Publisher
-from jacaros.sim.description import Segment
 from jacaros.sim.graph.frames import CAMERA
 from jacaros.sim.graph.on_graph import RobotOnGraph
-from jacaros.sim.robot.sensors.laser import Circle
-from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
+from jacaros.sim.physics.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
 
 _TICKS_PER_IMAGE = 4
 _WALL: Final = Look(2.5, (216, 211, 200))

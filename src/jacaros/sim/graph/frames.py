@@ -13,8 +13,8 @@ from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import CapabilityMissing, RosError, TransformUnavailable, UnknownInterface
 from jacaros.ros.qos import QoS
 from jacaros.sim.graph.on_graph import LATCHED, RobotOnGraph
-from jacaros.sim.navigation.localisation import FOUND
-from jacaros.sim.robot.sensors.rendering import CAMERA_HEIGHT
+from jacaros.sim.physics.perception import FOUND
+from jacaros.sim.physics.rendering import CAMERA_HEIGHT
 
 MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
 CAMERA = "camera_optical_frame"

@@ -12,9 +12,9 @@ from jacaros.ros.message import stamp
 from jacaros.ros.names import result_type
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.runtime.clock import Clock
-from jacaros.sim.navigation.localisation import Localisation
-from jacaros.sim.robot.robot import Robot
-from jacaros.sim.world import STEP, World
+from jacaros.sim.physics.perception import Localisation
+from jacaros.sim.physics.robot import Robot
+from jacaros.sim.physics.world import STEP, World
 
 TICKS_PER_SECOND: Final = 20
 SET_BACK = 0.1

@@ -4,6 +4,7 @@ Navigation and docking are in `jacaros.sim.navigation`.
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any, Final
 
 from jacaros.errors import UsageError
@@ -11,12 +12,12 @@ from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.message import plain, to_seconds
 from jacaros.ros.names import response_type
+from jacaros.sim.data.robot import OwnService, OwnTopic, absolute
 from jacaros.sim.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
-from jacaros.sim.graph.gripper import offer_gripper
-from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, RobotOnGraph, WorldTime
+from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, Goal, RobotOnGraph, WorldTime
 from jacaros.sim.graph.sensors import SENSORS, Tick
-from jacaros.sim.interface import OwnService, OwnTopic, absolute
-from jacaros.sim.robot.robot import Robot
+from jacaros.sim.physics.robot import Robot, approach
+from jacaros.sim.physics.things import Thing
 
 COMMANDS: Final = ("/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity")
 """Topics of velocity commands: those of most robots, of the Kobuki's multiplexer, and of its base."""
@@ -43,7 +44,9 @@ class RobotNode(RobotOnGraph):
                 raise UsageError(f"`{each.name}` of the robot `{robot.name}`: {error}") from None
         self.subscribe("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light)
         self.subscribe("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play)
-        offer_gripper(self)
+        if robot.description.gripper_reach:
+            name = "/gripper_controller/gripper_cmd"
+            self.action(name, "control_msgs/action/GripperCommand", _Gripper(self).move, _refuse)
         for topic in COMMANDS:
             self.subscribe(topic, "geometry_msgs/msg/Twist", self._command)
         self.subscribe("/cleaning/task", "std_msgs/msg/String", self._task)
@@ -123,3 +126,63 @@ class RobotNode(RobotOnGraph):
         radius = 2.0 * math.sqrt(max(covariance[0], covariance[7]))
         turn = 2.0 * math.sqrt(covariance[35])
         self.localisation.believe(pose_of(received.pose), radius, turn, self.time.world.time)
+
+
+OPENING: Final = 0.1
+"""Metres between the open fingers, which is their initial position."""
+_SPEED = 0.1
+_PERIOD = 0.1
+
+
+class _Gripper:
+    """Moves the fingers of one robot, and picks up and puts down objects.
+
+    As with ros2_control's gripper controller, a goal succeeds when the fingers have reached their position
+    (``reached_goal``) or when an object between them stops them (``stalled``), and a newer goal preempts an older one.
+    """
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self._at, self._objects = at, at.time.world.objects
+        self._opening = OPENING
+
+    async def move(self, goal: Goal) -> Mapping[str, Any]:
+        wanted = min(max(float(goal.request.command.position), 0.0), OPENING)
+        stalled = False
+        while not stalled and self._opening != wanted:
+            await self._at.time.clock.sleep(_PERIOD)
+            self._at.time.catch_up()
+            stalled = self._step(wanted)
+            goal.feedback(**self._state(wanted, stalled))
+        return self._state(wanted, stalled)
+
+    def _state(self, wanted: float, stalled: bool) -> dict[str, Any]:
+        return {"position": self._opening, "stalled": stalled, "reached_goal": self._opening == wanted}
+
+    def _step(self, wanted: float) -> bool:
+        """Move the fingers towards *wanted* for one period; return whether something stops them."""
+        robot = self._at.robot
+        held = self._objects.held_by(robot)
+        opening = approach(self._opening, wanted, _SPEED * _PERIOD)
+        if held is None:
+            found = self._between(opening)
+            if found is not None:
+                self._opening = found.width
+                self._objects.pick(robot, found)
+                return True
+        elif opening < self._opening:
+            return True
+        else:
+            self._objects.put_down(robot, held)
+        self._opening = opening
+        return False
+
+    def _between(self, opening: float) -> Thing | None:
+        """Return the object that the closing fingers meet on their way to *opening*."""
+        if opening >= self._opening:
+            return None
+        found = self._objects.before(self._at.robot)
+        return found if found is not None and opening <= found.width <= self._opening else None
+
+
+def _refuse(request: Any) -> str | None:
+    return None if math.isfinite(request.command.position) else "the position is not a finite number"

@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
+from jacaros.plane.shapes import Segment
 from jacaros.plane.trigonometry import radians, sine_cosine
 from jacaros.ros.message import constant
 from jacaros.sim.graph.camera import Camera
 from jacaros.sim.graph.frames import AmclPose, RobotTransforms
 from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, RobotOnGraph
-from jacaros.sim.robot.sensors.rendering import FOCAL_LENGTH, WIDTH
-from jacaros.sim.sight import FIELD, RANGE_MAX, RANGE_MIN, echo, hidden
+from jacaros.sim.physics.ranging import FIELD, RANGE_MAX, RANGE_MIN, echo
+from jacaros.sim.physics.rendering import FOCAL_LENGTH, WIDTH
 
 Fill = Callable[[RobotOnGraph, Any], object]
 """Writes the state of a robot into a message."""
@@ -219,7 +220,7 @@ def _recognised(at: RobotOnGraph) -> Mapping[str, Any]:
         x, y = each.place
         ahead, left = frame.local(x, y)
         in_image = 0.0 < ahead <= RECOGNISED_WITHIN and abs(left) * FOCAL_LENGTH <= 0.5 * WIDTH * ahead
-        if in_image and not hidden(world.segments, robot.x, robot.y, x, y):
+        if in_image and not Segment(robot.x, robot.y, x, y).crosses(*world.segments):
             seen.append(f"{each.name},{ahead:.2f},{left:.2f},0.00")
     return {"perception": seen}
 

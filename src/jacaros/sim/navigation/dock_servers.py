@@ -6,7 +6,7 @@ from typing import Any
 
 from jacaros.plane.pose import Placement
 from jacaros.ros.action import Accept, GoalStatus
-from jacaros.sim.description import Dock
+from jacaros.sim.data.world import Dock
 from jacaros.sim.graph.frames import ODOMETRY, FrameUnknown, on_map, pose_fault, stamped_pose
 from jacaros.sim.graph.on_graph import Execute, Goal
 from jacaros.sim.navigation.docking import FAILED_TO_STAGE, Docking

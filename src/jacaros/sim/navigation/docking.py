@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 from jacaros.plane.pose import Placement, distance
-from jacaros.sim.description import Dock
+from jacaros.sim.data.world import Dock
 from jacaros.sim.navigation.driver import STOP
 from jacaros.sim.navigation.navigator import PERIOD, Navigator
 from jacaros.sim.navigation.planner import GOAL_MARGIN, NavigationFailure

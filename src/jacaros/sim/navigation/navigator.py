@@ -5,12 +5,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from jacaros.plane.pose import Placement, Point, clamp, distance, wrap
+from jacaros.plane.shapes import Circle
 from jacaros.ros.backend import Publisher
+from jacaros.sim.data.grid import Grid
 from jacaros.sim.graph.on_graph import Overtaken, RobotOnGraph
 from jacaros.sim.navigation.driver import STOP, Command, Pace
-from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.laser_perception import LaserPerception
-from jacaros.sim.navigation.planner import Circle, Planner
+from jacaros.sim.navigation.planner import Planner
+from jacaros.sim.physics.perception import LaserPerception
 
 PERIOD = 0.1
 """Seconds between two commands."""

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from jacaros.plane.path import cheapest_path
 from jacaros.plane.pose import Point, distance
-from jacaros.sim.navigation.grid import Grid
+from jacaros.plane.shapes import Circle
+from jacaros.sim.data.grid import Grid
 
 MARGIN = 0.06
 """Minimum distance in metres of a planned path from walls, in addition to the robot's radius."""
@@ -16,9 +17,6 @@ GOAL_MARGIN = 0.03
 """Minimum distance in metres of a goal from walls, in addition to the radius; the last part is driven slowly."""
 _ESCAPE = 0.5
 _DISLIKE = 3.0
-
-Circle = tuple[float, float, float]
-"""An obstacle: centre and radius, in metres."""
 
 
 FAILED_TO_MAKE_PROGRESS = 105

@@ -11,11 +11,11 @@ from typing import Any
 from jacaros.plane.pose import Placement, Point
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.backend import Sample
+from jacaros.sim.data.grid import Grid
 from jacaros.sim.graph.frames import MAP, POSE, FrameUnknown, on_map, pose_fault, stamped_pose
 from jacaros.sim.graph.on_graph import Goal, Overtaken, RobotOnGraph
 from jacaros.sim.navigation.dock_servers import DockServers
 from jacaros.sim.navigation.docking import Docking
-from jacaros.sim.navigation.grid import Grid
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.planner import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.trip import Progress, go

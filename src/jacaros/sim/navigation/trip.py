@@ -5,13 +5,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from jacaros.plane.pose import Placement, Point, distance
+from jacaros.plane.shapes import Circle
 from jacaros.sim.navigation.driver import STOP, Driver, Route, in_the_way
 from jacaros.sim.navigation.navigator import PERIOD, Claim, Navigator
 from jacaros.sim.navigation.planner import (
     FAILED_TO_MAKE_PROGRESS,
     NO_VALID_PATH,
     TIMEOUT,
-    Circle,
     NavigationFailure,
     coordinates,
 )

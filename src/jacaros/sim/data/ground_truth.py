@@ -1,7 +1,7 @@
 """The ground truth of a world: events with true poses, and the path of every robot.
 
 Checkers of scenarios use only the ground truth, never what an agent or its odometry believes. A running
-`jacaros.sim.world.World` fills it, or `read` reads it from the file that `jacaros.sim.process.serve` writes, so one
+`jacaros.sim.physics.world.World` fills it, or `read` reads it from the file that `jacaros.sim.process.serve` writes, so one
 checker evaluates both kinds of runs.
 """
 
@@ -113,7 +113,7 @@ class GroundTruth:
 
     Attributes:
         events: all events, oldest first.
-        world: data of the world (see `jacaros.sim.description.WorldDescription.drawing`).
+        world: data of the world (see `jacaros.sim.data.world.WorldDescription.drawing`).
         dirt: remaining dirt in grams, by room and kind: ``dirt["kitchen", "stains"]``.
         keep: minimum number of points of each path and of events to keep; None to keep all. Set it for worlds that run for
             days; listeners still receive every event.

@@ -2,7 +2,8 @@
 
 import math
 
-from jacaros.sim.description import Segment, WorldDescription
+from jacaros.plane.shapes import Segment
+from jacaros.sim.data.world import WorldDescription
 
 RESOLUTION = 0.05
 """Side of a cell in metres; doubled until a large world has at most `MOST_CELLS`."""

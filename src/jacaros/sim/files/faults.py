@@ -7,10 +7,9 @@ from pathlib import Path
 from jacaros.files.entries import values
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
 from jacaros.plane.pose import Pose
-from jacaros.sim.description import PersonDescription, WorldDescription, WorldError
-from jacaros.sim.faults.description import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
-from jacaros.sim.files.people import read_path
-from jacaros.sim.files.places import place_problem
+from jacaros.sim.data.faults import ACTIONS, AT_ONCE, KEYS, MESSAGES, WHEELS, Fault
+from jacaros.sim.data.world import PersonDescription, WorldDescription, WorldError
+from jacaros.sim.files.floor import place_problem, read_path
 from jacaros.sim.files.robot import read_pose
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")

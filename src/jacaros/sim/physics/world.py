@@ -11,20 +11,19 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
+from jacaros.plane.contact import WallIndex, push_apart
 from jacaros.plane.pose import Pose
-from jacaros.sim.cleaning import Cleaning
-from jacaros.sim.contact import WallIndex, push_apart
-from jacaros.sim.description import Dock, PersonDescription, WorldDescription
-from jacaros.sim.faults.description import Fault
-from jacaros.sim.faults.schedule import Faults
+from jacaros.plane.shapes import Circle, Segment
+from jacaros.sim.data.faults import Fault
+from jacaros.sim.data.ground_truth import Event, GroundTruth
+from jacaros.sim.data.world import Dock, PersonDescription, WorldDescription
 from jacaros.sim.files.world import load_world, read_world
-from jacaros.sim.ground_truth import Event, GroundTruth
-from jacaros.sim.objects import Objects
-from jacaros.sim.obstacles import Obstacle, Obstacles, overlapping
-from jacaros.sim.people import People, Person
-from jacaros.sim.robot.robot import Robot
-from jacaros.sim.robot.sensors.laser import Circle, Laser
-from jacaros.sim.sight import hidden
+from jacaros.sim.physics.dirt import Cleaning
+from jacaros.sim.physics.faults import Faults
+from jacaros.sim.physics.people import People, Person
+from jacaros.sim.physics.ranging import Laser
+from jacaros.sim.physics.robot import Robot
+from jacaros.sim.physics.things import Objects, Obstacle, Obstacles, overlapping
 
 DOCK_SEEN_FROM = 2.0
 """Distance in metres at which a robot detects a dock."""
@@ -108,7 +107,7 @@ class World:
             description = description.with_noise(noise)
         if faults is None:
             return cls(description, seed)
-        from jacaros.sim.faults.file import load_faults, read_faults
+        from jacaros.sim.files.faults import load_faults, read_faults
 
         fault_text = str(faults)
         return cls(
@@ -225,9 +224,8 @@ class World:
         for dock in self.description.docks:
             dx, dy = robot.x - dock.pose.x, robot.y - dock.pose.y
             apart = math.sqrt(dx * dx + dy * dy)
-            if apart <= DOCK_SEEN_FROM and not hidden(
-                self.segments, robot.x, robot.y, dock.pose.x, dock.pose.y
-            ):
+            way = Segment(robot.x, robot.y, dock.pose.x, dock.pose.y)
+            if apart <= DOCK_SEEN_FROM and not way.crosses(*self.segments):
                 seen.append((apart, dock))
         return min(seen, key=lambda pair: pair[0])[1] if seen else None
 

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from jacaros.errors import UsageError
-from jacaros.sim.contact import TOUCHING, WallIndex, push_apart
-from jacaros.sim.description import Door, PersonDescription
-from jacaros.sim.robot.robot import Robot
+from jacaros.plane.contact import TOUCHING, WallIndex, push_apart
+from jacaros.sim.data.world import Door, PersonDescription
+from jacaros.sim.physics.robot import Robot
 
 DISTANCE = 0.3
 """Distance in metres that a careful person keeps from robots in front, and every person from closed doors."""

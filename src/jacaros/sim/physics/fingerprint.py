@@ -5,8 +5,8 @@ import random
 import sys
 from array import array
 
-from jacaros.sim.robot.robot import Robot
-from jacaros.sim.world import STEP, World
+from jacaros.sim.physics.robot import Robot
+from jacaros.sim.physics.world import STEP, World
 
 _SCAN_PERIOD = 0.1
 _TURN_PERIOD = 2.0

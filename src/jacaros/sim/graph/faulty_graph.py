@@ -14,7 +14,7 @@ from jacaros.files.texts import suggestion
 from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.runtime.clock import Clock
-from jacaros.sim.faults.schedule import Faults
+from jacaros.sim.physics.faults import Faults
 
 
 class FaultyGraph:

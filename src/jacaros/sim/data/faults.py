@@ -1,4 +1,4 @@
-"""Faults as plain data, read from fault files (`jacaros.sim.faults.file`)."""
+"""Faults as plain data, read from fault files (`jacaros.sim.files.faults`)."""
 
 import math
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from typing import Annotated, Final
 
 from jacaros.files.entries import Entry, choice, number, whole
 from jacaros.plane.pose import ORIGIN, Pose
-from jacaros.sim.description import PersonDescription
+from jacaros.sim.data.world import PersonDescription
 
 WHEELS: Final = ("wheel_slip", "blocked_wheel")
 """Kinds that affect the wheels of a robot."""

@@ -8,8 +8,8 @@ import math
 from collections.abc import Iterable
 
 from jacaros.plane.pose import Pose
+from jacaros.plane.shapes import Segment
 from jacaros.plane.trigonometry import sine_cosine
-from jacaros.sim.description import Segment
 
 CELL = 0.5
 """Side of a cell of the wall index, in metres."""

@@ -10,9 +10,8 @@ from array import array
 from collections.abc import Iterable
 from typing import Final, NamedTuple
 
+from jacaros.plane.shapes import Circle, Segment
 from jacaros.plane.trigonometry import radians, sine_cosine
-from jacaros.sim.description import Segment
-from jacaros.sim.robot.sensors.laser import Circle
 
 WIDTH, HEIGHT = 80, 60
 """Columns and rows of an image."""
