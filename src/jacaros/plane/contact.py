@@ -120,14 +120,15 @@ def _across(
     return depth, sign * normal_x / length, sign * normal_y / length
 
 
-def push_apart(
-    ax: float, ay: float, bx: float, by: float, distance: float
-) -> tuple[float, float, float, float] | None:
+Push = tuple[float, float, float, float]
+"""The displacement of a disc in metres, and the unit vector towards what pushes it."""
+
+
+def push_apart(ax: float, ay: float, bx: float, by: float, distance: float) -> Push | None:
     """Separate two discs whose centres are nearer than *distance*, moving each by half.
 
     Returns:
-        The displacement of the first disc (that of the second is the opposite), and the unit vector from the first to the
-        second; None if they do not touch.
+        The push of the first disc (that of the second is the opposite); None if they do not touch.
     """
     ex, ey = bx - ax, by - ay
     apart2 = ex * ex + ey * ey

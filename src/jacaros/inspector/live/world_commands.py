@@ -67,7 +67,7 @@ class _WorldCommands:
             self._world.remove_obstacle(name)
             return name
         x, y = number_in(given, "x"), number_in(given, "y")
-        return self._world.add_obstacle(x, y, number_in(given, "radius", RADIUS)).name
+        return self._world.add_obstacle(x, y, number_in(given, "radius", RADIUS))
 
     def person(self, given: Given) -> str:
         """Add a person, or remove one with `remove`; return the name."""

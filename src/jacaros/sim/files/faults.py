@@ -16,25 +16,17 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _COMMON = ("kind", "at", "for", "robot")
 
 
-def load_faults(path: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
-    """Read a fault file.
+def read_faults(source: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
+    """Read a fault file, or the text of one.
 
     Raises:
         WorldError: the file does not exist, has mistakes, or does not match the *world*; the text lists all mistakes.
     """
-    text, problems, faults = _read(Path(path), world)
-    if problems:
-        raise WorldError(str(path), text, problems)
-    return faults
-
-
-def read_faults(text: str, world: WorldDescription, name: str = "faults") -> tuple[Fault, ...]:
-    """Read the text of a fault file; *name* is its name in errors.
-
-    Raises:
-        WorldError: the text is malformed; the error lists all mistakes.
-    """
-    problems, faults = _faults(text, world)
+    if isinstance(source, str) and "\n" in source:
+        name, text, (problems, faults) = "faults", source, _faults(source, world)
+    else:
+        name = str(source)
+        text, problems, faults = _read(Path(source), world)
     if problems:
         raise WorldError(name, text, problems)
     return faults

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from jacaros.errors import UsageError
-from jacaros.plane.contact import TOUCHING, WallIndex, push_apart
+from jacaros.plane.contact import TOUCHING, WallIndex
+from jacaros.plane.shapes import Circle
 from jacaros.sim.data.world import Door, PersonDescription
 from jacaros.sim.physics.robot import Robot
 
@@ -41,6 +42,11 @@ class Person:
         self._next = 0
         self.direction = (0.0, 0.0)
         self._walks = self._turn()
+
+    @property
+    def circle(self) -> Circle:
+        """Position and radius, in metres."""
+        return self.x, self.y, self.description.radius
 
     def step(self, dt: float, in_the_way: Callable[["Person"], str]) -> bool:
         """Walk for *dt* seconds unless *in_the_way* names an obstacle; return whether the velocity has changed."""
@@ -121,10 +127,6 @@ class People:
             raise UsageError(f"unknown person '{name}'; people: {', '.join(self.by_name) or 'none'}")
         self._tell(self.by_name.pop(name), "person_goes", {})
 
-    def circles(self) -> list[tuple[float, float, float]]:
-        """Return the circles that lasers see: centres and radii, in metres."""
-        return [(each.x, each.y, each.description.radius) for each in self.by_name.values()]
-
     def step(self, dt: float, robots: Sequence[Robot], doors: Sequence[Door], walls: WallIndex) -> None:
         """Let everyone walk for *dt* seconds, and push robots away; *doors* are the closed doors."""
 
@@ -138,7 +140,7 @@ class People:
                 else:
                     self._tell(person, "person_stands", {"waits_for": person.waits_for})
             for robot in robots:
-                _hold_off(robot, person, walls, dt)
+                robot.hold_off(person.name, *person.circle, walls, dt)
 
 
 def _robot_before(person: Person, robots: Sequence[Robot]) -> str:
@@ -167,12 +169,3 @@ def _door_before(person: Person, doors: Sequence[Door]) -> str:
         if nearer and near < person.description.radius + DISTANCE:
             return door.name
     return ""
-
-
-def _hold_off(robot: Robot, person: Person, walls: WallIndex, dt: float) -> None:
-    """Push a robot out of a person; the person does not move."""
-    reach = robot.description.radius + person.description.radius
-    push = push_apart(robot.x, robot.y, person.x, person.y, reach)
-    if push is not None:
-        x, y, towards_x, towards_y = push
-        robot.touch(person.name, 2.0 * x, 2.0 * y, robot.side(towards_x, towards_y), walls, dt)

@@ -104,7 +104,7 @@ class LaserPerception:
     def robots(self, believed: Placement) -> list[Circle]:
         """Return the robots, people and obstacles that no wall hides."""
         world = self._world
-        if self._reach <= 0.0 or not (len(world.robots) > 1 or world.people or world.obstacles.by_name):
+        if self._reach <= 0.0 or not (len(world.robots) > 1 or world.people or world.obstacles):
             return []
         true, seen = self._robot.placement, []
         for x, y, radius in self._world.others(self._robot):

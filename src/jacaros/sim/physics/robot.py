@@ -6,9 +6,9 @@ from collections.abc import Callable
 from collections.abc import Set as AbstractSet
 from typing import Any
 
-from jacaros.plane.contact import WallIndex, push_out, push_out_rectangle
+from jacaros.plane.contact import Push, WallIndex, push_apart, push_out, push_out_rectangle
 from jacaros.plane.pose import Placement, Pose, clamp, wrap
-from jacaros.plane.shapes import Rectangle
+from jacaros.plane.shapes import Circle, Rectangle
 from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.data.ground_truth import RobotState, Sample
 from jacaros.sim.data.robot import BatterySettings, OdometrySettings, RobotDescription, RobotLimits
@@ -151,6 +151,11 @@ class Robot:
         return Placement.at(self.x, self.y, self.yaw)
 
     @property
+    def circle(self) -> Circle:
+        """Its true position and radius, in metres."""
+        return self.x, self.y, self.description.radius
+
+    @property
     def fed(self) -> bool:
         """Whether a dock supplies it with current."""
         return self.dock is not None and self.dock.name not in self.dead_docks
@@ -264,9 +269,10 @@ class Robot:
         self.x, self.y = x, y
         return pushed
 
-    def touch(self, other: str, push_x: float, push_y: float, side: str, walls: WallIndex, dt: float) -> None:
-        """Apply a push (metres) by another robot on one *side*."""
-        self._touched[other] = side
+    def touch(self, other: str, push: Push, walls: WallIndex, dt: float) -> None:
+        """Apply a push by something else, such as another robot."""
+        push_x, push_y, towards_x, towards_y = push
+        self._touched[other] = self.side(towards_x, towards_y)
         if self.fallen or (push_x == 0.0 and push_y == 0.0):
             return
         self.x += push_x
@@ -278,6 +284,13 @@ class Robot:
             slower = self.speed + rolled / dt
             self.speed = slower if slower * self.speed > 0.0 else 0.0
         self._leave_walls(walls)
+
+    def hold_off(self, other: str, x: float, y: float, radius: float, walls: WallIndex, dt: float) -> None:
+        """Apply the push by a disc that does not move, such as a person."""
+        push = push_apart(self.x, self.y, x, y, self.description.radius + radius)
+        if push is not None:
+            push_x, push_y, towards_x, towards_y = push
+            self.touch(other, (2.0 * push_x, 2.0 * push_y, towards_x, towards_y), walls, dt)
 
     def side(self, towards_x: float, towards_y: float) -> str:
         """Return the side of the robot that faces a direction of the world: front, back, left or right."""

@@ -17,13 +17,14 @@ from jacaros.plane.shapes import Circle, Segment
 from jacaros.sim.data.faults import Fault
 from jacaros.sim.data.ground_truth import Event, GroundTruth
 from jacaros.sim.data.world import Dock, PersonDescription, WorldDescription
+from jacaros.sim.files.faults import read_faults
 from jacaros.sim.files.world import load_world, read_world
 from jacaros.sim.physics.dirt import Cleaning
 from jacaros.sim.physics.faults import Faults
 from jacaros.sim.physics.people import People, Person
 from jacaros.sim.physics.ranging import Laser
 from jacaros.sim.physics.robot import Robot
-from jacaros.sim.physics.things import Objects, Obstacle, Obstacles, overlapping
+from jacaros.sim.physics.things import Objects
 
 DOCK_SEEN_FROM = 2.0
 """Distance in metres at which a robot detects a dock."""
@@ -45,7 +46,7 @@ class World:
         segments: all walls and closed doors.
         cleaning: the dirt, and the running cleaning tools.
         people: people who walk about, by name.
-        obstacles: obstacles put on the floor during the run.
+        obstacles: round obstacles put on the floor during the run, by name.
         objects: objects that grippers can carry.
         faults: faults of the fault file.
         dead_docks: names of docks without charging current.
@@ -71,7 +72,8 @@ class World:
         self._put_up_walls()
         self._people = People(self.description.people, self._note_person)
         self.people = self._people.by_name
-        self.obstacles = Obstacles()
+        self.obstacles: dict[str, Circle] = {}
+        self._obstacle_count = 0
         self.cleaning = Cleaning(self.description, self.room_at, self._note)
         self.objects = Objects(self.description.objects, self._note, lambda: self._closed)
         self._truth = GroundTruth(self.robots, description.drawing())
@@ -105,18 +107,7 @@ class World:
         description = read_world(str(source)) if text else load_world(str(source))
         if noise is not None:
             description = description.with_noise(noise)
-        if faults is None:
-            return cls(description, seed)
-        from jacaros.sim.files.faults import load_faults, read_faults
-
-        fault_text = str(faults)
-        return cls(
-            description,
-            seed,
-            read_faults(fault_text, description)
-            if "\n" in fault_text
-            else load_faults(fault_text, description),
-        )
+        return cls(description, seed, () if faults is None else read_faults(faults, description))
 
     @property
     def ground_truth(self) -> GroundTruth:
@@ -190,18 +181,14 @@ class World:
         if self.doors[name] == opened:
             return None
         if not opened:
-            for robot in self._row:
-                if door.segment.distance(robot.x, robot.y) < robot.description.radius + DOOR_ROOM:
-                    return f"{robot.name} is in the way"
-            for person in self.people.values():
-                if door.segment.distance(person.x, person.y) < person.description.radius + DOOR_ROOM:
-                    return f"{person.name} is in the way"
+            for other, (x, y, radius) in self._standing():
+                if door.segment.distance(x, y) < radius + DOOR_ROOM:
+                    return f"{other} is in the way"
         self.doors[name] = opened
         self._put_up_walls()
         ax, ay, bx, by = door.segment
         kind = "door_opened" if opened else "door_closed"
-        middle = (0.5 * (ax + bx), 0.5 * (ay + by))
-        self._truth.record_event(Event(self.time, "", kind, *middle, 0.0, {"door": name}))
+        self._note_place(kind, 0.5 * (ax + bx), 0.5 * (ay + by), {"door": name})
         return None
 
     def scan(self, name: str) -> list[float]:
@@ -211,12 +198,15 @@ class World:
 
     def others(self, robot: Robot) -> list[Circle]:
         """Return all other robots, people and obstacles (metres): what *robot*'s laser sees unless a wall hides it."""
-        others = [(other.x, other.y, other.description.radius) for other in self._row if other is not robot]
-        if self.people:
-            others += self._people.circles()
-        if self.obstacles.by_name:
-            others += self.obstacles.circles()
+        others = [other.circle for other in self._row if other is not robot]
+        others += (person.circle for person in self.people.values())
+        others += self.obstacles.values()
         return others
+
+    def _standing(self) -> list[tuple[str, Circle]]:
+        """Return all robots and people by name, with their positions and radii."""
+        robots = [(robot.name, robot.circle) for robot in self._row]
+        return robots + [(person.name, person.circle) for person in self.people.values()]
 
     def visible_dock(self, robot: Robot) -> Dock | None:
         """Return the nearest dock that a robot detects: within 2 m, and not behind a wall."""
@@ -272,8 +262,10 @@ class World:
         self._note(robot, "robot_placed", {"x": x, "y": y, "yaw": robot.yaw})
         self._sample_robots(all_of_them=True)
 
-    def add_obstacle(self, x: float, y: float, radius: float) -> Obstacle:
-        """Put a round obstacle on the floor, in metres.
+    def add_obstacle(self, x: float, y: float, radius: float) -> str:
+        """Put a round obstacle on the floor, in metres; return its name.
+
+        It blocks robots, people and lasers, and is not on the robots' map.
 
         Raises:
             UsageError: the radius is not between 0.02 and 2, or something is in the way.
@@ -281,10 +273,11 @@ class World:
         if not 0.02 <= radius <= 2.0:
             raise UsageError("the radius of an obstacle must be between 0.02 and 2 metres")
         self.check_room(x, y, radius)
-        obstacle = self.obstacles.add(x, y, radius)
-        data = {"obstacle": obstacle.name, "x": x, "y": y, "radius": radius}
-        self._truth.record_event(Event(self.time, "", "obstacle_placed", x, y, 0.0, data))
-        return obstacle
+        self._obstacle_count += 1
+        name = f"obstacle_{self._obstacle_count}"
+        self.obstacles[name] = (x, y, radius)
+        self._note_place("obstacle_placed", x, y, {"obstacle": name, "x": x, "y": y, "radius": radius})
+        return name
 
     def remove_obstacle(self, name: str) -> None:
         """Remove an obstacle.
@@ -292,10 +285,10 @@ class World:
         Raises:
             UsageError: it does not exist.
         """
-        gone = self.obstacles.remove(name)
-        self._truth.record_event(
-            Event(self.time, "", "obstacle_removed", gone.x, gone.y, 0.0, {"obstacle": name})
-        )
+        if name not in self.obstacles:
+            raise UsageError(f"unknown obstacle: `{name}`")
+        x, y, _ = self.obstacles.pop(name)
+        self._note_place("obstacle_removed", x, y, {"obstacle": name})
 
     def set_battery(self, name: str, level: float) -> None:
         """Set the level of a robot's battery, in percent.
@@ -321,12 +314,9 @@ class World:
         in_box = any(box.contains(x, y) for box in self.description.boxes)
         if in_box or any(wall.distance(x, y) < radius for wall in self.segments):
             raise UsageError(f"no room at ({x:.2f}, {y:.2f}): a wall is in the way")
-        robots = ((each.name, each.x, each.y, each.description.radius) for each in self._row)
-        people = ((each.name, each.x, each.y, each.description.radius) for each in self.people.values())
-        others = (each for each in (*robots, *people) if each[0] != but_for)
-        name = overlapping(others, x, y, radius) or self.obstacles.near(x, y, radius)
-        if name:
-            raise UsageError(f"no room at ({x:.2f}, {y:.2f}): {name} is in the way")
+        for name, (other_x, other_y, other_radius) in (*self._standing(), *self.obstacles.items()):
+            if name != but_for and math.hypot(other_x - x, other_y - y) < other_radius + radius:
+                raise UsageError(f"no room at ({x:.2f}, {y:.2f}): {name} is in the way")
 
     def step(self, dt: float = STEP) -> None:
         """Advance the world by *dt* seconds."""
@@ -340,8 +330,9 @@ class World:
             self._part_robots(dt)
         if self.people:
             self._people.step(dt, self._row, self._closed, self._walls)
-        if self.obstacles.by_name:
-            self.obstacles.hold_off(self._row, self._walls, dt)
+        for name, circle in self.obstacles.items():
+            for robot in self._row:
+                robot.hold_off(name, *circle, self._walls, dt)
         if self.cleaning.at_work:
             self.cleaning.step(dt, self.robots)
         if self.description.cliffs:
@@ -369,8 +360,8 @@ class World:
                 push = push_apart(one.x, one.y, other.x, other.y, reach)
                 if push is not None:
                     x, y, towards_x, towards_y = push
-                    one.touch(other.name, x, y, one.side(towards_x, towards_y), self._walls, dt)
-                    other.touch(one.name, -x, -y, other.side(-towards_x, -towards_y), self._walls, dt)
+                    one.touch(other.name, push, self._walls, dt)
+                    other.touch(one.name, (-x, -y, -towards_x, -towards_y), self._walls, dt)
 
     def _watch_battery(self, robot: Robot) -> None:
         battery = robot.battery
@@ -406,14 +397,17 @@ class World:
     def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
         self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
 
+    def _note_place(self, kind: str, x: float, y: float, data: dict[str, Any]) -> None:
+        self._truth.record_event(Event(self.time, "", kind, x, y, 0.0, data))
+
     def note_fault(self, name: str, data: dict[str, Any]) -> None:
         """Record that a fault starts or ends; *name* is the affected robot, "" for none."""
         if name:
             self._note(self.robot(name), "fault", data)
         else:
-            self._truth.record_event(Event(self.time, "", "fault", 0.0, 0.0, 0.0, data))
+            self._note_place("fault", 0.0, 0.0, data)
 
     def _note_person(self, person: Person, kind: str, data: dict[str, Any]) -> None:
         # The place is in the data too: observers of a run do not receive the poses of events.
         where = {"person": person.name, "x": person.x, "y": person.y}
-        self._truth.record_event(Event(self.time, "", kind, person.x, person.y, 0.0, {**where, **data}))
+        self._note_place(kind, person.x, person.y, {**where, **data})
