@@ -13,7 +13,7 @@ from typing import Any
 
 from jacaros.files.entries import Reader, declared_entries, values
 from jacaros.files.texts import is_file, suggestion
-from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
+from jacaros.files.yaml import Node, Problem, read_document, top_keys
 from jacaros.plane.pose import Pose
 from jacaros.plane.shapes import Rectangle, Segment
 from jacaros.sim.data.robot import RobotDescription
@@ -27,7 +27,7 @@ from jacaros.sim.files.floor import (
     read_rectangle,
     read_rooms,
 )
-from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
+from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, open_document, read_map
 from jacaros.sim.files.robot import read_pose, read_robot
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
@@ -100,8 +100,10 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
     Raises:
         WorldError: the text has mistakes; the error lists all of them.
     """
-    problems, description = _described(text, Path())
-    if description is None:
+    problems: list[Problem] = []
+    document = read_document(text, problems, "a world")
+    description = None if problems else _world(document, Path())
+    if description is None or problems:
         raise WorldError(name, text, problems)
     return description
 
@@ -109,11 +111,9 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
 def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
     if is_map(path):
         return _read_as_world(path)
-    try:
-        text, wrong = read_text(path)
-    except OSError as error:
-        return "", [Problem(1, 1, f"cannot read the file: {error}")], None
-    return (text, [wrong], None) if wrong is not None else (text, *_described(text, path.parent))
+    text, problems, document = open_document(path, "a world")
+    description = None if document is None else _world(document, path.parent)
+    return text, problems, None if problems else description
 
 
 def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
@@ -125,15 +125,6 @@ def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | N
     robot = RobotDescription(pose=Pose(*place, 0.0))
     walls, boxes = tuple(found.walls()), tuple(found.boxes())
     return text, [], WorldDescription(path.stem, found.bounds, walls, boxes, robots=(robot,))
-
-
-def _described(text: str, folder: Path) -> tuple[list[Problem], WorldDescription | None]:
-    problems: list[Problem] = []
-    document = read_document(text, problems, "a world")
-    if problems:
-        return problems, None
-    description = _world(document, folder)
-    return problems, None if problems else description
 
 
 def _world(document: Node, folder: Path) -> WorldDescription:

@@ -4,7 +4,9 @@ Faults act where the world joins the graph, so they affect agents and all other 
 """
 
 import asyncio
-from collections.abc import Callable, Sequence
+import copy
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, cast
@@ -13,8 +15,56 @@ from jacaros.errors import UsageError
 from jacaros.files.texts import suggestion
 from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.message import field_names
 from jacaros.runtime.clock import Clock
-from jacaros.sim.physics.faults import Faults
+from jacaros.sim.physics.faults import Disturbance, Faults
+
+_KEPT = frozenset(
+    {"header", "angle_min", "angle_max", "angle_increment", "range_min", "range_max", "scan_time"}
+)
+"""Fields that describe a sensor and are not measurements."""
+Late = tuple[float, Any]
+"""A message, with its delay in seconds."""
+
+
+def disturbed(by: Disturbance, message: Any) -> Sequence[Late]:
+    """Return what a fault delivers instead of a message."""
+    fault = by.fault
+    match fault.kind:
+        case "dead":
+            return ()
+        case "frozen":
+            if by.first is None:
+                by.first = copy.deepcopy(message)
+            repeated = copy.deepcopy(by.first)
+            if hasattr(message, "header"):
+                repeated.header.stamp = message.header.stamp
+            return ((0.0, repeated),)
+        case "nan":
+            return ((0.0, _without_numbers(copy.deepcopy(message))),)
+        case "lost":
+            return () if by.draw() < fault.share else ((0.0, message),)
+        case "delayed":
+            return ((fault.seconds + fault.jitter * by.draw(), message),)
+    return [(0.0, message)] * fault.copies
+
+
+def _without_numbers(message: Any) -> Any:
+    """Set all floating-point measurements to NaN."""
+    for name in field_names(message) or ():
+        value = getattr(message, name)
+        if name in _KEPT or "covariance" in name:
+            continue
+        if isinstance(value, float):
+            setattr(message, name, math.nan)
+        elif field_names(value):
+            _without_numbers(value)
+        elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
+            # For arrays, the items as Python values.
+            items = list(getattr(value, "tolist", value.__iter__)())
+            if items and all(isinstance(item, float) for item in items):
+                setattr(message, name, [math.nan] * len(items))
+    return message
 
 
 class FaultyGraph:
@@ -99,9 +149,9 @@ class FaultyGraph:
             _check_name(fault.name, "action", fault.action, self._offered)
 
     def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
-        passing: Sequence[tuple[float, Any]] = ((0.0, message),)
-        for effect in self._faults.effects(topic):
-            passing = [(late + later, out) for late, each in passing for later, out in effect(each)]
+        passing: Sequence[Late] = ((0.0, message),)
+        for fault in self._faults.disturbances(topic):
+            passing = [(late + later, out) for late, each in passing for later, out in disturbed(fault, each)]
         for late, each in passing:
             if late > 0.0:
                 self._clock.call_later(late, partial(send, each))

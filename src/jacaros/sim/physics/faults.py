@@ -1,84 +1,16 @@
-"""The faults of a running world: their schedule, and their effects on the world and on its messages."""
+"""The faults of a running world: their schedule, and their effects on the world."""
 
-import copy
 import math
 import random
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
 from jacaros.errors import UsageError
-from jacaros.sim.data.faults import ACTIONS, MESSAGES, Fault
+from jacaros.sim.data.faults import MESSAGES, Fault
 from jacaros.sim.data.world import PersonDescription, WorldDescription
 from jacaros.sim.physics.robot import Robot
-
-Effect = Callable[[Any], Sequence[tuple[float, Any]]]
-"""Takes a message and returns the messages delivered instead, each with its delay in seconds; empty if it is lost."""
-
-_KEPT = frozenset(
-    {"header", "angle_min", "angle_max", "angle_increment", "range_min", "range_max", "scan_time"}
-)
-"""Fields that describe a sensor and are not measurements."""
-
-
-def effect_of(fault: Fault, seed: int) -> Effect:
-    """Return the effect of a fault on the messages of its topic."""
-    chance = random.Random(f"{seed}/{fault.name}/messages")
-    if fault.kind == "dead":
-        return lambda message: ()
-    if fault.kind == "frozen":
-        return _Frozen().replace
-    if fault.kind == "nan":
-        return lambda message: ((0.0, _without_numbers(copy.deepcopy(message))),)
-    if fault.kind == "lost":
-        return lambda message: () if chance.random() < fault.share else ((0.0, message),)
-    if fault.kind == "delayed":
-        return lambda message: ((fault.seconds + fault.jitter * chance.random(), message),)
-    return lambda message: [(0.0, message)] * fault.copies
-
-
-class _Frozen:
-    """Repeats the first message, with the stamps of the replaced messages."""
-
-    def __init__(self) -> None:
-        self._first: Any = None
-
-    def replace(self, message: Any) -> Sequence[tuple[float, Any]]:
-        if self._first is None:
-            self._first = copy.deepcopy(message)
-        repeated = copy.deepcopy(self._first)
-        if hasattr(message, "header"):
-            repeated.header.stamp = message.header.stamp
-        return ((0.0, repeated),)
-
-
-def _without_numbers(message: Any) -> Any:
-    """Set all floating-point measurements to NaN."""
-    for name in _fields(message):
-        value = getattr(message, name)
-        if name in _KEPT or "covariance" in name:
-            continue
-        if isinstance(value, float):
-            setattr(message, name, math.nan)
-        elif _fields(value):
-            _without_numbers(value)
-        elif not isinstance(value, str | bytes) and isinstance(value, Iterable):
-            # For arrays, the items as Python values.
-            items = list(getattr(value, "tolist", value.__iter__)())
-            if items and all(isinstance(item, float) for item in items):
-                setattr(message, name, [math.nan] * len(items))
-    return message
-
-
-def _fields(value: Any) -> list[str]:
-    """Return the field names of a message of any middleware; an empty list for other values."""
-    if is_dataclass(value):
-        return [field.name for field in fields(value)]
-    return [
-        slot.removeprefix("_") for slot in getattr(type(value), "__slots__", ()) if slot != "_check_fields"
-    ]
-
 
 Undo = Callable[[], object]
 Abort = Callable[[str], object]
@@ -99,6 +31,21 @@ class FaultyWorld(Protocol):
     def add_person(self, description: PersonDescription) -> object: ...
     def remove_person(self, name: str) -> None: ...
     def note_fault(self, name: str, data: dict[str, Any]) -> None: ...
+
+
+@dataclass(slots=True)
+class Disturbance:
+    """An active fault of the messages of a topic.
+
+    Attributes:
+        fault: the fault.
+        draw: returns a random number from 0 to 1.
+        first: the first message since its start.
+    """
+
+    fault: Fault
+    draw: Callable[[], float]
+    first: Any = None
 
 
 class Refused(Exception):
@@ -129,7 +76,7 @@ class Faults:
         self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
         self._ends: dict[str, float] = {}
         self._undo: dict[str, Undo] = {}
-        self._effects: dict[str, dict[str, Effect]] = {}
+        self._disturbances: dict[str, dict[str, Disturbance]] = {}
         self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
         """Active faults that abort goals: their actions, and a function that decides about the next goal."""
         self._goals: dict[Abort, str] = {}
@@ -140,9 +87,9 @@ class Faults:
         """Names of the active faults, oldest first."""
         return list(self._undo)
 
-    def effects(self, topic: str) -> Iterable[Effect]:
-        """Return the effects of active faults on the messages of a topic, oldest first."""
-        return self._effects.get(topic, {}).values()
+    def disturbances(self, topic: str) -> Iterable[Disturbance]:
+        """Return the active faults of the messages of a topic, oldest first."""
+        return self._disturbances.get(topic, {}).values()
 
     def watch_goal(self, action: str, abort: Abort) -> Undo:
         """Call *abort* with the name of each fault that aborts goals of *action*; immediately if one is active.
@@ -234,10 +181,10 @@ class Faults:
             Refused, UsageError: the fault cannot happen now.
         """
         if fault.kind in MESSAGES:
-            active = self._effects.setdefault(fault.topic, {})
-            active[fault.name] = effect_of(fault, self._world.description.seed)
+            active = self._disturbances.setdefault(fault.topic, {})
+            active[fault.name] = Disturbance(fault, _draw(self._world, fault, "messages"))
             return partial(active.pop, fault.name)
-        if fault.kind in ACTIONS:
+        if fault.kind == "aborted_action":
             happens = _chance(self._world, fault)
             self._aborting[fault.name] = fault.action, happens
             for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
@@ -247,15 +194,18 @@ class Faults:
         return _EFFECTS[fault.kind](self._world, fault)
 
 
+def _draw(world: FaultyWorld, fault: Fault, purpose: str) -> Callable[[], float]:
+    return random.Random(f"{world.description.seed}/{fault.name}/{purpose}").random
+
+
 def _chance(world: FaultyWorld, fault: Fault) -> Callable[[], bool]:
     """Return a function that decides each time whether a fault happens, with the probability ``share``."""
-    draw = random.Random(f"{world.description.seed}/{fault.name}/{fault.kind}").random
+    draw = _draw(world, fault, fault.kind)
     return lambda: draw() < fault.share
 
 
 def _slip(world: FaultyWorld, fault: Fault) -> Undo:
-    robot = world.robot(fault.robot)
-    draw = random.Random(f"{world.description.seed}/{fault.name}/slip").random
+    robot, draw = world.robot(fault.robot), _draw(world, fault, "slip")
     robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
     return partial(setattr, robot, "grip", None)
 
@@ -276,22 +226,22 @@ def _drop(world: FaultyWorld, fault: Fault) -> None:
 
 
 def _cut_current(world: FaultyWorld, fault: Fault) -> Undo:
-    world.dead_docks.add(fault.place)
-    return partial(world.dead_docks.discard, fault.place)
+    world.dead_docks.add(fault.dock)
+    return partial(world.dead_docks.discard, fault.dock)
 
 
 def _close_door(world: FaultyWorld, fault: Fault) -> Undo:
-    if not world.doors[fault.place]:
+    if not world.doors[fault.door]:
         return lambda: None
-    why = world.move_door(fault.place, opened=False)
+    why = world.move_door(fault.door, opened=False)
     if why is not None:
         raise Refused(why)
-    return partial(world.move_door, fault.place, opened=True)
+    return partial(world.move_door, fault.door, opened=True)
 
 
 def _jam_door(world: FaultyWorld, fault: Fault) -> Undo:
-    world.stuck_doors[fault.place] = _chance(world, fault)
-    return partial(world.stuck_doors.pop, fault.place, None)
+    world.stuck_doors[fault.door] = _chance(world, fault)
+    return partial(world.stuck_doors.pop, fault.door, None)
 
 
 def _let_come(world: FaultyWorld, fault: Fault) -> Undo:
