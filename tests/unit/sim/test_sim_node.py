@@ -17,7 +17,7 @@ from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.sim import GroundTruth, SimNode, World, serve
 from jacaros.sim.graph import robot_node
 from jacaros.sim.graph.on_graph import RobotOnGraph
-from jacaros.sim.graph.sensors import sensor
+from jacaros.sim.graph.publishing import sensor
 from jacaros.sim.process import GroundTruthFile
 
 TWIST = "geometry_msgs/msg/Twist"

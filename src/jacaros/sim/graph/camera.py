@@ -11,16 +11,15 @@ topic (below the namespace)             type                              rate
 Nothing is rendered without subscribers.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from jacaros.plane.shapes import Circle, Segment
-from jacaros.ros.backend import Publisher
 from jacaros.sim.graph.frames import CAMERA
 from jacaros.sim.graph.on_graph import RobotOnGraph
-from jacaros.sim.physics.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Look, colours, columns, depths
+from jacaros.sim.graph.publishing import Tick, sensor
+from jacaros.sim.physics.rendering import FOCAL_LENGTH, HEIGHT, WIDTH, Hit, Look, colours, columns, depths
 
-_TICKS_PER_IMAGE = 4
 _WALL: Final = Look(2.5, (216, 211, 200))
 _DOOR: Final = Look(2.0, (150, 95, 45))
 _BOX: Final = Look(0.75, (158, 128, 88))
@@ -31,31 +30,49 @@ _OBJECT: Final = Look(0.12, (90, 160, 90))
 _DOCK_RADIUS = 0.1
 
 
-class Camera:
-    """The camera of one robot."""
+_IMAGE = "sensor_msgs/msg/Image"
+
+
+def camera(at: RobotOnGraph) -> Tick:
+    """Make the topics of the camera of one robot."""
+    view = _View(at)
+    described = (
+        sensor("/camera/image_raw", _IMAGE, every=4, fields=view.colours, frame=CAMERA),
+        sensor("/camera/depth/image_raw", _IMAGE, every=4, fields=view.depths, frame=CAMERA),
+        sensor("/camera/camera_info", "sensor_msgs/msg/CameraInfo", _calibration, 4, frame=CAMERA),
+    )
+    topics = [topic(at) for topic in described]
+
+    def publish(ticks: int) -> None:
+        for topic in topics:
+            topic(ticks)
+
+    return publish
+
+
+class _View:
+    """What the camera of one robot sees, computed once for both images."""
 
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._world = at, at.time.world
-        self._image = at.publisher("/camera/image_raw", "sensor_msgs/msg/Image")
-        self._depth = at.publisher("/camera/depth/image_raw", "sensor_msgs/msg/Image")
-        self._info = at.publisher("/camera/camera_info", "sensor_msgs/msg/CameraInfo")
         self._segments: tuple[Segment, ...] = ()
         self._walls: list[tuple[Segment, Look]] = []
+        self._seen: list[list[Hit]] = []
+        self._time = -1.0
 
-    def publish(self, ticks: int) -> None:
-        """Publish if due."""
-        if ticks % _TICKS_PER_IMAGE:
-            return
-        wants_colours, wants_depths = self._image.subscription_count, self._depth.subscription_count
-        if wants_colours or wants_depths:
-            robot = self._at.robot
-            seen = columns(self._looking_at(), self._discs(), robot.x, robot.y, robot.yaw)
-            if wants_colours:
-                self._send(self._image, "rgb8", 3, colours(seen))
-            if wants_depths:
-                self._send(self._depth, "32FC1", 4, depths(seen))
-        if self._info.subscription_count:
-            self._send_info()
+    def colours(self, at: RobotOnGraph) -> Mapping[str, Any]:
+        """Return the fields of a colour image."""
+        return {"encoding": "rgb8", "step": 3 * WIDTH, "data": colours(self._look()), **_SIZE}
+
+    def depths(self, at: RobotOnGraph) -> Mapping[str, Any]:
+        """Return the fields of a depth image."""
+        return {"encoding": "32FC1", "step": 4 * WIDTH, "data": depths(self._look()), **_SIZE}
+
+    def _look(self) -> list[list[Hit]]:
+        if self._time != self._world.time:
+            self._time = self._world.time
+            self._seen = columns(self._looking_at(), self._discs(), *self._at.robot.pose)
+        return self._seen
 
     def _looking_at(self) -> list[tuple[Segment, Look]]:
         """Return the walls with their looks; recomputed when a door has moved."""
@@ -75,31 +92,23 @@ class Camera:
             yield (dock.pose.x, dock.pose.y, _DOCK_RADIUS), _DOCK
         for robot in world.robots.values():
             if robot is not self._at.robot:
-                yield (robot.x, robot.y, robot.description.radius), _ROBOT
+                yield robot.circle, _ROBOT
         for person in world.people.values():
-            yield (
-                (person.x, person.y, person.description.radius),
-                _coloured(_PERSON, person.description.color),
-            )
+            yield person.circle, _coloured(_PERSON, person.description.color)
         for each in world.objects.by_name.values():
             yield (*each.place, each.description.radius), _coloured(_OBJECT, each.description.color)
 
-    def _send(self, publisher: Publisher, encoding: str, octets: int, data: bytes) -> None:
-        message = publisher.message(
-            width=WIDTH, height=HEIGHT, encoding=encoding, step=octets * WIDTH, data=data
-        )
-        self._at.fill_header(message.header, CAMERA)
-        publisher.publish(message)
 
-    def _send_info(self) -> None:
-        message = self._info.message(width=WIDTH, height=HEIGHT, distortion_model="plumb_bob")
-        self._at.fill_header(message.header, CAMERA)
-        intrinsic, projection, rotation = (_matrix(message, name) for name in "kpr")
-        for matrix, row in ((intrinsic, 3), (projection, 4)):
-            matrix[0] = matrix[row + 1] = FOCAL_LENGTH
-            matrix[2], matrix[row + 2], matrix[2 * row + 2] = 0.5 * WIDTH, 0.5 * HEIGHT, 1.0
-        rotation[0] = rotation[4] = rotation[8] = 1.0
-        self._info.publish(message)
+_SIZE = {"width": WIDTH, "height": HEIGHT}
+
+
+def _calibration(at: RobotOnGraph, message: Any) -> None:
+    message.width, message.height, message.distortion_model = WIDTH, HEIGHT, "plumb_bob"
+    intrinsic, projection, rotation = (_matrix(message, name) for name in "kpr")
+    for matrix, row in ((intrinsic, 3), (projection, 4)):
+        matrix[0] = matrix[row + 1] = FOCAL_LENGTH
+        matrix[2], matrix[row + 2], matrix[2 * row + 2] = 0.5 * WIDTH, 0.5 * HEIGHT, 1.0
+    rotation[0] = rotation[4] = rotation[8] = 1.0
 
 
 def _matrix(message: Any, name: str) -> Any:

@@ -15,7 +15,8 @@ from jacaros.ros.names import response_type
 from jacaros.sim.data.robot import OwnService, OwnTopic, absolute
 from jacaros.sim.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
 from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, Goal, RobotOnGraph, WorldTime
-from jacaros.sim.graph.sensors import SENSORS, Tick
+from jacaros.sim.graph.publishing import Tick
+from jacaros.sim.graph.sensors import SENSORS
 from jacaros.sim.physics.robot import Robot, approach
 from jacaros.sim.physics.things import Thing
 
