@@ -2,7 +2,7 @@
 
 import math
 
-from jacaros.plane.shapes import Segment
+from jacaros.plane.shapes import Rectangle, Segment
 from jacaros.sim.data.world import WorldDescription
 
 RESOLUTION = 0.05
@@ -40,11 +40,11 @@ class Grid:
         for segment in world.segments:
             self._measure(segment)
         for box in world.boxes:
-            self._fill(box.x_min, box.y_min, box.x_max, box.y_max)
+            self._fill(box)
         for cliff in world.cliffs:
             for edge in cliff.edges():
                 self._measure(edge)
-            self._fill(cliff.x_min, cliff.y_min, cliff.x_max, cliff.y_max)
+            self._fill(cliff)
         self._close_ring()
 
     def _measure(self, segment: Segment) -> None:
@@ -72,13 +72,12 @@ class Grid:
                 if apart < clearance[index] * clearance[index]:
                     clearance[index] = math.sqrt(apart)
 
-    def _fill(self, x_min: float, y_min: float, x_max: float, y_max: float) -> None:
-        for row in range(max(1, self._row(y_min)), min(self.height - 2, self._row(y_max)) + 1):
-            if not y_min <= self.y_min + (row - 0.5) * self.resolution <= y_max:
-                continue
-            for column in range(max(1, self._column(x_min)), min(self.width - 2, self._column(x_max)) + 1):
-                if x_min <= self.x_min + (column - 0.5) * self.resolution <= x_max:
-                    self.clearance[row * self.width + column] = 0.0
+    def _fill(self, box: Rectangle) -> None:
+        for row in range(max(1, self._row(box.y_min)), min(self.height - 2, self._row(box.y_max)) + 1):
+            first, last = max(1, self._column(box.x_min)), min(self.width - 2, self._column(box.x_max))
+            for cell in range(row * self.width + first, row * self.width + last + 1):
+                if box.contains(*self.centre(cell)):
+                    self.clearance[cell] = 0.0
 
     def _close_ring(self) -> None:
         for column in range(self.width):

@@ -19,6 +19,12 @@ DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
 _COLOR = Entry('`"#rrggbb"` or a name', "in drawings")
 
 
+def _drawn(thing: Any, *names: str) -> dict[str, Any]:
+    """Return fields as JSON data."""
+    given = {name: getattr(thing, name) for name in names}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in given.items()}
+
+
 @dataclass(frozen=True, slots=True)
 class Furniture:
     """A box with a kind ("" if unknown) and a colour as ``#rrggbb`` ("" for the colour of boxes)."""
@@ -48,8 +54,7 @@ class Room:
     def drawing(self) -> dict[str, Any]:
         """Return the room as JSON data, with dirt only if there is some."""
         shown = [
-            {"kind": dirt.kind, "grams": dirt.grams, "area": list(dirt.area or self.area)}
-            for dirt in self.dirt
+            {**_drawn(dirt, "kind", "grams"), "area": list(dirt.area or self.area)} for dirt in self.dirt
         ]
         return {"name": self.name, "area": list(self.area), **({"dirt": shown} if shown else {})}
 
@@ -108,9 +113,7 @@ class PersonDescription:
     def drawing(self) -> dict[str, Any]:
         """Return the data for a viewer, as JSON data."""
         return {
-            "name": self.name,
-            "radius": self.radius,
-            "color": self.color,
+            **_drawn(self, "name", "radius", "color"),
             "path": [list(point) for point in self.path],
             "loop": self.loop,
         }
@@ -160,28 +163,17 @@ class WorldDescription:
             "bounds": list(self.bounds),
             "walls": [list(segment) for segment in self.segments],
             "boxes": [list(box) for box in self.boxes],
-            "furniture": [
-                {"kind": each.kind, "color": each.color, "area": list(each.area)} for each in self.furniture
-            ],
+            "furniture": [_drawn(each, "kind", "color", "area") for each in self.furniture],
             "rooms": [room.drawing() for room in self.rooms],
-            "docks": [
-                {"name": dock.name, "pose": list(dock.pose), "radius": dock.radius} for dock in self.docks
-            ],
-            "doors": [
-                {"name": door.name, "segment": list(door.segment), "open": door.open} for door in self.doors
-            ],
+            "docks": [_drawn(dock, "name", "pose", "radius") for dock in self.docks],
+            "doors": [_drawn(door, "name", "segment", "open") for door in self.doors],
             "cliffs": [list(cliff) for cliff in self.cliffs],
             "robots": [
-                {
-                    "name": robot.name,
-                    "pose": list(robot.pose),
-                    "radius": robot.radius,
-                    **({"footprint": list(robot.footprint)} if robot.footprint is not None else {}),
-                }
+                _drawn(robot, "name", "pose", "radius", *(("footprint",) if robot.footprint else ()))
                 for robot in self.robots
             ],
             "objects": [
-                {"name": each.name, "place": [each.x, each.y], "radius": each.radius, "color": each.color}
+                {"name": each.name, "place": [each.x, each.y], **_drawn(each, "radius", "color")}
                 for each in self.objects
             ],
             "people": [person.drawing() for person in self.people],

@@ -11,7 +11,7 @@ from jacaros.plane.pose import Placement, Pose, clamp, wrap
 from jacaros.plane.shapes import Circle, Rectangle
 from jacaros.plane.trigonometry import sine_cosine
 from jacaros.sim.data.ground_truth import RobotState, Sample
-from jacaros.sim.data.robot import BatterySettings, OdometrySettings, RobotDescription, RobotLimits
+from jacaros.sim.data.robot import BatterySettings, OdometrySettings, RobotDescription
 from jacaros.sim.data.world import Dock
 
 
@@ -22,21 +22,6 @@ def approach(now: float, wanted: float, most: float) -> float:
     if wanted < now - most:
         return now - most
     return wanted
-
-
-def ramp(
-    speed: float,
-    turn_rate: float,
-    wanted_speed: float,
-    wanted_turn_rate: float,
-    limits: RobotLimits,
-    dt: float,
-) -> tuple[float, float]:
-    """Return speed and turn rate (m/s, rad/s) after *dt* seconds of approaching the wanted ones within *limits*."""
-    return (
-        approach(speed, clamp(wanted_speed, limits.speed), limits.acceleration * dt),
-        approach(turn_rate, clamp(wanted_turn_rate, limits.turn_rate), limits.turn_acceleration * dt),
-    )
 
 
 def advance(x: float, y: float, yaw: float, distance: float, turn: float) -> tuple[float, float, float]:
@@ -200,14 +185,13 @@ class Robot:
             self.battery.step(dt, 0.0, 0.0, self.fed)
             return
         self._watch_commands(dt)
-        self.speed, self.turn_rate = ramp(
-            self.speed,
-            self.turn_rate,
-            self.wanted_speed,
-            self.wanted_turn_rate,
-            self.description.limits,
-            dt,
+        limits = self.description.limits
+        wanted, wanted_turn = (
+            clamp(self.wanted_speed, limits.speed),
+            clamp(self.wanted_turn_rate, limits.turn_rate),
         )
+        self.speed = approach(self.speed, wanted, limits.acceleration * dt)
+        self.turn_rate = approach(self.turn_rate, wanted_turn, limits.turn_acceleration * dt)
         distance, turn = self._roll(dt)
         rolled, turned = distance, turn
         if self.grip is not None:
