@@ -48,10 +48,9 @@ def median(figures: list[float]) -> float:
 def speed(name: str, seconds: float) -> float:
     """Simulated seconds in a second of the processor."""
     from jacaros.sim import World
-    from jacaros.sim.fingerprint import fingerprint
+    from jacaros.sim.physics.fingerprint import fingerprint
 
     world = World.load(name)
-    fingerprint(world, 0.2)  # numpy is imported at the first scan
     began = time.process_time()
     fingerprint(world, seconds)
     return seconds / (time.process_time() - began)

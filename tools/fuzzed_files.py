@@ -28,8 +28,8 @@ from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.parameter import checked_value
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.typestore import DefinitionSchema
+from jacaros.sim.data.ground_truth import GroundTruth, Sample
 from jacaros.sim.files.world import load_world
-from jacaros.sim.ground_truth import GroundTruth, Sample
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS = 20.0

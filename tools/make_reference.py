@@ -23,8 +23,9 @@ from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.motion import WheeledArtifact
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.files.entries import declared_entries
-from jacaros.sim import description
-from jacaros.sim.faults.description import Fault
+from jacaros.plane.shapes import Segment
+from jacaros.sim.data import robot, world
+from jacaros.sim.data.faults import Fault
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
@@ -49,15 +50,16 @@ GROUPS = (
 )
 """The pages about internal actions and functions."""
 DESCRIBED: dict[str, Any] = {
-    "Robot": description.RobotDescription(),
-    "Limits": description.RobotLimits(),
-    "Battery": description.BatterySettings(),
-    "Odometry": description.OdometrySettings(),
-    "Laser": description.LaserSettings(),
-    "Navigation": description.NavigationSettings(),
-    "Tool": description.CleaningTool("", ()),
-    "Object": description.ObjectDescription("", 0.0, 0.0),
-    "Person": description.PersonDescription("", ()),
+    "Robot": robot.RobotDescription(),
+    "Limits": robot.RobotLimits(),
+    "Battery": robot.BatterySettings(),
+    "Odometry": robot.OdometrySettings(),
+    "Laser": robot.LaserSettings(),
+    "Navigation": robot.NavigationSettings(),
+    "Tool": robot.CleaningTool("", ()),
+    "Door": world.Door("", Segment(0.0, 0.0, 1.0, 0.0)),
+    "Object": world.ObjectDescription("", 0.0, 0.0),
+    "Person": world.PersonDescription("", ()),
     "Fault": Fault("", ""),
 }
 """The parts of world files and fault files whose entries are declared, with their defaults."""

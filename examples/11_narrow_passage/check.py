@@ -8,8 +8,7 @@ from bisect import bisect_right
 from itertools import pairwise
 from typing import NamedTuple
 
-from jacaros.sim import GroundTruth
-from jacaros.sim.ground_truth import Sample
+from jacaros.sim import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance
 

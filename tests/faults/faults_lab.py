@@ -22,10 +22,10 @@ from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.runtime.clock import Clock, Timer, VirtualClock, run
+from jacaros.sim.data.ground_truth import GroundTruth
 from jacaros.sim.files.world import load_world
-from jacaros.sim.ground_truth import GroundTruth
 from jacaros.sim.node import SimNode
-from jacaros.sim.world import World
+from jacaros.sim.physics.world import World
 
 PROGRAMS = Path(__file__).parent / "programs"
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.sim.faults.file import read_faults
+from jacaros.sim.files.faults import read_faults
 from jacaros.sim.files.world import load_world
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))

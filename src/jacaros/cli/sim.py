@@ -14,7 +14,8 @@ from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file
 from jacaros.ros.address import GraphAddress
 from jacaros.runtime.clock import Clock, VirtualClock, WallClock, run
-from jacaros.sim.description import BatterySettings, WorldDescription
+from jacaros.sim.data.robot import BatterySettings
+from jacaros.sim.data.world import WorldDescription
 
 
 @click.command(
@@ -78,7 +79,7 @@ def command(
     if full_battery:
         loaded = World(with_full_batteries(loaded.description), faults=loaded.faults.by_name.values())
     if only_hash:
-        from jacaros.sim.fingerprint import fingerprint
+        from jacaros.sim.physics.fingerprint import fingerprint
 
         click.echo(fingerprint(loaded, 60.0 if seconds is None else seconds))
         return

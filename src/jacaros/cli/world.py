@@ -9,7 +9,7 @@ from jacaros.cli.options import PATH, option
 from jacaros.cli.outputs import check_output, write_output
 from jacaros.cli.usage import counted, examples, usage_error
 from jacaros.runtime.output import beneath
-from jacaros.sim.description import WorldDescription, WorldError
+from jacaros.sim.data.world import WorldDescription, WorldError
 from jacaros.sim.files.world import load_world
 
 _IMAGES = (".pgm", ".png")

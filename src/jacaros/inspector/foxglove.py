@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jacaros.sim.ground_truth import RobotState
+from jacaros.sim.data.ground_truth import RobotState
 
 TRANSFORMS, SCENE, LOG = "foxglove.FrameTransforms", "foxglove.SceneUpdate", "foxglove.Log"
 WORLD = "map"

@@ -11,6 +11,7 @@ from jacaros.artifacts.robots.battery import Charge
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.scene import UNKNOWN, RobotView
+from jacaros.plane.shapes import Rectangle
 from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.graph import GraphContents
@@ -18,7 +19,7 @@ from jacaros.ros.message import constant
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Clock
-from jacaros.sim.description import Rectangle, WorldDescription
+from jacaros.sim.data.world import WorldDescription
 
 LOOK_PERIOD = 3.0
 """Seconds between two searches for new robots and maps."""

@@ -5,7 +5,8 @@ from typing import Any
 
 from jacaros.files.maps import meanings
 from jacaros.plane.pose import Point, Pose
-from jacaros.sim.description import Rectangle, Segment, WorldDescription
+from jacaros.plane.shapes import Rectangle, Segment
+from jacaros.sim.data.world import WorldDescription
 from jacaros.sim.files.map import OccupancyMap
 
 

@@ -27,7 +27,7 @@ _PLACES = re.compile(
 )
 
 _SCALES = {"x": 1000, "y": 1000, "yaw": 1000, "battery": 10, "charging": 1, "touching": 1}
-"""Integers per unit of each field of `jacaros.sim.ground_truth.RobotState`."""
+"""Integers per unit of each field of `jacaros.sim.data.ground_truth.RobotState`."""
 
 
 def write_replay(recording: Recording, path: str | Path, title: str | None = None) -> None:

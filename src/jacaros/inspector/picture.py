@@ -12,7 +12,7 @@ from typing import Any
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.recording import Recording
 from jacaros.plane.pose import Pose
-from jacaros.sim.ground_truth import RobotState
+from jacaros.sim.data.ground_truth import RobotState
 
 _STYLE = """
   .floor{fill:#fdfcf9;stroke:#dedbd2} .grid{stroke:#eceae2} .wall{stroke:#3c434b;fill:none} .box{fill:#e6e2d8}

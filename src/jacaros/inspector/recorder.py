@@ -13,7 +13,7 @@ from jacaros.inspector.recording import Frame, Recording, event_record, text_rec
 from jacaros.inspector.recording_file import Format, RecordingFile
 from jacaros.inspector.scene import RobotView, row_of
 from jacaros.ros.message import type_of
-from jacaros.sim.ground_truth import RobotState
+from jacaros.sim.data.ground_truth import RobotState
 
 MCAP = ".mcap"
 LIMIT = 500_000_000

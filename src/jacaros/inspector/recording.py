@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from jacaros.errors import JacarosError
 from jacaros.files.texts import LARGEST, file_bytes, printable, text_of
 from jacaros.inspector.line_format import MAGIC, unpacked
-from jacaros.sim.ground_truth import FIELDS, RobotState, present_kind
+from jacaros.sim.data.ground_truth import FIELDS, RobotState, present_kind
 
 VERSION = 2
 """Version of the written format; older versions are read completely, and known records of newer ones."""

@@ -5,7 +5,7 @@ from math import isfinite
 from typing import Any, Protocol, Self
 
 from jacaros.sim import World
-from jacaros.sim.ground_truth import RobotState
+from jacaros.sim.data.ground_truth import RobotState
 
 UNKNOWN = -1.0
 """Battery level that is shown if none is published."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from jacaros.ros.backend import Backend
     from jacaros.runtime.trace import Tracer
     from jacaros.sim.node import SimNode
-    from jacaros.sim.world import World
+    from jacaros.sim.physics.world import World
 
 DEFAULT_WORLD = "empty"
 """The world of a project that does not name one: an open floor with one robot, whose odometry is exact."""
@@ -224,9 +224,9 @@ class RosGraph:
         self.log(f"[ros] {text}")
 
     def _start_world(self, backend: "Backend") -> None:
-        from jacaros.sim.description import UnknownWorld
+        from jacaros.sim.data.world import UnknownWorld
         from jacaros.sim.node import SimNode
-        from jacaros.sim.world import World
+        from jacaros.sim.physics.world import World
 
         source, options, noise = self.source, self.options, self.options.noise
         if source is None:

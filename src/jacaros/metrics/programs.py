@@ -27,7 +27,7 @@ from jacaros.mas.project.reading import read_project
 from jacaros.metrics import sources as languages
 from jacaros.metrics.counting import CountedFile, Group, ProgramMetrics
 from jacaros.metrics.sources import PythonFile, Sources, counted
-from jacaros.sim.faults.file import fault_file_problems, is_fault_file
+from jacaros.sim.files.faults import fault_file_problems, is_fault_file
 from jacaros.sim.files.world import is_world, shipped_worlds, world_problems
 
 OWN: Final = (

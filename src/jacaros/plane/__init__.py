@@ -1,1 +1,1 @@
-"""Planar geometry: poses, headings and paths, in metres and radians. It knows neither messages' types nor the world."""
+"""Planar geometry: poses, headings, shapes and paths, in metres and radians. It knows neither messages nor the world."""

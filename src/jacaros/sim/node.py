@@ -1,31 +1,42 @@
-"""The world as a ROS node: all its robots, on any backend and any clock."""
+"""The world as a ROS node: all its robots, doors and faults and its map, on any backend and any clock."""
 
 import math
 from collections.abc import Sequence
-from functools import partial
-from typing import cast
+from functools import cache, partial
+from typing import Any, cast
 
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.message import stamp
 from jacaros.runtime.clock import Clock, Timer
-from jacaros.sim.door_server import DoorServer
-from jacaros.sim.faults.graph import FaultyGraph
-from jacaros.sim.map_server import MapServer
-from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.robot import RobotNavigation
-from jacaros.sim.robot.node import RobotNode
-from jacaros.sim.robot.on_graph import TICKS_PER_SECOND
-from jacaros.sim.switch_service import SwitchService
-from jacaros.sim.world import World
-from jacaros.sim.world_time import WorldTime
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.graph.faulty_graph import FaultyGraph
+from jacaros.sim.graph.frames import MAP
+from jacaros.sim.graph.on_graph import LATCHED, TICKS_PER_SECOND, OnGraph, WorldTime
+from jacaros.sim.graph.robot_node import RobotNode
+from jacaros.sim.navigation.servers import RobotNavigation
+from jacaros.sim.physics.world import World
+
+_GRID = "nav_msgs/msg/OccupancyGrid"
 
 
 class SimNode:
     """Runs a world on a clock and a ROS graph; agents access it over topics only.
 
+    Beside its robots, it offers
+
+    - each door: the service ``/doors/NAME/open`` (``std_srvs/srv/SetBool``: true opens, false closes; fails while a robot
+      is in it) and the topic ``/doors/NAME/is_open`` (``std_msgs/msg/Bool``, latched);
+    - each fault: the service ``/faults/NAME`` (``std_srvs/srv/SetBool``);
+    - the map: the topics ``/map`` and, for robots with a namespace, ``/robot_1/map`` (``nav_msgs/msg/OccupancyGrid``,
+      latched, at the first subscription), and the service ``/map_server/map`` (on ROS 1 ``/static_map``).
+
     Args:
         world: world; its time continues.
         backend: graph; must be started before `start`, and is not closed by `close`.
         clock: the clock that the world follows.
+
+    Attributes:
+        grid: returns the map of the world, which is created on first use.
     """
 
     def __init__(self, world: World, backend: Backend, clock: Clock) -> None:
@@ -36,10 +47,12 @@ class SimNode:
         self.time = WorldTime(world, clock)
         self.robots: list[RobotNode] = []
         self.navigation: list[RobotNavigation] = []
-        self.doors: list[DoorServer] = []
-        self.faults: list[SwitchService] = []
-        self._map: MapServer | None = None
-        self._grid: Grid | None = None
+        self._at: OnGraph | None = None
+        self._doors: dict[str, Publisher] = {}
+        self._published: dict[str, bool] = {}
+        self._maps: list[Publisher] = []
+        self._map: Any = None
+        self.grid = cache(lambda: Grid(world.description))
         self._timer: Timer | None = None
         self._ticks = 0
 
@@ -53,18 +66,20 @@ class SimNode:
         self.time = WorldTime(self.world, self.clock)
         self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
         self.navigation = [
-            RobotNavigation(self.time, robot.robot, robot.localisation, self.backend, self.grid)
+            RobotNavigation(robot, self.grid)
             for robot in self.robots
             if robot.robot.description.navigation.enabled
         ]
-        prefixes = [robot.prefix for robot in self.robots]
-        self._map = MapServer(self.backend, prefixes, self.grid, self.time.now)
-        self.doors = [DoorServer(self.time, door, self.backend) for door in self.world.doors]
-        faults = self.world.faults
-        self.faults = [
-            SwitchService(self.time, self.backend, f"/faults/{name}", partial(faults.switch, name))
-            for name in faults.by_name
-        ]
+        self._at = at = OnGraph(self.time, self.backend)
+        names = dict.fromkeys(f"{prefix}/map" for prefix in ("", *(robot.prefix for robot in self.robots)))
+        self._maps = [at.publisher(name, _GRID, LATCHED) for name in names]
+        name = "/static_map" if self.backend.ros_version == 1 else "/map_server/map"
+        at.service(name, "nav_msgs/srv/GetMap", lambda request: {"map": self._map_message()})
+        for door in self.world.doors:
+            self._doors[door] = at.publisher(f"/doors/{door}/is_open", "std_msgs/msg/Bool", LATCHED)
+            at.switch(f"/doors/{door}/open", partial(self._move_door, door))
+        for fault in self.world.faults.by_name:
+            at.switch(f"/faults/{fault}", partial(self.world.faults.switch, fault))
         if self._faulty is not None:
             self._faulty.check()
         self._ticks = 0
@@ -82,11 +97,32 @@ class SimNode:
         """Return the points of the path of each robot, by name, in metres on the map; empty without a goal."""
         return {each.name: each.path for each in self.navigation}
 
-    def grid(self) -> Grid:
-        """Return the map of the world, created on first use."""
-        if self._grid is None:
-            self._grid = Grid(self.world.description)
-        return self._grid
+    def _map_message(self) -> Any:
+        if self._map is None:
+            grid, now = self.grid(), self.time.now()
+            self._map = message = self.backend.message(_GRID, data=grid.occupancy())
+            stamp(message.header.stamp, now)
+            message.header.frame_id = MAP
+            message.info.resolution = grid.resolution
+            message.info.width, message.info.height = grid.width - 2, grid.height - 2
+            stamp(message.info.map_load_time, now)
+            message.info.origin.position.x, message.info.origin.position.y = grid.x_min, grid.y_min
+        return self._map
+
+    def _move_door(self, name: str, opened: bool) -> str | None:
+        stuck = self.world.stuck_doors.get(name)
+        if stuck is not None and self.world.doors[name] != opened and stuck():
+            return f"the door '{name}' is stuck"
+        problem = self.world.move_door(name, opened)
+        self._publish_door(name)
+        return problem
+
+    def _publish_door(self, name: str) -> None:
+        """Publish the state of a door if it has changed."""
+        now = self.world.doors[name]
+        if self._published.get(name) is not now:
+            self._published[name] = now
+            self._doors[name].publish(self._doors[name].message(data=now))
 
     def _wait_for_tick(self) -> None:
         period = 1.0 / TICKS_PER_SECOND
@@ -105,10 +141,12 @@ class SimNode:
         self.time.catch_up()
         for robot in self.robots:
             robot.publish()
-        for door in self.doors:
-            door.publish()
-        if self._map is not None:
-            self._map.publish()
+        for door in self._doors:
+            self._publish_door(door)
+        for publisher in tuple(self._maps):
+            if publisher.subscription_count:
+                self._maps.remove(publisher)
+                publisher.publish(self._map_message())
 
     def stop(self) -> None:
         """Stop the world; its topics remain."""
@@ -122,13 +160,8 @@ class SimNode:
         self.stop()
         for navigation in self.navigation:
             navigation.close()
-        for robot in self.robots:
-            robot.close()
-        for door in self.doors:
-            door.close()
-        if self._map is not None:
-            self._map.close()
-        for fault in self.faults:
-            fault.close()
-        self.robots, self.navigation, self.doors, self._map = [], [], [], None
-        self.faults = []
+        for each in (*self.robots, self._at):
+            if each is not None:
+                each.close()
+        self.robots, self.navigation, self._at = [], [], None
+        self._doors, self._published, self._maps, self._map = {}, {}, [], None

@@ -7,6 +7,7 @@ import asyncio
 import json
 import sys
 from collections.abc import Callable
+from contextlib import AsyncExitStack
 from io import FileIO
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -16,9 +17,9 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.output import Output
-from jacaros.sim.ground_truth import Record, event_record, header
+from jacaros.sim.data.ground_truth import Record, event_record, header
 from jacaros.sim.node import SimNode
-from jacaros.sim.world import World
+from jacaros.sim.physics.world import World
 
 _FLUSH = 0.2
 """Maximum delay in seconds until a record is in the file."""
@@ -93,7 +94,7 @@ async def serve(
         backend: backend for this node; it is started and closed here.
         clock: clock that the world follows.
         duration: seconds; None for no limit.
-        ground_truth_path: file to write, for `jacaros.sim.ground_truth.GroundTruth.read`.
+        ground_truth_path: file to write, for `jacaros.sim.data.ground_truth.GroundTruth.read`.
         publish_clock: whether to publish *clock* on ``/clock``, for nodes in simulated time.
         when_open: called as soon as the robots have joined the graph.
 
@@ -109,41 +110,22 @@ async def serve(
 
     # Not `loop.add_signal_handler`, which Windows does not have.
     with lifetime.serving(end):
-        await _serve(stop, world, backend, clock, duration, ground_truth_path, publish_clock, when_open)
-
-
-async def _serve(
-    stop: asyncio.Event,
-    world: World,
-    backend: Backend,
-    clock: Clock,
-    duration: float | None,
-    ground_truth_path: str | Path | None,
-    publish_clock: bool,
-    when_open: Callable[[], None] | None,
-) -> None:
-    timer = clock.call_later(duration, stop.set) if duration is not None else None
-    node = SimNode(world, backend, clock)
-    time: ClockPublisher | None = None
-    try:
-        await backend.start()
-        node.start()
-        time = ClockPublisher(clock, backend) if publish_clock else None
-        if when_open is not None:
-            when_open()
-        if ground_truth_path is None:
+        async with AsyncExitStack() as closing:
+            closing.push_async_callback(backend.close)
+            await backend.start()
+            node = SimNode(world, backend, clock)
+            closing.callback(node.close)
+            node.start()
+            if publish_clock:
+                closing.callback(ClockPublisher(clock, backend).close)
+            if duration is not None:
+                closing.callback(clock.call_later(duration, stop.set).cancel)
+            if when_open is not None:
+                when_open()
+            if ground_truth_path is not None:
+                closing.enter_context(GroundTruthFile(ground_truth_path, world, node.time.epoch))
+                closing.callback(node.stop)
             await stop.wait()
-        else:
-            with GroundTruthFile(ground_truth_path, world, node.time.epoch):
-                await stop.wait()
-                node.stop()
-    finally:
-        if timer is not None:
-            timer.cancel()
-        if time is not None:
-            time.close()
-        node.close()
-        await backend.close()
 
 
 PERIOD = 0.01

@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 
 from jacaros.errors import JacarosError
 from jacaros.plane.pose import Pose, normalised
-from jacaros.sim.description import Segment
-from jacaros.sim.ground_truth import Event, GroundTruth, Sample
+from jacaros.plane.shapes import Segment
+from jacaros.sim.data.ground_truth import Event, GroundTruth, Sample
 
 
 @dataclass(slots=True)

@@ -375,7 +375,7 @@ def test_an_obstacle_stops_a_robot() -> None:
         assert "0.02 and 2 metres" in await refused(page, "obstacle", x=2, y=2, radius=9)
         await done(page, "obstacle", remove=name)
         await page.event("obstacle_removed", obstacle=name)
-        assert not mas.world.obstacles.by_name
+        assert not mas.world.obstacles
 
     commanding(test, WORLD)
 

@@ -75,7 +75,7 @@ def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
         await page.type("2")
         await page.press("Enter")
         await page.wait_for("document.querySelector('#log').innerText.includes('obstacle 1 placed')")
-        ((x, y, _),) = world.obstacles.circles()
+        ((x, y, _),) = world.obstacles.values()
         assert (x, y) == (2.0, 0.0)
         await page.evaluate("document.querySelector('.robot').focus()")
         await page.press("Enter")
@@ -95,7 +95,7 @@ def test_a_rejected_change_gives_the_reason() -> None:
         x, y = await page.evaluate(pixel(-1, 0))
         await page.click_at(x, y)
         await page.wait_for("document.querySelector('#tools [role=status]').innerText.length > 10")
-        assert not world.obstacles.circles()
+        assert not world.obstacles
 
     browsing(test)
 

@@ -12,7 +12,7 @@ from jacaros.inspector.page import records
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.sim import GroundTruth, World
-from jacaros.sim.ground_truth import FIELDS
+from jacaros.sim.data.ground_truth import FIELDS
 
 WORLD = """
 size: [4, 4]
@@ -112,4 +112,4 @@ def test_the_page_has_words_only_for_what_an_event_of_the_world_has() -> None:
 @pytest.mark.parametrize("kind", ["picked", "robot_placed"])
 def test_an_event_without_its_data_is_not_recorded(kind: str) -> None:
     with pytest.raises(AssertionError):
-        World.load(WORLD).note("turtlebot", kind, {"y": 1.0})
+        World.load(WORLD).robot("turtlebot").tell(kind, {"y": 1.0})

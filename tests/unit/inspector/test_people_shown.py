@@ -11,7 +11,7 @@ from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.sim import World
-from jacaros.sim.ground_truth import Record
+from jacaros.sim.data.ground_truth import Record
 
 WORLD = """
 name: people

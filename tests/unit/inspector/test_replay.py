@@ -22,7 +22,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import RobotView
 from jacaros.sim import World
-from jacaros.sim.ground_truth import RobotState
+from jacaros.sim.data.ground_truth import RobotState
 
 Test = Callable[[Page], Awaitable[None]]
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from sensor_lab import heard
 
-from jacaros.sim.robot.sensors.rendering import CAMERA_HEIGHT, FOCAL_LENGTH, HEIGHT, WIDTH
+from jacaros.sim.physics.rendering import CAMERA_HEIGHT, FOCAL_LENGTH, HEIGHT, WIDTH
 
 IMAGE = "sensor_msgs/msg/Image"
 ROOM = """\

@@ -9,7 +9,7 @@ from jacaros.ros.backend import Backend
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World, WorldError, read_world
-from jacaros.sim.navigation.grid import Grid
+from jacaros.sim.data.grid import Grid
 
 STAIRS = """\
 size: [6, 6]

@@ -11,7 +11,7 @@ from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.qos import QoS
 from jacaros.sim import World, WorldError, read_world
-from jacaros.sim.navigation.laser_perception import LaserPerception
+from jacaros.sim.physics.perception import LaserPerception
 
 TWO_ROOMS = """
 name: two rooms

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.sim.description import WorldError
-from jacaros.sim.faults.file import fault_file_problems, is_fault_file, load_faults, read_faults
+from jacaros.sim.data.world import WorldError
+from jacaros.sim.files.faults import fault_file_problems, is_fault_file, read_faults
 from jacaros.sim.files.world import read_world
 
 WORLD = read_world("""
@@ -56,13 +56,13 @@ robots:
 )
 def test_a_mistake_has_a_location(fault: str, message: str) -> None:
     with pytest.raises(WorldError) as told:
-        read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD, "f.yaml")
+        read_faults(f"faults:\n  # one\n  f: {fault}\n", WORLD)
     assert message in str(told.value)
-    assert str(told.value).startswith("f.yaml:3:")
+    assert str(told.value).startswith("faults:3:")
 
 
 def test_a_kidnapped_robot_may_be_put_into_a_doorway() -> None:
-    (fault,) = read_faults("faults: {f: {kind: kidnapped_robot, robot: one, to: {x: 2, y: 0}}}", WORLD)
+    (fault,) = read_faults("faults:\n  {f: {kind: kidnapped_robot, robot: one, to: {x: 2, y: 0}}}", WORLD)
     assert fault.pose == (2.0, 0.0, 0.0)
 
 
@@ -83,4 +83,4 @@ def test_a_fault_file_is_recognised_and_checked_without_a_world(tmp_path: Path) 
 
 def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(WorldError, match="cannot read the file"):
-        load_faults(tmp_path / "none.yaml", WORLD)
+        read_faults(tmp_path / "none.yaml", WORLD)

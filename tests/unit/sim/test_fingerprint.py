@@ -1,11 +1,10 @@
-"""The fingerprint of a world: equal on every Python, with and without numpy, and different for another seed."""
+"""The fingerprint of a world: equal on every Python, and different for another seed."""
 
 import pytest
 
 from jacaros.cli.main import call
 from jacaros.sim import World
-from jacaros.sim.fingerprint import fingerprint
-from jacaros.sim.robot.sensors import laser
+from jacaros.sim.physics.fingerprint import fingerprint
 
 WORLD = """
 name: two rooms
@@ -26,11 +25,6 @@ EXPECTED = "98cacf317fa5810d1b04d55c9b45ad583edaf9d48168b8da8bb5d5998c7cb3df"
 
 
 def test_it_is_the_same_on_every_machine() -> None:
-    assert fingerprint(World.load(WORLD), 10.0) == EXPECTED
-
-
-def test_it_is_the_same_without_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(laser, "FEW_WALLS", 1000)
     assert fingerprint(World.load(WORLD), 10.0) == EXPECTED
 
 

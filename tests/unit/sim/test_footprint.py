@@ -6,10 +6,11 @@ import pytest
 
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recording import Recording
+from jacaros.plane.contact import WallIndex, push_out_rectangle
 from jacaros.plane.pose import Pose
+from jacaros.plane.shapes import Segment
 from jacaros.sim import World
-from jacaros.sim.contact import WallIndex, push_out_rectangle
-from jacaros.sim.description import Segment, WorldError
+from jacaros.sim.data.world import WorldError
 from jacaros.sim.files.world import read_world
 
 WALL = Segment(1.0, -2.0, 1.0, 2.0)

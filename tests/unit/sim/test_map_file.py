@@ -10,10 +10,10 @@ import pytest
 
 from jacaros.files.maps import GreyImage, ImageError, pgm_bytes, read_image
 from jacaros.sim import World, WorldError
-from jacaros.sim.description import WorldDescription
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.data.world import WorldDescription
 from jacaros.sim.files.map import OccupancyMap, map_of_world, read_map
 from jacaros.sim.files.world import is_world, load_world, world_problems
-from jacaros.sim.navigation.grid import Grid
 
 YAML = "image: m.pgm\nresolution: 0.5\norigin: [-1, -2, 0.0]\n"
 ROOM = ["########", "#......#", "#......#", "#..##..#", "#......#", "#......#", "#......#", "########"]

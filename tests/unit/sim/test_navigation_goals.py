@@ -16,10 +16,9 @@ from jacaros.plane.trigonometry import PI
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.errors import GoalRejected
 from jacaros.sim import World
+from jacaros.sim.data.grid import Grid
 from jacaros.sim.navigation.driver import Driver, Pace, Route
-from jacaros.sim.navigation.failure import NavigationFailure
-from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.planner import Planner
+from jacaros.sim.navigation.planner import NavigationFailure, Planner
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.mas.options import RunOptions
 from jacaros.sim import World
-from jacaros.sim.description import SLIPPING, OdometrySettings
+from jacaros.sim.data.robot import SLIPPING, OdometrySettings
 from jacaros.testing import run_project
 
 NOISY = "robots: [{odometry: {origin: start, noise_per_metre: 0.03, noise_degrees_per_turn: 1}, laser: {noise: 0.02}}]\n\n"

@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.errors import UsageError
 from jacaros.sim import PersonDescription, World, WorldError, read_world
-from jacaros.sim.ground_truth import Event
+from jacaros.sim.data.ground_truth import Event
 
 WORLD = """
 name: flat

@@ -77,26 +77,26 @@ def test_an_obstacle_stops_a_robot_and_is_seen_by_its_laser(world: World) -> Non
         world.command("one", 0.5, 0.0)
         world.step()
     assert robot.x == pytest.approx(0.5 - 0.2 - robot.description.radius, abs=0.01)
-    assert obstacle.name in robot.touching
-    assert world.ground_truth.events_of("collision", robot="one")[0].data["with"] == obstacle.name
+    assert obstacle in robot.touching
+    assert world.ground_truth.events_of("collision", robot="one")[0].data["with"] == obstacle
 
 
 def test_a_removed_obstacle_does_not_block(world: World) -> None:
     obstacle = world.add_obstacle(0.5, 0.0, 0.2)
-    world.remove_obstacle(obstacle.name)
+    world.remove_obstacle(obstacle)
     for _ in range(300):
         world.command("one", 0.5, 0.0)
         world.step()
     assert world.robot("one").x > 1.0
     assert [event.data["obstacle"] for event in world.ground_truth.events_of("obstacle_removed")] == [
-        obstacle.name
+        obstacle
     ]
     with pytest.raises(UsageError, match="unknown obstacle: `obstacle_1`"):
-        world.remove_obstacle(obstacle.name)
+        world.remove_obstacle(obstacle)
 
 
 def test_obstacles_have_unique_names(world: World) -> None:
-    names = [world.add_obstacle(x, 0.0, 0.1).name for x in (0.0, 1.0, 2.0)]
+    names = [world.add_obstacle(x, 0.0, 0.1) for x in (0.0, 1.0, 2.0)]
     assert names == ["obstacle_1", "obstacle_2", "obstacle_3"]
 
 
@@ -120,7 +120,7 @@ def test_an_unchanged_world_behaves_as_before(world: World) -> None:
     """The same description, seed and commands give the same run, whether or not obstacles came and went."""
     other = World.load(LAB, seed=1)
     gone = other.add_obstacle(2.0, -2.0, 0.1)
-    other.remove_obstacle(gone.name)
+    other.remove_obstacle(gone)
     for each in (world, other):
         for _ in range(100):
             each.command("one", 0.5, 0.3)

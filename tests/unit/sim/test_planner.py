@@ -10,19 +10,21 @@ import pytest
 
 from jacaros.plane.path import DIAGONAL, cheapest_path
 from jacaros.plane.pose import distance
+from jacaros.plane.shapes import Rectangle, Segment
 from jacaros.sim import World
-from jacaros.sim.description import Rectangle, Segment, WorldDescription
+from jacaros.sim.data.grid import REACH, RESOLUTION, Grid
+from jacaros.sim.data.world import WorldDescription
 from jacaros.sim.navigation.driver import Route
-from jacaros.sim.navigation.failure import (
+from jacaros.sim.navigation.planner import (
     GOAL_OCCUPIED,
     GOAL_OUTSIDE_MAP,
+    MARGIN,
     NO_VALID_PATH,
     START_OCCUPIED,
     START_OUTSIDE_MAP,
     NavigationFailure,
+    Planner,
 )
-from jacaros.sim.navigation.grid import REACH, RESOLUTION, Grid
-from jacaros.sim.navigation.planner import MARGIN, Planner
 
 RADIUS = 0.17
 SHIPPED = ["empty", "house", "patrol", "two_robots"]

@@ -14,7 +14,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World, WorldError
-from jacaros.sim.interface import ACTIONS, SERVICES, TOPICS
+from jacaros.sim.data.robot import ACTIONS, SERVICES, TOPICS
 
 FULL = "robots: [{gripper: true, tools: {mop: {removes: [dust]}}}]\n"
 ROVER = """

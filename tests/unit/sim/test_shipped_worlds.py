@@ -8,7 +8,7 @@ from navigation_lab import Lab, bumps, in_world
 
 from jacaros.ros.action import GoalStatus
 from jacaros.sim import World
-from jacaros.sim.navigation.grid import Grid
+from jacaros.sim.data.grid import Grid
 from jacaros.sim.navigation.planner import Planner
 
 WORLDS = {"flat": 8, "office": 12, "warehouse": 27, "maze": 3}

@@ -15,9 +15,10 @@ from jacaros.ros.message import to_seconds
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.sim import GroundTruth, SimNode, World, serve
+from jacaros.sim.graph import robot_node
+from jacaros.sim.graph.on_graph import RobotOnGraph
+from jacaros.sim.graph.publishing import sensor
 from jacaros.sim.process import GroundTruthFile
-from jacaros.sim.robot.node import RobotNode
-from jacaros.sim.robot.on_graph import RobotOnGraph
 
 TWIST = "geometry_msgs/msg/Twist"
 
@@ -320,41 +321,17 @@ def test_the_time_of_the_world_is_published_on_clock() -> None:
     assert times[-1] - times[0] == pytest.approx(2.0, abs=0.02)
 
 
-class Sonar:
-    """A sensor of a project: the distance of the robot from the origin."""
+def test_another_sensor_is_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fill(at: RobotOnGraph, message: Any) -> None:
+        message.range = math.hypot(at.robot.x, at.robot.y)
 
-    def __init__(self, at: RobotOnGraph) -> None:
-        self._at = at
-        self._publisher = at.publisher("/sonar", "sensor_msgs/msg/Range")
-
-    def publish(self, ticks: int) -> None:
-        if ticks % 10 == 0:
-            message = self._publisher.message(range=math.hypot(self._at.robot.x, self._at.robot.y))
-            self._at.fill_header(message.header, "sonar")
-            self._publisher.publish(message)
-
-    def close(self) -> None:
-        self._publisher.close()
-
-
-def test_another_sensor_is_one_class() -> None:
-    heard: list[tuple[str, float]] = []
+    far = sensor("/far", "sensor_msgs/msg/Range", fill, every=10, frame="far")
+    monkeypatch.setattr(robot_node, "SENSORS", (far,))
 
     async def body(run: Run) -> None:
-        (robot, *_) = run.world.robots.values()
-        node = RobotNode(run.node.time, robot, run.backend, (Sonar,))
-        prefix = node.prefix
-        run.backend.subscription(
-            f"{prefix}/sonar",
-            "sensor_msgs/msg/Range",
-            lambda sample: heard.append((sample.message.header.frame_id, sample.message.range)),
-        )
-        for _ in range(20):
-            node.publish()
-        await run.clock.sleep(0.01)
-        node.close()
+        run.listen("/far", "sensor_msgs/msg/Range")
+        await run.clock.sleep(1.02)
 
-    in_world("patrol", body)
-    assert len(heard) == 2
-    assert heard[0][0].endswith("sonar")
-    assert heard[0][1] >= 0.0
+    received = in_world("patrol", body).received
+    assert [message.header.frame_id for message in received] == ["far", "far"]
+    assert received[0].range >= 0.0

@@ -7,17 +7,12 @@ import pytest
 
 from jacaros.errors import UsageError
 from jacaros.plane.pose import Pose
+from jacaros.plane.shapes import Segment
 from jacaros.plane.trigonometry import PI
 from jacaros.sim import World
-from jacaros.sim.description import (
-    BatterySettings,
-    Dock,
-    OdometrySettings,
-    RobotDescription,
-    Segment,
-    WorldDescription,
-)
-from jacaros.sim.world import STEP
+from jacaros.sim.data.robot import BatterySettings, OdometrySettings, RobotDescription
+from jacaros.sim.data.world import Dock, WorldDescription
+from jacaros.sim.physics.world import STEP
 
 
 def drive(

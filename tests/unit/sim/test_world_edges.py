@@ -7,15 +7,15 @@ import pytest
 from navigation_lab import Lab, in_world
 
 from jacaros.plane.pose import Placement
+from jacaros.plane.shapes import Rectangle, Segment
 from jacaros.ros.action import GoalStatus
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
-from jacaros.sim.description import Rectangle, Segment, WorldDescription
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.data.world import WorldDescription
 from jacaros.sim.navigation.driver import Driver, Pace, Route
-from jacaros.sim.navigation.failure import GOAL_OCCUPIED, NavigationFailure
-from jacaros.sim.navigation.grid import Grid
-from jacaros.sim.navigation.planner import Planner
+from jacaros.sim.navigation.planner import GOAL_OCCUPIED, NavigationFailure, Planner
 
 RADIUS = 0.17
 

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.plane.trigonometry import PI
 from jacaros.sim import World, WorldError, read_world, shipped_worlds
-from jacaros.sim.robot.kinds import KINDS
+from jacaros.sim.data.robot import KINDS
 
 FULL = """\
 name: flat

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.sim import GroundTruth
-from jacaros.sim.ground_truth import header
+from jacaros.sim.data.ground_truth import header
 from jacaros.testing import Verdict, judge
 
 ROBOT = {"name": "r", "pose": [0, 0, 0], "radius": 0.17}

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from jacaros.inspector.live.commands import Command, Given, Refused, flag_in, number_in, text_in
 from jacaros.mas.system import System
 from jacaros.sim import World
-from jacaros.sim.description import PersonDescription
+from jacaros.sim.data.world import PersonDescription
 
 RADIUS = 0.2
 """Default radius of an obstacle, in metres."""
@@ -67,7 +67,7 @@ class _WorldCommands:
             self._world.remove_obstacle(name)
             return name
         x, y = number_in(given, "x"), number_in(given, "y")
-        return self._world.add_obstacle(x, y, number_in(given, "radius", RADIUS)).name
+        return self._world.add_obstacle(x, y, number_in(given, "radius", RADIUS))
 
     def person(self, given: Given) -> str:
         """Add a person, or remove one with `remove`; return the name."""

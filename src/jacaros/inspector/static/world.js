@@ -4,7 +4,7 @@ import { Track, indexAt } from "./track.js";
 const SCANS = 20000;  // of all robots
 const ROWS = 2000000;  // of frames: one for each robot
 
-/** The fields of `jacaros.sim.ground_truth.RobotState`, in the order of a robot's row. */
+/** The fields of `jacaros.sim.data.ground_truth.RobotState`, in the order of a robot's row. */
 export const ROBOT_STATE = ["x", "y", "yaw", "battery", "charging", "touching"];
 
 const EMPTY = {

@@ -336,7 +336,7 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
     if deployment.world is None:
         return
     from jacaros.mas.ros_graph import NO_WORLD  # here: most projects name none
-    from jacaros.sim.description import UnknownWorld
+    from jacaros.sim.data.world import UnknownWorld
     from jacaros.sim.files.world import find_world, shipped_worlds, world_problems
 
     if deployment.world in (NO_WORLD, *shipped_worlds()):
@@ -351,7 +351,7 @@ def _check_world(deployment: Deployment, findings: Findings) -> None:
 def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
     """Check a world, fault or mapping file. Other YAML files are an error only if they are *named* on the command line."""
     from jacaros.artifacts.mapping.file import is_mapping  # here: see `_check_mapping`
-    from jacaros.sim.faults.file import fault_file_problems, is_fault_file
+    from jacaros.sim.files.faults import fault_file_problems, is_fault_file
     from jacaros.sim.files.world import is_world, world_problems
 
     if is_world(path):

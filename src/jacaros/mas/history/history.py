@@ -9,8 +9,8 @@ from jacaros.mas.history.run_environment import ObservedSystem, RunEnvironmentRe
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:
-    from jacaros.sim.ground_truth import Record
-    from jacaros.sim.world import World
+    from jacaros.sim.data.ground_truth import Record
+    from jacaros.sim.physics.world import World
 
 KEPT = 50_000
 """Number of records that are kept. Older ones are dropped."""

@@ -5,7 +5,9 @@ The keys are those of `jacaros.files.maps`; the origin must not be rotated.
 Unknown cells are not walls: laser beams and robots pass through them.
 """
 
+import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,8 +28,9 @@ from jacaros.files.maps import (
 )
 from jacaros.files.texts import suggestion
 from jacaros.files.yaml import Node, Problem, read_document, read_text, top_keys
-from jacaros.sim.description import Rectangle, Segment, WorldDescription
-from jacaros.sim.navigation.grid import Grid
+from jacaros.plane.shapes import Rectangle, Segment
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.data.world import WorldDescription
 
 _ROOM_FOR_ROBOT = 0.4
 """Metres of free floor around an automatically placed robot."""
@@ -75,20 +78,12 @@ class OccupancyMap:
 
     def walls(self) -> list[Segment]:
         """Return the boundary of the occupied cells: horizontal segments, then vertical ones, each as long as possible."""
-        found: list[Segment] = []
-        before = bytes(self.width)
-        for row in range(self.height + 1):
-            after = self._row(row) if row < self.height else bytes(self.width)
-            y = self._y(row)
-            found += (Segment(self._x(a), y, self._x(b), y) for a, b in _changes(before, after))
-            before = after
-        before = bytes(self.height)
-        for column in range(self.width + 1):
-            after = self._column(column) if column < self.width else bytes(self.height)
-            x = self._x(column)
-            found += (Segment(x, self._y(a), x, self._y(b)) for a, b in _changes(before, after))
-            before = after
-        return found
+        rows = [self._row(row) for row in range(self.height)]
+        columns = [self._column(column) for column in range(self.width)]
+        return [
+            *(Segment(self._x(a), self._y(row), self._x(b), self._y(row)) for row, a, b in _edges(rows)),
+            *(Segment(self._x(at), self._y(a), self._x(at), self._y(b)) for at, a, b in _edges(columns)),
+        ]
 
     def known_part(self) -> Rectangle:
         """Return the bounding rectangle of all known cells; the whole map without known cells."""
@@ -128,8 +123,6 @@ class OccupancyMap:
 
 
 _SOLID = bytes(1 if value == OCCUPIED else 0 for value in range(256))
-
-
 _KNOWN = bytes(0 if value == UNKNOWN else 1 for value in range(256))
 
 
@@ -143,6 +136,14 @@ def _runs(row: bytes) -> list[tuple[int, int]]:
         found.append((begin, end))
         begin = row.find(1, end)
     return found
+
+
+def _edges(lines: list[bytes]) -> Iterator[tuple[int, int, int]]:
+    """Yield the boundary of solid cells between neighbouring lines: the number of the second line, start and end."""
+    outside = bytes(len(lines[0]))
+    for number, (before, after) in enumerate(itertools.pairwise([outside, *lines, outside])):
+        for start, end in _changes(before, after):
+            yield number, start, end
 
 
 def _changes(one: bytes, other: bytes) -> list[tuple[int, int]]:
@@ -160,25 +161,24 @@ def is_map(path: Path) -> bool:
     return "image" in keys and len(keys & set(KEYS)) > 1
 
 
-def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
-    """Return the text of a map file, all mistakes in it and its image, and the map if it has no mistakes."""
+def open_document(path: Path, what: str, help: str = "") -> tuple[str, list[Problem], Node | None]:
+    """Return the text of a YAML file, the list of all its mistakes, and its content if it is YAML.
+
+    Mistakes that are found in the content are added to the list.
+    """
     try:
         text, wrong = read_text(path)
     except OSError as error:
-        return (
-            "",
-            [
-                Problem(
-                    1, 1, f"cannot read the file: {error}", "check that the file exists and its permissions"
-                )
-            ],
-            None,
-        )
-    if wrong is not None:
-        return text, [wrong], None
-    problems: list[Problem] = []
-    document = read_document(text, problems, "a map")
-    found = None if problems else _map(read_header(document), path.parent)
+        return "", [Problem(1, 1, f"cannot read the file: {error}", help)], None
+    problems = [] if wrong is None else [wrong]
+    document = read_document(text, problems, what) if not problems else None
+    return text, problems, document if not problems else None
+
+
+def read_map(path: Path) -> tuple[str, list[Problem], OccupancyMap | None]:
+    """Return the text of a map file, all mistakes in it and its image, and the map if it has no mistakes."""
+    text, problems, document = open_document(path, "a map", "check that the file exists and its permissions")
+    found = _map(read_header(document), path.parent) if document is not None else None
     return text, problems, None if problems else found
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from jacaros.files.texts import shown_from
-from jacaros.sim.description import WorldError
+from jacaros.sim.data.world import WorldError
 from jacaros.sim.files.map import free_place, read_map
 
 _NEW = """\

@@ -11,28 +11,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from jacaros.files.entries import Reader, declared_entries, values
+from jacaros.files.entries import Reader, declared_entries, read, values
 from jacaros.files.texts import is_file, suggestion
-from jacaros.files.yaml import Node, read_document, read_text, top_keys
+from jacaros.files.yaml import Node, Problem, read_document, top_keys
 from jacaros.plane.pose import Pose
-from jacaros.sim.description import (
-    Dock,
-    Door,
-    Furniture,
-    Problem,
-    Rectangle,
-    RobotDescription,
-    Segment,
-    UnknownWorld,
-    WorldDescription,
-    WorldError,
+from jacaros.plane.shapes import Rectangle, Segment
+from jacaros.sim.data.robot import RobotDescription
+from jacaros.sim.data.world import Dock, Door, Furniture, UnknownWorld, WorldDescription, WorldError
+from jacaros.sim.files.floor import (
+    check_people,
+    named,
+    place_problem,
+    read_box,
+    read_object,
+    read_person,
+    read_rectangle,
+    read_rooms,
 )
-from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, read_map
-from jacaros.sim.files.objects import read_box, read_objects
-from jacaros.sim.files.people import check_people, read_person
-from jacaros.sim.files.places import place_problem
+from jacaros.sim.files.map import OccupancyMap, free_place, is_map, near_file, open_document, read_map
 from jacaros.sim.files.robot import read_pose, read_robot
-from jacaros.sim.files.room import read_rectangle, read_rooms
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
 _KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))
@@ -104,8 +101,10 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
     Raises:
         WorldError: the text has mistakes; the error lists all of them.
     """
-    problems, description = _described(text, Path())
-    if description is None:
+    problems: list[Problem] = []
+    document = read_document(text, problems, "a world")
+    description = None if problems else _world(document, Path())
+    if description is None or problems:
         raise WorldError(name, text, problems)
     return description
 
@@ -113,11 +112,9 @@ def read_world(text: str, name: str = "world") -> WorldDescription:
 def _read(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
     if is_map(path):
         return _read_as_world(path)
-    try:
-        text, wrong = read_text(path)
-    except OSError as error:
-        return "", [Problem(1, 1, f"cannot read the file: {error}")], None
-    return (text, [wrong], None) if wrong is not None else (text, *_described(text, path.parent))
+    text, problems, document = open_document(path, "a world")
+    description = None if document is None else _world(document, path.parent)
+    return text, problems, None if problems else description
 
 
 def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | None]:
@@ -129,15 +126,6 @@ def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | N
     robot = RobotDescription(pose=Pose(*place, 0.0))
     walls, boxes = tuple(found.walls()), tuple(found.boxes())
     return text, [], WorldDescription(path.stem, found.bounds, walls, boxes, robots=(robot,))
-
-
-def _described(text: str, folder: Path) -> tuple[list[Problem], WorldDescription | None]:
-    problems: list[Problem] = []
-    document = read_document(text, problems, "a world")
-    if problems:
-        return problems, None
-    description = _world(document, folder)
-    return problems, None if problems else description
 
 
 def _world(document: Node, folder: Path) -> WorldDescription:
@@ -168,9 +156,9 @@ def _world(document: Node, folder: Path) -> WorldDescription:
             usual,
             rooms=read_rooms,
             docks=_docks,
-            doors=_doors,
+            doors=named("door", _door),
             cliffs=_each(read_rectangle),
-            objects=read_objects,
+            objects=named("object", read_object),
             robots=_robots,
             people=_each(read_person),
         ),
@@ -278,23 +266,21 @@ def _docks(node: Node, _: object) -> tuple[Dock, ...]:
     return tuple(docks)
 
 
-def _doors(node: Node, _: object) -> tuple[Door, ...]:
-    doors: list[Door] = []
-    for item in node.sequence():
-        entries = item.mapping("name", "segment", "open", required=("name", "segment"))
-        if len(entries.keys() & {"name", "segment"}) < 2:
-            continue
-        name, opened = entries["name"].text(), "open" in entries and entries["open"].truth()
-        if not _DOOR_NAME.fullmatch(name):
-            entries["name"].wrong(
-                f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name"
-            )
-        if any(door.name == name for door in doors):
-            entries["name"].wrong(f"duplicate door '{name}'", "give it another name")
-        pieces: list[Segment] = []
-        _straight(entries["segment"], pieces)
-        doors.extend(Door(name, piece, opened) for piece in pieces)
-    return tuple(doors)
+def _door(node: Node) -> Door:
+    return read(node, Door("", Segment(0.0, 0.0, 1.0, 0.0)), name=_door_name, segment=_segment)
+
+
+def _door_name(node: Node, _: object) -> str:
+    name = node.text()
+    if not _DOOR_NAME.fullmatch(name):
+        node.wrong(f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name")
+    return name
+
+
+def _segment(node: Node, usual: Segment) -> Segment:
+    pieces: list[Segment] = []
+    _straight(node, pieces)
+    return pieces[0] if pieces else usual
 
 
 def _robots(node: Node, _: object) -> tuple[RobotDescription, ...]:

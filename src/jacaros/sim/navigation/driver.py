@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from jacaros.plane.pose import Placement, Point, clamp, distance
-from jacaros.sim.description import RobotLimits
-from jacaros.sim.navigation.planner import Circle, Planner
+from jacaros.plane.shapes import Circle
+from jacaros.sim.data.robot import RobotLimits
+from jacaros.sim.navigation.planner import Planner
 
 
 class Route:

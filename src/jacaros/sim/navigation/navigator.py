@@ -1,64 +1,148 @@
-"""A navigating robot: its estimated pose, its perception and its basic motions."""
+"""A navigating robot: its wheels, its estimated pose, its perception and its basic motions."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from typing import Any
 
 from jacaros.plane.pose import Placement, Point, clamp, distance, wrap
-from jacaros.sim.description import Dock
-from jacaros.sim.navigation.driver import STOP, Command, Driver, Pace
-from jacaros.sim.navigation.laser_perception import LaserPerception
-from jacaros.sim.navigation.localisation import Localisation
-from jacaros.sim.navigation.planner import Circle, Planner
-from jacaros.sim.navigation.wheels import PERIOD, Claim, Wheels
-from jacaros.sim.robot.robot import Robot
-from jacaros.sim.world_time import WorldTime
+from jacaros.plane.shapes import Circle
+from jacaros.ros.action import Accept, GoalStatus
+from jacaros.ros.backend import Publisher
+from jacaros.sim.data.grid import Grid
+from jacaros.sim.graph.frames import ODOMETRY, stamped_pose
+from jacaros.sim.graph.on_graph import Execute, Goal, Overtaken, RobotOnGraph
+from jacaros.sim.navigation.driver import STOP, Command, Pace
+from jacaros.sim.navigation.planner import NavigationFailure, Planner
+from jacaros.sim.physics.perception import LaserPerception
 
+PERIOD = 0.1
+"""Seconds between two commands."""
 _BRAKES_IN = 0.05
 _GIVE_UP = 2.0
+
+
+class Claim:
+    """A claim of the wheels, until another goal claims them."""
+
+    def __init__(self, wheels: "Wheels") -> None:
+        self._wheels = wheels
+
+    async def drive(self, command: Command) -> None:
+        """Publish a command, and wait until the next one is due.
+
+        Raises:
+            Overtaken: a newer goal has claimed the wheels.
+        """
+        self._check()
+        self._wheels.send(command)
+        await self._wheels.at.time.clock.sleep(PERIOD)
+        self._check()
+
+    def _check(self) -> None:
+        if self._wheels.holder is not self:
+            raise Overtaken
+
+
+class Wheels:
+    """Commands the base of one robot on ``/cmd_vel``, as any other node would, for one driver at a time."""
+
+    def __init__(self, at: RobotOnGraph) -> None:
+        self.at = at
+        self.holder: Claim | None = None
+        self._publisher: Publisher | None = None
+
+    @contextmanager
+    def claimed(self) -> Iterator[Claim]:
+        """Claim the wheels from the current driver; afterwards stop the robot, unless another driver claimed them."""
+        self.holder = claim = Claim(self)
+        try:
+            yield claim
+        finally:
+            if self.holder is claim:
+                self.holder = None
+                self.send(STOP)
+
+    def send(self, command: Command) -> None:
+        """Publish a command."""
+        if self._publisher is None:  # no publisher before the first command
+            topic = self.at.name("/cmd_vel") or "/cmd_vel"
+            self._publisher = self.at.backend.publisher(topic, "geometry_msgs/msg/Twist")
+        message = self._publisher.message()
+        message.linear.x, message.angular.z = command
+        self._publisher.publish(message)
+
+    def close(self) -> None:
+        """Stop the robot if it is driving, and withdraw the topic."""
+        if self._publisher is None:
+            return
+        if self.holder is not None:
+            self.holder = None
+            self.send(STOP)
+        self._publisher.close()
+        self._publisher = None
 
 
 class Navigator:
     """The parts of one robot that navigation needs.
 
     Args:
-        time: the world on a clock.
-        robot: robot of that world.
-        localisation: estimated pose.
-        wheels: commands of the base.
-        make_planner: creates the planner; called at the first goal.
+        at: the robot on the graph.
+        grid: creates the grid of the world; called at the first goal.
 
     Attributes:
         path: points of the current path; empty without a goal.
     """
 
-    def __init__(
-        self,
-        time: WorldTime,
-        robot: Robot,
-        localisation: Localisation,
-        wheels: Wheels,
-        make_planner: Callable[[], Planner],
-    ) -> None:
-        self.time, self.robot, self.localisation, self.wheels = time, robot, localisation, wheels
-        settings = robot.description.navigation
-        self.pace = Pace.within(robot.description.limits, settings.speed)
-        self.perception = LaserPerception(time.world, robot)
+    def __init__(self, at: RobotOnGraph, grid: Callable[[], Grid]) -> None:
+        self.at, self.time, self.robot, self.wheels = at, at.time, at.robot, Wheels(at)
+        settings = at.robot.description.navigation
+        self.pace = Pace.within(at.robot.description.limits, settings.speed)
+        self.perception = LaserPerception(at.time.world, at.robot)
         self.path: Sequence[Point] = ()
-        self._make_planner = make_planner
-        self._planner: Planner | None = None
+        self._grid = grid
 
-    @property
+    @cached_property
     def planner(self) -> Planner:
         """The planner, created on first use."""
-        if self._planner is None:
-            self._planner = self._make_planner()
-        return self._planner
+        return Planner(self._grid(), self.robot.description.radius)
 
     def pose(self) -> Placement:
         """Return the estimated pose."""
         self.time.catch_up()
-        self.localisation.update(self.time.world.time)
-        return self.localisation.pose()
+        self.at.localisation.update(self.time.world.time)
+        return self.at.localisation.pose()
+
+    def odometry_pose(self) -> Any:
+        """Return the pose of odometry as a message."""
+        return stamped_pose(self.at, self.robot.odometry.placement, ODOMETRY)
+
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        accept: Accept | None = None,
+        overtaken: GoalStatus = GoalStatus.ABORTED,
+        coded: Callable[[int], int] = int,
+    ) -> None:
+        """Serve an action; a failure, with its code, sets those of the fields below that the action's result has."""
+
+        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+            try:
+                return await execute(goal)
+            except NavigationFailure as failure:
+                goal.abort(
+                    failure.text,
+                    success=False,
+                    error_code=coded(failure.code),
+                    is_docked=self.robot.dock is not None,
+                    text=failure.text,
+                    pose=self.odometry_pose(),
+                )
+
+        self.at.action(name, type_name, carry_out, accept, overtaken)
 
     def others(self, pose: Placement) -> list[Circle]:
         """Return what the map lacks: other robots in view, and closed doors."""
@@ -78,7 +162,7 @@ class Navigator:
         claim: Claim,
         metres: float,
         speed: float,
-        tell: Callable[[float], None] | None = None,
+        tell: Callable[[float], object] = bool,
         limit: float = math.inf,
     ) -> float:
         """Drive straight ahead, or back for negative *metres*; return the distance driven, in metres.
@@ -101,8 +185,7 @@ class Navigator:
             now = sign * begin.local(pose.x, pose.y)[0]
             waited = 0.0 if now > made + 0.001 else waited + PERIOD
             made, last = max(made, now), pose
-            if tell is not None:
-                tell(max(0.0, abs(metres) - made))
+            tell(max(0.0, abs(metres) - made))
         return sign * made
 
     def _clearer(self, pose: Placement, reach: float) -> bool:
@@ -111,9 +194,9 @@ class Navigator:
             return True
         grid = self.planner.grid
         there, here = grid.clearance_at(*pose.point(reach, 0.0)), grid.clearance_at(pose.x, pose.y)
-        return there > here and self.free_of_robots(pose, reach)
+        return there > here and self._free_of_robots(pose, reach)
 
-    def free_of_robots(self, pose: Placement, forward: float) -> bool:
+    def _free_of_robots(self, pose: Placement, forward: float) -> bool:
         """Return whether no robot or door is *forward* metres ahead, or it is farther away there than here."""
         point, here = pose.point(forward, 0.0), (pose.x, pose.y)
         radius = self.robot.description.radius
@@ -123,7 +206,7 @@ class Navigator:
         )
 
     async def rotate(
-        self, claim: Claim, angle: float, rate: float, tell: Callable[[float], None] | None = None
+        self, claim: Claim, angle: float, rate: float, tell: Callable[[float], object] = bool
     ) -> float:
         """Turn on the spot by *angle* radians of odometry; return the angle turned."""
         self.time.catch_up()
@@ -137,14 +220,5 @@ class Navigator:
             turned = sign * wrap(yaw - last)
             waited = 0.0 if turned > 0.001 else waited + PERIOD
             made, last = made + turned, yaw
-            if tell is not None:
-                tell(sign * max(0.0, abs(angle) - made))
+            tell(sign * max(0.0, abs(angle) - made))
         return sign * made
-
-    def driver(self) -> Driver:
-        """Return a driver for a new path."""
-        return Driver(self.planner, self.pace)
-
-    def docks(self) -> tuple[Dock, ...]:
-        """Return the docks that the robot knows."""
-        return self.time.world.description.docks

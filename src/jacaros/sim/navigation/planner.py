@@ -6,15 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from jacaros.plane.path import cheapest_path
 from jacaros.plane.pose import Point, distance
-from jacaros.sim.navigation.failure import (
-    GOAL_OCCUPIED,
-    GOAL_OUTSIDE_MAP,
-    NO_VALID_PATH,
-    START_OCCUPIED,
-    START_OUTSIDE_MAP,
-    NavigationFailure,
-)
-from jacaros.sim.navigation.grid import Grid
+from jacaros.plane.shapes import Circle
+from jacaros.sim.data.grid import Grid
 
 MARGIN = 0.06
 """Minimum distance in metres of a planned path from walls, in addition to the robot's radius."""
@@ -25,8 +18,28 @@ GOAL_MARGIN = 0.03
 _ESCAPE = 0.5
 _DISLIKE = 3.0
 
-Circle = tuple[float, float, float]
-"""An obstacle: centre and radius, in metres."""
+
+FAILED_TO_MAKE_PROGRESS = 105
+"""Nav2's ``FollowPath``: the robot makes no progress."""
+START_OUTSIDE_MAP, GOAL_OUTSIDE_MAP, START_OCCUPIED, GOAL_OCCUPIED, NO_VALID_PATH = 203, 204, 205, 206, 208
+"""Codes of Nav2's ``ComputePathToPose``, which Nav2's navigator passes on."""
+TF_ERROR, TIMEOUT = 9002, 9003
+"""Nav2's ``NavigateToPose``."""
+NO_POSES = 309
+"""Nav2's ``ComputePathThroughPoses``: no poses."""
+
+
+def through_poses(code: int) -> int:
+    """Return the code of the same failure in ``NavigateThroughPoses``, whose codes differ."""
+    return code if code == FAILED_TO_MAKE_PROGRESS else code + 100
+
+
+class NavigationFailure(Exception):
+    """Raised when a goal cannot be reached, with one of Nav2's error codes (0 for none) and the reason."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code, self.text = code, text
 
 
 class Planner:

@@ -1,1 +1,0 @@
-"""Fault injection in the embedded world: fault files, their schedule and their effects."""

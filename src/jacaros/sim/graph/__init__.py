@@ -1,0 +1,1 @@
+"""The world on a ROS graph: everything that publishes, subscribes and serves."""

@@ -1,1 +1,0 @@
-"""A robot of the world: its state and motion, its ROS interfaces, its sensors and its gripper."""

@@ -1,1 +1,0 @@
-"""The sensors of a robot, with their topics."""
