@@ -275,7 +275,7 @@ def _check_events(events: Sequence[str]) -> None:
 
 
 def _announce(mas: System, events: Sequence[str]) -> None:
-    from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
+    from jacaros.mas.history.why import Announcer  # here: few runs are explained
 
     Announcer(mas.keep_history(), events, mas.console.log).begin()
 

@@ -1,20 +1,19 @@
 """Records and ROS messages in an MCAP file, which Foxglove and ROS's tools open (extra ``mcap``)."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from mcap.writer import CompressionType, Writer
 
 from jacaros.inspector.foxglove import LOG, SCENE, TRANSFORMS, log_line, scene, transforms
+from jacaros.inspector.line_format import encoded
+from jacaros.mas.history.records import Frame, Happened, Heard, Line, Text, World
 from jacaros.ros.message import plain
 from jacaros.version import VERSION as JACAROS
 
 _CHUNK = 1 << 16
 """Chunk size in bytes: complete chunks are readable even after a crash."""
-_encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
 
-Data = Mapping[str, Any]
 Packed = tuple[str, str, Any]
 """Topic, schema and content of a message in the file."""
 
@@ -35,19 +34,14 @@ class McapFile:
         self._robots: list[str] = []
         self._t = 0.0
 
-    def begin(self, header: Data) -> bytes:
-        """Return the beginning of a file, with the world."""
-        return self.pack([header])
-
-    def pack(self, records: Sequence[Data]) -> bytes:
+    def pack(self, records: Sequence[Line]) -> bytes:
         """Return the bytes for the records; the last records may wait for a full chunk."""
         for record in records:
-            self._t = float(record.get("t", self._t))
+            self._t = float(getattr(record, "t", self._t))
             moment = max(0, round(self._t * 1e9))
             for topic, schema, content in self._packed(record):
                 channel = self._channel(topic, schema, content)
-                data = _encode(content).encode("utf-8", "backslashreplace")
-                self._writer.add_message(channel, moment, data, moment)
+                self._writer.add_message(channel, moment, encoded(content), moment)
         return self._stream.take()
 
     def end(self) -> bytes:
@@ -55,37 +49,34 @@ class McapFile:
         self._writer.finish()  # type: ignore[no-untyped-call]
         return self._stream.take()
 
-    def _packed(self, record: Data) -> Iterator[Packed]:
-        kind = record["kind"]
-        if kind == "message":
-            yield record["topic"], record["type"], plain(record["message"])
-        elif kind == "event":
-            yield _topic(record["event"]), f"jacaros.{record['event']}", {"t": record["t"], **record["data"]}
-        else:
-            yield (
-                _topic(kind),
-                f"jacaros.{kind}",
-                {key: each for key, each in record.items() if key != "kind"},
-            )
-        if kind == "world":
-            self._robots = [str(robot["name"]) for robot in record["world"].get("robots", ())]
-            yield "/jacaros/scene", SCENE, scene(record["world"], self._t)
-        elif kind == "frame":
-            yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, record["robots"], self._t)
-        elif kind == "text":
-            yield "/jacaros/output", LOG, log_line(record["agent"], record["text"], self._t)
+    def _packed(self, record: Line) -> Iterator[Packed]:
+        match record:
+            case Heard():
+                yield record.topic, record.type, plain(record.message)
+            case Happened():
+                yield _own(record.event, {"t": record.t, **record.data})
+            case World(world=world):
+                self._robots = [str(robot["name"]) for robot in world.get("robots", ())]
+                yield _own("world", {"version": record.version, "part": record.part, "world": world})
+                yield "/jacaros/scene", SCENE, scene(world, self._t)
+            case Frame(t=t, robots=robots):
+                yield _own("frame", {"t": t, "robots": robots})
+                yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, robots, self._t)
+            case Text(t=t, agent=agent, text=text):
+                yield _own("text", {"t": t, "agent": agent, "text": text})
+                yield "/jacaros/output", LOG, log_line(agent, text, self._t)
 
     def _channel(self, topic: str, schema: str, content: Any) -> int:
         known = self._channels.get((topic, schema))
         if known is None:
-            shape = _encode({"title": schema, **_schema_of(content)}).encode("utf-8", "backslashreplace")
+            shape = encoded({"title": schema, **_schema_of(content)})
             number = self._writer.register_schema(schema, "jsonschema", shape)
             known = self._channels[topic, schema] = self._writer.register_channel(topic, "json", number)
         return known
 
 
-def _topic(kind: str) -> str:
-    return f"/jacaros/{kind}"
+def _own(kind: str, content: Any) -> Packed:
+    return f"/jacaros/{kind}", f"jacaros.{kind}", content
 
 
 _TIMES = ("timestamp", "lifetime")

@@ -9,16 +9,17 @@ import base64
 import gzip
 import hashlib
 import html
-import json
 import re
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from operator import itemgetter
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
+from jacaros.inspector.line_format import encoded
 from jacaros.inspector.modules import bundle
-from jacaros.inspector.recording import Recording, event_record, text_record, world_record
+from jacaros.inspector.recording import Recording
+from jacaros.mas.history.records import VERSION, Happened, Line, Text, World
 
 STATIC = Path(__file__).parent / "static"
 """The page and its modules; a server serves this folder unchanged."""
@@ -81,19 +82,16 @@ def title_of(recording: Recording) -> str:
 
 def packed(recording: Recording) -> str:
     """Return the records of a recording in the format of the page: a line of frames, then a line for each other record."""
-    lines = "\n".join(
-        json.dumps(record, separators=(",", ":"), ensure_ascii=False, default=str)
-        for record in (frames(recording), *records(recording))
-    )
-    return base64.b64encode(gzip.compress(lines.encode("utf-8", "replace"), 9, mtime=0)).decode("ascii")
+    lines = b"\n".join(map(encoded, (frames(recording), *lines_of(recording))))
+    return base64.b64encode(gzip.compress(lines, 9, mtime=0)).decode("ascii")
 
 
-def records(recording: Recording) -> Iterator[dict[str, Any]]:
+def lines_of(recording: Recording) -> Iterator[Line]:
     """Yield the records of a recording except frames, in time order, as in its file."""
-    yield world_record(recording.world)
-    texts = (text_record(*text) for text in recording.texts)
-    events = (event_record(*event) for event in recording.events)
-    yield from sorted((*texts, *events), key=itemgetter("t"))
+    yield World(version=VERSION, world=recording.world)
+    texts = (Text(*text) for text in recording.texts)
+    events = (Happened(*event) for event in recording.events)
+    yield from sorted((*texts, *events), key=attrgetter("t"))
 
 
 def frames(recording: Recording) -> dict[str, Any]:

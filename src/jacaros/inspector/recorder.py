@@ -9,9 +9,10 @@ from typing import Any
 
 from jacaros.errors import UsageError
 from jacaros.inspector.line_format import CompressedLines, Lines
-from jacaros.inspector.recording import Frame, Recording, event_record, text_record, world_record
+from jacaros.inspector.recording import Recording
 from jacaros.inspector.recording_file import Format, RecordingFile
 from jacaros.inspector.scene import RobotView, row_of
+from jacaros.mas.history.records import VERSION, Frame, Happened, Heard, Line, Text, World
 from jacaros.ros.message import type_of
 from jacaros.sim.ground_truth import RobotState
 
@@ -81,7 +82,7 @@ class Recorder:
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Record the world (see `jacaros.sim.WorldDescription.drawing`), before everything else; the last call wins."""
         self.recording.world = dict(drawing)
-        self._write(world_record(self.recording.world))
+        self._write(World(version=VERSION, world=self.recording.world))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Record the robots at a time, in the order of the world."""
@@ -109,27 +110,24 @@ class Recorder:
         self._last, frame = rows, Frame(round(t, 3), rows)
         if self._keep:
             self.recording.frames.append(frame)
-        self._write(frame.record())
+        self._write(frame)
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Record a line of an agent's output."""
         if self._keep:
             self.recording.texts.append((t, agent, text))
-        self._write(text_record(t, agent, text))
+        self._write(Text(round(t, 3), agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Record an event at a whole millisecond; *data* is plain JSON data that must not change afterwards."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
-        self._write(event_record(t, kind, data))
+        self._write(Happened(t, kind, data))
 
     def message(self, t: float, topic: str, message: Any) -> None:
         """Record a ROS message that had an effect."""
         if self.takes_messages:
-            kind = type_of(message)
-            self._write(
-                {"kind": "message", "t": round(t, 3), "topic": topic, "type": kind, "message": message}
-            )
+            self._write(Heard(round(t, 3), topic, type_of(message), message))
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice is harmless."""
@@ -138,6 +136,6 @@ class Recorder:
             self._file.close()
             self._file = None
 
-    def _write(self, record: dict[str, Any]) -> None:
+    def _write(self, record: Line) -> None:
         if self._file is not None:
             self._file.write(record)

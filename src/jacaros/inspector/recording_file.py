@@ -7,12 +7,15 @@ Packing all records in a thread slowed the run by more than the packing costs: 6
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from io import FileIO
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
+
+from msgspec.structs import replace
 
 from jacaros.inspector.recording import older_part
+from jacaros.mas.history.records import Line, World
 from jacaros.runtime.output import CLOSING, PATIENCE, Output
 
 FLUSH = 0.2
@@ -20,16 +23,11 @@ FLUSH = 0.2
 _BATCH = 64
 """Maximum number of records packed together: more would save time, but cost memory."""
 
-Data = Mapping[str, Any]
-
 
 class Format(Protocol):
     """Converts records to bytes; one object for each file."""
 
-    def begin(self, header: Data) -> bytes:
-        """Return the first bytes of a file; *header* is the newest record of kind ``world``."""
-
-    def pack(self, records: Sequence[Data]) -> bytes:
+    def pack(self, records: Sequence[Line]) -> bytes:
         """Return records as bytes, so that a file that ends after them is readable."""
 
     def end(self) -> bytes:
@@ -62,9 +60,9 @@ class RecordingFile:
         self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
         self._batch = max(1, min(_BATCH, limit // 100_000))
         self._format = make_format()
-        self._header: Data = {}
+        self._header = World(world={})
         self._part, self._size = 1, 0
-        self._pending: deque[Data] = deque()
+        self._pending: deque[Line] = deque()
         self._packing = threading.Lock()
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
@@ -74,7 +72,7 @@ class RecordingFile:
         self._output: Output | None = None
         self._open()
 
-    def write(self, record: Data) -> None:
+    def write(self, record: Line) -> None:
         """Queue a record, to be written by the next due `flush`, or by the thread."""
         self._pending.append(record)
         if len(self._pending) >= self._batch:
@@ -117,9 +115,9 @@ class RecordingFile:
             self._packing.release()
         return True
 
-    def _put(self, batch: Sequence[Data]) -> None:
+    def _put(self, batch: Sequence[Line]) -> None:
         for record in batch:
-            if record["kind"] == "world":
+            if isinstance(record, World):
                 self._header = record
         data = self._format.pack(batch)
         self._send(data)
@@ -159,4 +157,4 @@ class RecordingFile:
             return
         self._part, self._size = self._part + 1, 0
         self._format = self._make_format()
-        self._send(self._format.begin({**self._header, "part": self._part}))
+        self._send(self._format.pack([replace(self._header, part=self._part)]))

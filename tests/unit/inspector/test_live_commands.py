@@ -14,7 +14,7 @@ from jacaros.artifacts import Artifact, operation
 from jacaros.inspector import view
 from jacaros.inspector.live import run_view
 from jacaros.mas.history.explanation import Explanation
-from jacaros.mas.history.past import Record
+from jacaros.mas.history.records import Record
 from jacaros.mas.history.why import explain
 
 WORLD = """

@@ -5,7 +5,7 @@ from typing import Any
 
 from rich.console import Console
 
-from jacaros.inspector.page import records
+from jacaros.inspector.page import lines_of
 from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
@@ -51,7 +51,7 @@ def test_the_picture_shows_people_with_their_paths() -> None:
     picture = picture_svg(recorder.recording)
     assert picture.count('class="person"') == 1
     assert ">&lt;bob&gt;</text>" in picture
-    assert [person["name"] for person in next(records(recorder.recording))["world"]["people"]] == ["ann"]
+    assert [person["name"] for person in next(lines_of(recorder.recording)).world["people"]] == ["ann"]
 
 
 def test_people_are_in_the_terminal() -> None:

@@ -7,8 +7,8 @@ from jacaros.inspector.live.commands import Commands
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.past import Past
 from jacaros.inspector.live.records import FrameRecord, LiveRecord, hello
-from jacaros.inspector.recording import event_record, text_record, world_record
 from jacaros.inspector.scene import RobotView
+from jacaros.mas.history.records import VERSION, Happened, Line, Text, World
 
 _NEWEST = ("laser", "believed")
 """Events of which only the newest for each robot matters."""
@@ -36,7 +36,7 @@ class LiveView:
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
-        self._take(world_record(drawing))
+        self._take(World(version=VERSION, world=dict(drawing)))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Show the robots at a time."""
@@ -53,12 +53,12 @@ class LiveView:
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
-        self._take(text_record(t, agent, text))
+        self._take(Text(round(t, 3), agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Show an event."""
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
-        self._take(event_record(t, kind, data), newest)
+        self._take(Happened(t, kind, data), newest)
 
     def commands_changed(self) -> None:
         """Tell the pages which commands are available from now on."""
@@ -68,12 +68,12 @@ class LiveView:
     def close(self) -> None:
         """Do nothing: there is nothing to close."""
 
-    def _take(self, data: Mapping[str, Any], newest: str | None = None) -> None:
+    def _take(self, data: Line, newest: str | None = None) -> None:
         record = self._record(data, newest)
         self._past.take(record)
         self._offer(record)
 
-    def _record(self, data: Mapping[str, Any], newest: str | None) -> LiveRecord:
+    def _record(self, data: Line, newest: str | None) -> LiveRecord:
         self._number += 1
         return LiveRecord(self._number, data, newest)
 

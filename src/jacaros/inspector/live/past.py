@@ -1,16 +1,15 @@
 """The records for a page that connects late: the last part of the run, and the state at its beginning."""
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from heapq import merge
 from typing import Any, NamedTuple
 
 from jacaros.inspector.live.records import LiveRecord
+from jacaros.mas.history.records import Data, Happened, World
 
 EVENTS, FRAMES = 20_000, 3_000
 """Maximum number of records kept, without those of the state."""
-
-Data = Mapping[str, Any]
 
 
 class _Rule(NamedTuple):
@@ -63,15 +62,13 @@ class State:
 
     def take(self, record: LiveRecord) -> None:
         """Update the state with a record."""
-        data = record.data
-        kind = data["kind"]
-        if kind in ("world", "frame"):
-            self._put((kind,), [record])
-        elif kind == "event" and (rule := _RULES.get(data["event"])) is not None:
-            about = data["data"]
-            key = (_AS.get(data["event"], data["event"]), *(about.get(name) for name in rule.about))
-            before = self._last.get(key, [])
-            self._put(key, [] if rule.over(about) else [*before[:1], record] if rule.first else [record])
+        match record.data:
+            case Happened(event=event, data=about) if (rule := _RULES.get(event)) is not None:
+                key = (_AS.get(event, event), *(about.get(name) for name in rule.about))
+                before = self._last.get(key, [])
+                self._put(key, [] if rule.over(about) else [*before[:1], record] if rule.first else [record])
+            case World() | None:
+                self._put((type(record.data),), [record])
 
     def _put(self, key: tuple[Any, ...], records: list[LiveRecord]) -> None:
         self._last.pop(key, None)
@@ -106,7 +103,7 @@ class Past:
 
     def take(self, record: LiveRecord) -> None:
         """Add a record."""
-        if record.data["kind"] == "frame":
+        if record.data is None:
             self._add(self._frames, record, self._limits[1])
         elif record.newest is not None:
             self._newest[record.newest] = record

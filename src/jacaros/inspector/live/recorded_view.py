@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator, Mapping
 from heapq import merge
+from operator import attrgetter
 from typing import Any
 
 from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
 from jacaros.inspector.live.delivery import Delivery
 from jacaros.inspector.live.records import LiveRecord, hello
-from jacaros.inspector.page import records, title_of
+from jacaros.inspector.page import lines_of, title_of
 from jacaros.inspector.recording import Recording
+from jacaros.mas.history.records import Line
 from jacaros.mas.history.why import explain
 
 
@@ -47,9 +49,8 @@ class RecordedView:
         return explain(self._recording.events, text_in(given, "question"), at).text()
 
 
-def _all_records(recording: Recording) -> Iterator[Mapping[str, Any]]:
+def _all_records(recording: Recording) -> Iterator[Line]:
     """Yield the records of a recording in time order; at equal times frames come first."""
-    world, *others = records(recording)
+    world, *others = lines_of(recording)
     yield world
-    frames = (frame.record() for frame in recording.frames)
-    yield from merge(frames, others, key=lambda record: record["t"])
+    yield from merge(recording.frames, others, key=attrgetter("t"))

@@ -1,12 +1,13 @@
 """Records on their way to pages: each is encoded once, for any number of pages."""
 
-import json
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jacaros.inspector.recording import VERSION, Frame
+from msgspec import to_builtins
+
+from jacaros.inspector.line_format import encoded
 from jacaros.inspector.scene import RobotView, row_of
+from jacaros.mas.history.records import VERSION, Frame, Line
 
 LONGEST = 200_000
 """Maximum length of a record in characters; the strings of a longer one are cut to `_CUT` characters."""
@@ -18,13 +19,13 @@ class LiveRecord:
 
     Args:
         number: number of the record, in time order.
-        data: the record as plain data.
+        data: the record; None for a frame.
         newest: subject of the record if only its newest record matters; None if every record matters.
     """
 
     __slots__ = ("_text", "data", "newest", "number")
 
-    def __init__(self, number: int, data: Mapping[str, Any], newest: str | None = None) -> None:
+    def __init__(self, number: int, data: Line | None, newest: str | None = None) -> None:
         self.number, self.data, self.newest = number, data, newest
         self._text: str | None = None
 
@@ -48,7 +49,7 @@ class FrameRecord(LiveRecord):
     __slots__ = ("robots", "t")
 
     def __init__(self, number: int, t: float, robots: Sequence[RobotView]) -> None:
-        super().__init__(number, {"kind": "frame"}, "frame")
+        super().__init__(number, None, "frame")
         self.t, self.robots = t, robots
 
     @property
@@ -56,7 +57,7 @@ class FrameRecord(LiveRecord):
         """The record as JSON."""
         if self._text is None:
             rows = tuple(map(row_of, self.robots))
-            self._text = json_text(Frame(round(self.t, 3), rows).record())
+            self._text = json_text(Frame(round(self.t, 3), rows))
         return self._text
 
 
@@ -65,24 +66,19 @@ def hello(title: str, live: bool, can: Sequence[str]) -> dict[str, Any]:
     return {"kind": "hello", "version": VERSION, "title": title, "live": live, "can": can}
 
 
-def json_text(data: Any) -> str:
-    """Return *data* as JSON that browsers can parse: ASCII, null for NaN and infinity, strings of limited length."""
-    try:
-        written = json.dumps(data, separators=(",", ":"), allow_nan=False, default=str)
-    except ValueError:
-        written = json.dumps(_plain(data), separators=(",", ":"), default=str)
+def json_text(data: object) -> str:
+    """Return *data* as JSON that browsers can parse: null for NaN and infinity, strings of limited length."""
+    written = encoded(data)
     if len(written) > LONGEST:
-        written = json.dumps(_plain(data, _CUT), separators=(",", ":"), default=str)
-    return written
+        written = encoded(_cut(to_builtins(data, enc_hook=str)))
+    return written.decode()
 
 
-def _plain(data: Any, longest: int | None = None) -> Any:
+def _cut(data: Any) -> Any:
     if isinstance(data, Mapping):
-        return {str(key): _plain(value, longest) for key, value in data.items()}
+        return {key: _cut(value) for key, value in data.items()}
     if isinstance(data, list | tuple):
-        return [_plain(each, longest) for each in data]
-    if isinstance(data, float) and not math.isfinite(data):
-        return None
-    if isinstance(data, str) and longest is not None and len(data) > longest:
-        return f"{data[:longest]} …"
+        return [_cut(each) for each in data]
+    if isinstance(data, str) and len(data) > _CUT:
+        return f"{data[:_CUT]} …"
     return data

@@ -15,7 +15,8 @@ from jacaros.inspector.live.mind_commands import mind_commands
 from jacaros.inspector.live.server import LiveServer, bound_socket
 from jacaros.inspector.live.world_commands import world_commands
 from jacaros.inspector.watch import Watch
-from jacaros.mas.history.past import Record
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Record
 from jacaros.mas.history.why import explain
 from jacaros.mas.system import System
 from jacaros.runtime.clock import outside_run, start_thread
@@ -101,8 +102,8 @@ class RunView:
         """Add the debugger's commands, and show its state."""
         debugger, history = self._system.debugger, self._system.history()
         self.commands.add(debug_commands(debugger))
-        history.record("debug", debugger.state.data())
-        self._end_debug = debugger.listen(lambda state: history.record("debug", state.data()))
+        history.record(records.Debug(**debugger.state.data()))
+        self._end_debug = debugger.listen(lambda state: history.record(records.Debug(**state.data())))
 
     async def close(self) -> None:
         """Send waiting records, and disconnect the pages."""
@@ -143,4 +144,4 @@ class RunView:
             self._rested_at = now + REST * (now - begun)
 
     def _note(self, what: str) -> None:
-        self._system.history().record("intervention", {"what": what})
+        self._system.history().record(records.Intervention(what))

@@ -4,11 +4,21 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from jacaros.mas.history.agents import AgentRecords
+from jacaros.agents.mind.mind import Mind
+from jacaros.mas.agent_host import AgentHost
+from jacaros.mas.history import records
+from jacaros.mas.history.causes import CauseRecords
+from jacaros.mas.history.goals import GoalRecords
+from jacaros.mas.history.intentions import Looks, Moments
+from jacaros.mas.history.minds import IN_ALL, Allowance, MessageRecords, MindRecords, Shared
+from jacaros.mas.history.programs import ProgramRecords
+from jacaros.mas.history.records import Tell
 from jacaros.mas.history.run_environment import ObservedSystem, RunEnvironmentRecords
+from jacaros.runtime.trace import Cause
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:
+    from jacaros.mas.python_agents.host import PythonAgentHost
     from jacaros.sim.ground_truth import Record
     from jacaros.sim.world import World
 
@@ -43,16 +53,11 @@ _LASTING: Mapping[str, tuple[str, ...]] = {
 """Records that describe a state: the newest of each is kept while the state lasts, identified by these fields."""
 
 
-def run_data(system: ObservedSystem) -> dict[str, Any]:
-    """Return the data of the record ``run``."""
+def run_record(system: ObservedSystem) -> records.Run:
+    """Return the record ``run``."""
     clock, options = system.clock, system.options
-    return {
-        "name": system.deployment.name,
-        "clock": "fast" if clock.virtual else "ros" if options.ros_clock else "real",
-        "ros": options.ros,
-        "seed": options.seed,
-        "jacaros": VERSION,
-    }
+    kind = "fast" if clock.virtual else "ros" if options.ros_clock else "real"
+    return records.Run(system.deployment.name, kind, options.ros, options.seed, VERSION)
 
 
 class History:
@@ -112,7 +117,7 @@ class History:
         self._starts += 1
         if self._starts > 1:
             return
-        self.record("run", run_data(self._system))
+        self.record(run_record(self._system))
         self.environment_records = RunEnvironmentRecords(self._system, self.beginning, self.record)
         self.environment_records.causes.with_effect = self._hear_message
         self._agents = AgentRecords(self._system, self.environment_records.causes, self.t, self.record)
@@ -134,14 +139,17 @@ class History:
         """Record the end of the run. Open goals are dropped."""
         if self._starts and self._agents is not None:
             self._agents.run_ended()
-            self.record("ended", {"code": code})
+            self.record(records.Ended(code))
 
     def t(self, moment: float | None = None) -> float:
         """Return the seconds from the beginning to a moment of the run's clock, or to now, with millisecond precision."""
         return round((self._system.clock.now() if moment is None else moment) - self.beginning, 3)
 
-    def record(self, event: str, data: Mapping[str, Any]) -> None:
+    def record(self, event: records.Event) -> None:
         """Keep a record of something that happened now, and pass it to the listeners."""
+        self._take(event.kind, event.plain())
+
+    def _take(self, event: str, data: Mapping[str, Any]) -> None:
         # As `t`, but inlined: most records of a recording are made here.
         t = round((self._system.clock.now() - self.beginning) * 1e3) / 1e3
         events = self.events
@@ -185,4 +193,123 @@ class History:
 
     def _hear_world(self, record: "Record") -> None:
         if record["event"] != "battery":  # each percent of each robot, which is also in the frames
-            self.record(record["event"], {"robot": record["robot"], **record["data"]})
+            self._take(record["event"], {"robot": record["robot"], **record["data"]})
+
+
+class AgentRecords:
+    """Records the agents of a run.
+
+    Args:
+        system: the run.
+        links: creates the links of causal chains.
+        t: returns times.
+        tell: takes the records.
+    """
+
+    def __init__(self, system: ObservedSystem, links: CauseRecords, t: Moments, tell: Tell) -> None:
+        self._system, self._tell = system, tell
+        self._looks = Looks(system.clock)
+        self._goals = GoalRecords(tell)
+        messages = MessageRecords(links, self._cause, tell)
+        examinations = Allowance(t, IN_ALL)
+        self._shared = Shared(tell, t, links, examinations, ProgramRecords(tell), messages, self._looks)
+        self._minds: dict[str, MindRecords] = {}
+        self._ends: dict[str, Callable[[], None]] = {}
+
+    def start(self) -> Callable[[], None]:
+        """Observe all agents, including future ones. Return a function that ends this."""
+        for host in self._system.directory:
+            self._began(host)
+        end_watch = self._system.directory.watch(self._changed)
+        self._system.mailboxes.observer = self._shared.messages.sent
+
+        def end() -> None:
+            end_watch()
+            self._system.mailboxes.observer = None
+            self._looks.look()
+            self._looks.stop()
+            for name in list(self._ends):
+                self._ends.pop(name)()
+
+        return end
+
+    def look(self) -> None:
+        """Record programs and intentions that have changed."""
+        for mind in self._minds.values():
+            mind.had_turn()
+        self._looks.look()
+
+    def run_ended(self) -> None:
+        """Record the final state of the agents. Open goals are dropped."""
+        self._looks.look()
+        self._goals.drop()
+
+    def _changed(self, name: str, present: bool) -> None:
+        host = self._system.directory.find(name)
+        if present and host is not None:
+            self._began(host)
+        elif not present:
+            self._ended(name)
+
+    def _began(self, host: AgentHost) -> None:
+        mind = host.mind
+        what = "asl" if isinstance(mind, Mind) else "python"
+        self._tell(records.Agent(host.name, "began", what))
+        self._goals.listen(host)
+        if isinstance(mind, Mind):
+            self._ends[host.name] = self._observe_mind(host, mind)
+            return
+        from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
+
+        if isinstance(host, PythonAgentHost):
+            self._ends[host.name] = self._observe_inbox(host)
+
+    def _observe_inbox(self, host: "PythonAgentHost") -> Callable[[], None]:
+        inbox = host.mail.inbox
+        inbox.when_read = self._shared.messages.read
+
+        def end() -> None:
+            inbox.when_read = None
+
+        return end
+
+    def _observe_mind(self, host: AgentHost, mind: Mind) -> Callable[[], None]:
+        records = self._minds[host.name] = MindRecords(mind, self._shared)
+        records.had_turn()
+        end_turns = observe_turns(host, records.had_turn)
+
+        def end() -> None:
+            end_turns()
+            records.end()
+
+        return end
+
+    def _ended(self, name: str) -> None:
+        self._minds.pop(name, None)
+        end = self._ends.pop(name, None)
+        if end is not None:
+            end()
+        self._goals.drop(name)
+        self._tell(records.Agent(name, "ended", ""))
+
+    def _cause(self, sender: str) -> Cause | None:
+        mind = self._minds.get(sender)
+        return None if mind is None else mind.cause()
+
+
+def observe_turns(host: AgentHost, had_turn: Callable[[], None]) -> Callable[[], None]:
+    """Call *had_turn* after each turn of an agent. Return a function that ends this."""
+    run = host.run
+
+    def observed(fuel: int) -> bool:
+        more = run(fuel)
+        had_turn()
+        return more
+
+    host.run = observed
+
+    def end() -> None:
+        if host.run is observed:
+            host.run = run
+
+    return end

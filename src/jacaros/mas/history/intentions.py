@@ -1,16 +1,31 @@
 """Records of intentions: changes in those of agents that had a turn, at most ten times a second."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.mind.actions.goals import TIME
+from jacaros.agents.mind.explaining.failure_reason import Place, place_of_call
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.urgency import Urgent
-from jacaros.agents.mind.state.intention import PLAN, STEP, Frame, Intention
-from jacaros.agents.mind.state.pending import Waiting
+from jacaros.agents.mind.state.intention import GOAL, PLAN, STEP, Frame, Intention
+from jacaros.agents.mind.state.pending import (
+    ASK,
+    GOAL_CONDITION,
+    CoroutineWait,
+    Listener,
+    Waiting,
+    Watch,
+    is_action,
+)
+from jacaros.agents.mind.state.plan import Plan, StepInfo
+from jacaros.agents.mind.state.triggers import literal_of
+from jacaros.agents.terms.substitution import is_ground
+from jacaros.agents.terms.values import Term, annotations_of
+from jacaros.mas.history import records
 from jacaros.mas.history.programs import PlanNumbers
-from jacaros.mas.history.steps import Stacks
-from jacaros.mas.history.waiting import waits_for
-from jacaros.mas.history.words import shown
+from jacaros.mas.history.records import Tell
+from jacaros.mas.history.words import cut, named, shown, shown_event
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 
@@ -20,9 +35,6 @@ MOST = 100
 """Maximum number of intentions of one agent that are checked."""
 MOST_AGENTS = 50
 """Maximum number of agents that are checked per period. Of thousands of busy agents, some are checked later."""
-
-Tell = Callable[[str, Mapping[str, Any]], None]
-
 
 Moments = Callable[..., float]
 """Returns the seconds from the beginning of the run to a moment of its clock (default: now), with millisecond precision."""
@@ -91,7 +103,7 @@ class IntentionRecords:
         numbers: numbers of its plans.
         cause: returns the cause of an intention's current step.
         t: returns times.
-        tell: takes the kind of a record and its data.
+        tell: takes the records.
         looks: checks the agent after its turns.
     """
 
@@ -123,7 +135,7 @@ class IntentionRecords:
         for number in [number for number in self._seen if number not in alive]:
             del self._seen[number]
             self._stacks.forget(number)
-            self._tell("intention", {"agent": self._mind.name, "id": number, "state": "over"})
+            self._tell(records.Intention(self._mind.name, number, "over"))
         for _, intention in zip(range(MOST), list(alive.values()), strict=False):
             seen = self._seen.get(intention.id)
             if intention.frames and (seen is None or not seen.is_still(intention)):
@@ -133,26 +145,163 @@ class IntentionRecords:
                 self._record(intention)
 
     def _record(self, intention: Intention) -> None:
-        waiting, cause = intention.waiting, self._cause(intention)
-        record = {
-            "agent": self._mind.name,
-            "id": intention.id,
-            "state": "suspended"
-            if intention.suspended is not None
-            else "waits"
-            if waiting is not None
-            else "runs",
-            "stack": self._stacks.of(intention),
-            "waits": "" if waiting is None or waiting.ended else waits_for(waiting),
-            "since": self._t(None if waiting is None else waiting.began),
-            "reason": "" if intention.suspended is None else shown(intention.suspended),
-            "urgency": self._urgency(intention),
-            "cause": 0 if cause is None else cause.id,
-        }
-        self._tell("intention", record)
+        waiting, suspended, cause = intention.waiting, intention.suspended, self._cause(intention)
+        self._tell(
+            records.Intention(
+                self._mind.name,
+                intention.id,
+                "suspended" if suspended is not None else "waits" if waiting is not None else "runs",
+                self._stacks.of(intention),
+                "" if waiting is None or waiting.ended else waits_for(waiting),
+                self._t(None if waiting is None else waiting.began),
+                "" if suspended is None else shown(suspended),
+                self._urgency(intention),
+                0 if cause is None else cause.id,
+            )
+        )
 
     def _urgency(self, intention: Intention) -> int:
         selections = self._mind.selections
         if not isinstance(selections, Urgent):
             return 0
         return max(selections.of_plan(frame[PLAN]) for frame in intention.frames)
+
+
+# ---- stacks
+
+DEEPEST = 24
+"""Maximum number of recorded goals of a stack: the lowest one, and those next to the top."""
+
+
+class Stacks:
+    """Shows the stacks of intentions. A level whose goals have no variables is unchanged as long as its step is.
+
+    Args:
+        numbers: numbers of the plans.
+    """
+
+    def __init__(self, numbers: PlanNumbers) -> None:
+        self._numbers = numbers
+        self._levels: dict[int, list[_Shown]] = {}
+
+    def of(self, intention: Intention) -> list[records.Step]:
+        """Return the goals of an intention from the bottom up, with their current steps."""
+        frames = [frame for frame in intention.frames if frame[GOAL][0].functor.namespace != "jacaros"]
+        levels = list(zip(frames, [*frames[1:], None], strict=True))
+        if len(levels) > DEEPEST:
+            levels = [levels[0], *levels[1 - DEEPEST :]]
+        known = self._levels.get(intention.id, ())
+        shown = [
+            known[place] if place < len(known) and known[place].is_still(*level) else self._show(*level)
+            for place, level in enumerate(levels)
+        ]
+        self._levels[intention.id] = shown
+        return [each.data for each in shown]
+
+    def forget(self, number: int) -> None:
+        """Forget a finished intention."""
+        self._levels.pop(number, None)
+
+    def _show(self, frame: Frame, above: Frame | None) -> "_Shown":
+        lasting = above is not None and all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
+        return _Shown(frame, above, frame[STEP], lasting, _level(frame, above, self._numbers))
+
+
+class _Shown(NamedTuple):
+    """A level of a stack as recorded, and whether it is valid until its step changes."""
+
+    frame: Frame
+    above: Frame | None
+    step: object
+    lasting: bool
+    data: records.Step
+
+    def is_still(self, frame: Frame, above: Frame | None) -> bool:
+        """Return whether nothing of it has changed."""
+        return self.lasting and self.frame is frame and self.above is above and self.step is frame[STEP]
+
+
+def _level(frame: Frame, above: Frame | None, numbers: PlanNumbers) -> records.Step:
+    plan: Plan = frame[PLAN]
+    if above is not None:
+        span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
+    else:
+        span, step = _span(frame), step_of(frame)
+    file, line = (plan.file, 0) if span is None else (span.file.name, span.line)
+    return records.Step(shown_goal(frame), numbers[plan], file, line, step)
+
+
+def shown_goal(frame: Frame) -> str:
+    """Return the goal of a frame without its ``+``: ``!go(dock)``, or the event that it handles: ``+low(9)``."""
+    goal = frame[GOAL]
+    told = shown_event(goal)
+    return told.removeprefix("+") if goal[0].kind and not goal[0].failing else told
+
+
+def place_of(intention: Intention, numbers: PlanNumbers) -> dict[str, Any]:
+    """Return plan, file and line of an intention's current step; empty without a stack."""
+    if not intention.frames:
+        return {}
+    frame = intention.frames[-1]
+    span = _span(frame)
+    if span is None:
+        return {"plan": numbers[frame[PLAN]]}
+    return {"plan": numbers[frame[PLAN]], "file": span.file.name, "line": span.line}
+
+
+def step_of(frame: Frame) -> str:
+    """Return the current step of a frame, with the values of its variables; empty at the end of the plan."""
+    info = getattr(frame[STEP], "info", None)
+    if info is None:
+        return ""
+    try:
+        return cut(named(Place(frame, info).step()))
+    except Exception:
+        # Output for users must not make a run fail.
+        return _written(info.node.span)
+
+
+def _span(frame: Frame) -> Span | None:
+    info: StepInfo | None = getattr(frame[STEP], "info", None)
+    plan: Plan = frame[PLAN]
+    return plan.node.span if info is None else info.node.span
+
+
+def _written(span: Span | None) -> str:
+    return "" if span is None else cut(span.file.lines[span.line - 1][span.column - 1 :].strip())
+
+
+# ---- waits
+
+
+def waits_for(waiting: Waiting) -> str:
+    """Return what ends a wait."""
+    if waiting.act is not None:
+        return _act(waiting)
+    if isinstance(waiting, CoroutineWait):
+        return f"the Python coroutine {shown(waiting.reason)}"
+    if waiting.reason in (ASK, GOAL_CONDITION):
+        return "an answer" if waiting.reason is ASK else "the condition of its goal"
+    kinds = {type(each) for each in waiting.pending}
+    what = "the event " if Listener in kinds else "the condition " if Watch in kinds else ""
+    return f"{what}{shown(_awaited(waiting))}" if what else _time(waiting)
+
+
+def _awaited(waiting: Waiting) -> Term:
+    """Return the subject of a ``.wait``. See `jacaros.agents.mind.actions.goals`."""
+    found = annotations_of(waiting.reason)
+    return found[0] if found else waiting.reason
+
+
+def _time(waiting: Waiting) -> str:
+    awaited = _awaited(waiting)
+    if awaited.__class__ is tuple and awaited[0] is TIME and isinstance(awaited[1], float):
+        return f"{awaited[1] / 1000:g} s"
+    return shown(awaited)
+
+
+def _act(waiting: Waiting) -> str:
+    reason = waiting.reason
+    if reason.__class__ is tuple and not is_action(reason):  # needs(wheels)
+        return f"the resource{'s' if len(reason) > 2 else ''} {', '.join(map(shown, reason[1:]))}"
+    return f"the action {shown(reason[1] if reason.__class__ is tuple else reason)}"

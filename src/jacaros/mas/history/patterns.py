@@ -13,6 +13,7 @@ from jacaros.errors import UsageError
 
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
+_PLAIN_NAME = re.compile(r"~?(?:\w+::)?(?:'[^']*'|\w+)")
 
 
 class Pattern:
@@ -68,6 +69,22 @@ def _split(text: str) -> tuple[str, str, str]:
 def name_of(text: str) -> str:
     """Return the name in a trigger, goal or belief, such as ``go`` in ``+!go(dock)``; empty if it has none."""
     return _name(_split(text)[2])
+
+
+def literal_at(text: str, start: int) -> str:
+    """Return the literal at a position of a text, without what follows its name and arguments."""
+    name = _PLAIN_NAME.match(text, start)
+    if name is None:
+        return text[start:]
+    if text[name.end() : name.end() + 1] != "(":
+        return name[0]
+    depth, quoted = 0, False
+    for at in range(name.end(), len(text)):
+        quoted ^= text[at] == '"'
+        depth += 0 if quoted else (text[at] in "([{") - (text[at] in ")]}")
+        if depth == 0:
+            return text[start : at + 1]
+    return text[start:]
 
 
 def unsigned(text: str) -> str:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError, SourceFile
 from jacaros.agents.language.loader import parse_literal, read_program
-from jacaros.mas.history.past import Data, Record
 from jacaros.mas.history.patterns import name_of
+from jacaros.mas.history.records import Data, Record
 
 
 @dataclass(frozen=True, slots=True)
