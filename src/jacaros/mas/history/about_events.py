@@ -1,6 +1,7 @@
 """Answers about events, goals, plans and beliefs: how they were handled, and why."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import PurePath
 
 from jacaros.errors import UsageError
@@ -9,7 +10,7 @@ from jacaros.mas.history import records
 from jacaros.mas.history.chains import chain, is_written, place_of, plan_name, plan_text, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Past, Timed, of_agent
-from jacaros.mas.history.patterns import Pattern, name_of, unsigned
+from jacaros.mas.history.patterns import Pattern, Question, name_of, unsigned
 
 MOST = 8
 """Maximum number of plans in an answer or an error."""
@@ -18,17 +19,17 @@ MOST_CHANGES = 5
 CHOSEN, REFUSED, UNTRIED = "chosen", "did not apply", "not tried"
 
 
-def explain_event(past: Past, question: str, about: str, agent: str = "") -> Explanation:
-    """Explain the last event that matches *about*, such as ``+alarm(_)`` or ``!go(dock)``."""
-    pattern = Pattern(about)
-    found = [each for each in of_agent(past.deliberations, agent) if pattern.fits(each[1].trigger)]
+def explain_event(past: Past, asked: Question) -> Explanation:
+    """Explain the last event that matches the subject, such as ``+alarm(_)`` or ``!go(dock)``."""
+    pattern = Pattern(asked.about)
+    found = [each for each in of_agent(past.deliberations, asked.agent) if pattern.fits(each[1].trigger)]
     if not found:
-        return _never(past, question, about, pattern, agent)
+        return _never(past, asked, pattern)
     t, last = found[-1]
     facts = [*candidates(past, last), *_outcome(past, t, last)]
     if len(found) > 1:
         facts.append(Fact("note", f"it happened {_times(len(found) - 1)} before; ask with --at T"))
-    return Explanation(question, _headline(past, t, last), t, tuple(facts), chain(past, last.id))
+    return Explanation(asked.written, _headline(past, t, last), t, tuple(facts), chain(past, last.id))
 
 
 def explain_deliberation(
@@ -114,7 +115,8 @@ def goal_text(t: float, goal: records.Goal) -> str:
     return f"{goal.goal} {goal.state} at {seconds(t)}{f': {goal.why}' if goal.why else ''}"
 
 
-def _never(past: Past, question: str, about: str, pattern: Pattern, agent: str) -> Explanation:
+def _never(past: Past, asked: Question, pattern: Pattern) -> Explanation:
+    agent = asked.agent
     if not pattern.kind:
         changes = (
             each
@@ -124,13 +126,13 @@ def _never(past: Past, question: str, about: str, pattern: Pattern, agent: str) 
         for t, data in changes:
             answer = f"{data.agent} has no relevant plan for `{data.op}{shown(data.belief)}` at {seconds(t)}"
             facts = tuple(_near_plans(past, pattern, data.agent))
-            return Explanation(question, answer, t, facts, chain(past, data.cause))
+            return Explanation(asked.written, answer, t, facts, chain(past, data.cause))
     for t, goal in reversed(past.goals if pattern.kind == "!" else ()):
         if pattern.fits(goal.goal):
-            return Explanation(question, f"{goal.agent}: {goal_text(t, goal)}", t)
+            return Explanation(asked.written, f"{goal.agent}: {goal_text(t, goal)}", t)
     what, who = "goal" if pattern.kind else "event", f" in {agent}" if agent else ""
-    answer = f"no {what} `{about}` happened{who} until {seconds(past.end)}"
-    return Explanation(question, answer, None, tuple(_hints(past, pattern, agent)))
+    answer = f"no {what} `{asked.about}` happened{who} until {seconds(past.end)}"
+    return Explanation(asked.written, answer, None, tuple(_hints(past, pattern, agent)))
 
 
 def _rule(past: Past, name: str) -> str | None:
@@ -171,21 +173,16 @@ def known_names(past: Past) -> set[str]:
 # ---- plans
 
 
-def explain_plan(past: Past, question: str, about: str, agent: str = "") -> Explanation:
-    """Explain when a plan was chosen, and why it was not.
-
-    Args:
-        past: the records.
-        question: as it was asked.
-        about: ``@label``, ``file.asl:line`` or the trigger of the plan.
-        agent: agent of the plan. Default: the first agent that has it.
+def explain_plan(past: Past, asked: Question) -> Explanation:
+    """Explain when a plan was chosen, and why it was not. It is asked for as ``@label``, ``file.asl:line`` or its trigger;
+    of several agents that have it, the one that considered it last.
 
     Raises:
         UsageError: the plan does not exist.
     """
-    found = _find(past, about, agent)
+    found = _find(past, asked.about, asked.agent)
     if len({plan.id for _, plan in found}) > 1:
-        return explain_event(past, question, found[0][1].trigger, agent)
+        return explain_event(past, replace(asked, about=found[0][1].trigger))
     name, plan, considered = max(
         ((name, plan, _considered(past, name, plan)) for name, plan in found),
         key=lambda each: each[2][-1][0] if each[2] else -1.0,
@@ -193,15 +190,15 @@ def explain_plan(past: Past, question: str, about: str, agent: str = "") -> Expl
     file, line = place_of(plan)
     what = f"{plan_name(plan)} of {name} ({file}:{line})"
     if not considered:
-        never = explain_event(past, question, plan.trigger, name)
+        never = explain_event(past, replace(asked, about=plan.trigger, agent=name))
         facts = Fact("note", never.answer), *never.facts
-        return Explanation(question, f"{what} was never considered", None, facts, never.because)
+        return Explanation(asked.written, f"{what} was never considered", None, facts, never.because)
     t, data, how = considered[-1]
     answer = f"{what} {how if how == REFUSED else f'was {how}'} for `{shown(data.trigger)}` at {seconds(t)}"
     counts = {each: sum(treated == each for *_, treated in considered) for each in _COUNTED}
     told = ", ".join(f"{_COUNTED[each]} {_times(count)}" for each, count in counts.items())
     facts = (*_reasons(past, name, data, plan, how), Fact("note", f"until then {told}"))
-    return Explanation(question, answer, t, facts, chain(past, data.id))
+    return Explanation(asked.written, answer, t, facts, chain(past, data.id))
 
 
 _COUNTED = {CHOSEN: "chosen", REFUSED: "refused", UNTRIED: "not tried"}
@@ -278,19 +275,19 @@ def _has_trigger(plan: records.Plan, about: str) -> bool:
 # ---- beliefs
 
 
-def explain_belief(past: Past, question: str, about: str, agent: str = "") -> Explanation:
+def explain_belief(past: Past, asked: Question) -> Explanation:
     """Explain the last change of a belief, such as ``battery(_)``."""
-    pattern = Pattern(about)
+    pattern, agent = Pattern(asked.about), asked.agent
     changes = [each for each in of_agent(past.beliefs, agent) if pattern.fits_literal(each[1].belief)]
     if not changes:
         verb = f"{agent} never believed" if agent else "no agent ever believed"
         answer = f"{verb} `{pattern.written}` until {seconds(past.end)}"
-        return Explanation(question, answer, None, tuple(_meant(past, pattern)))
+        return Explanation(asked.written, answer, None, tuple(_meant(past, pattern)))
     t, last = changes[-1]
     does = "came to believe" if last.op == "+" else "stopped believing"
     answer = f"{last.agent} {does} `{shown(last.belief)}` at {seconds(t)}"
     facts = (*_changing_step(past, t, last), *_before(changes))
-    return Explanation(question, answer, t, facts, chain(past, last.cause))
+    return Explanation(asked.written, answer, t, facts, chain(past, last.cause))
 
 
 def _changing_step(past: Past, t: float, change: records.Belief) -> Iterator[Fact]:

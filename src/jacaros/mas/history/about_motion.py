@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from jacaros.mas.history import records
 from jacaros.mas.history.chains import chain, place_of, plan_name, shown
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Link, Past, Timed
-from jacaros.mas.history.patterns import literal_at
+from jacaros.mas.history.patterns import Question, literal_at
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
 MOST_FACTS = 8
@@ -20,11 +21,12 @@ _INTERRUPTS = re.compile(r"(\.)(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)
 """Steps that interrupt a robot's motion, and goals that take its wheels from less urgent ones."""
 
 
-def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") -> Explanation:
+def explain_stop(past: Past, asked: Question) -> Explanation:
     """Explain why a robot stopped: the first stop command after the last motion command."""
+    question, agent, robot = asked.written, asked.agent, asked.robot
     commands = _commands(past, robot)
     if not commands:
-        return _by_operation(past, question, agent, robot) or _no_command(past, question, robot)
+        return _by_operation(past, asked) or _no_command(past, replace(asked, about=""))
     stop = _stop_of(commands)
     if stop is None:
         t, last, _ = commands[-1]
@@ -53,21 +55,23 @@ def explain_stop(past: Past, question: str, agent: str = "", robot: str = "") ->
     return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), because)
 
 
-def _by_operation(past: Past, question: str, agent: str, robot: str) -> Explanation | None:
+def _by_operation(past: Past, asked: Question) -> Explanation | None:
     """Explain the end of the last operation of a robot's artifact, if other nodes send the commands."""
     ended = [
         (each.ended, number, each)
         for number, each in past.operations.items()
-        if each.ended is not None and _drives(past, each.data.artifact, robot)
+        if each.ended is not None and _drives(past, each.data.artifact, asked.robot)
     ]
     if not ended:
         return None
     t, number, last = max(ended, key=lambda each: each[:2])
-    goals = _goals_interrupted(past, t, number, agent, only_own=True)
-    events = [_event_fact(past, *each) for each in _events_before(past, t, number, agent)] if goals else []
+    goals = _goals_interrupted(past, t, number, asked.agent, only_own=True)
+    events = (
+        [_event_fact(past, *each) for each in _events_before(past, t, number, asked.agent)] if goals else []
+    )
     what = f"{last.data.operation} of {last.data.artifact} {last.outcome}"
     answer = f"no agent sent commands to the wheels; the last operation: {what}"
-    return Explanation(question, answer, t, (*events, *goals)[:MOST_FACTS], chain(past, number))
+    return Explanation(asked.written, answer, t, (*events, *goals)[:MOST_FACTS], chain(past, number))
 
 
 def _drives(past: Past, artifact: str, robot: str) -> bool:
@@ -75,26 +79,26 @@ def _drives(past: Past, artifact: str, robot: str) -> bool:
     return whose is not None and robot in ("", whose)
 
 
-def explain_command(past: Past, question: str, about: str = "", robot: str = "") -> Explanation:
-    """Explain the last command, on the topic *about* if given."""
-    commands = [each for each in _commands(past, robot) if about in each.cause.what]
+def explain_command(past: Past, asked: Question) -> Explanation:
+    """Explain the last command, on the topic if one is given."""
+    commands = [each for each in _commands(past, asked.robot) if asked.about in each.cause.what]
     if not commands:
-        return _no_command(past, question, robot, about)
+        return _no_command(past, asked)
     t, cause, _ = commands[-1]
-    return Explanation(question, f"`{cause.what}` at {seconds(t)}", t, (), chain(past, cause.id))
+    return Explanation(asked.written, f"`{cause.what}` at {seconds(t)}", t, (), chain(past, cause.id))
 
 
-def explain_operation(past: Past, question: str, about: str = "", agent: str = "") -> Explanation:
-    """Explain the last operation, with the name *about* if given."""
-    name = about.partition("(")[0]
+def explain_operation(past: Past, asked: Question) -> Explanation:
+    """Explain the last operation, with the name if one is given."""
+    name = asked.about.partition("(")[0]
     for number, last in reversed(past.operations.items()):
-        if name in last.data.operation and agent in ("", last.data.agent):
+        if name in last.data.operation and asked.agent in ("", last.data.agent):
             what = f"{last.data.operation} of {last.data.artifact} began at {seconds(last.began)}"
-            return Explanation(question, f"{what}, {last.outcome}", last.began, (), chain(past, number))
+            return Explanation(asked.written, f"{what}, {last.outcome}", last.began, (), chain(past, number))
     names = sorted({each.data.operation.partition("(")[0] for each in past.operations.values()})
     known = (Fact("note", f"known operations: {', '.join(names[:MOST_FACTS])}"),) if names else ()
-    answer = f"no operation{f' `{about}`' if about else ''} began until {seconds(past.end)}"
-    return Explanation(question, answer, None, known)
+    answer = f"no operation{f' `{asked.about}`' if asked.about else ''} began until {seconds(past.end)}"
+    return Explanation(asked.written, answer, None, known)
 
 
 def _commands(past: Past, robot: str) -> list[Link]:
@@ -140,11 +144,11 @@ def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
             yield Fact("note", f"{whose}: {event} at {seconds(at)}", at)
 
 
-def _no_command(past: Past, question: str, robot: str, about: str = "") -> Explanation:
-    what = f" on `{about}`" if about else ""
-    whose = f" for {robot}" if robot else ""
+def _no_command(past: Past, asked: Question) -> Explanation:
+    what = f" on `{asked.about}`" if asked.about else ""
+    whose = f" for {asked.robot}" if asked.robot else ""
     answer = f"no command{what}{whose} that an agent caused was recorded until {seconds(past.end)}"
-    return Explanation(question, answer, None, tuple(_world(past, past.end, robot)))
+    return Explanation(asked.written, answer, None, tuple(_world(past, past.end, asked.robot)))
 
 
 # ---- events that interrupted a motion

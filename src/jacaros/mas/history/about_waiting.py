@@ -8,6 +8,7 @@ from jacaros.mas.history.about_events import goal_text
 from jacaros.mas.history.chains import chain, place_of, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
 from jacaros.mas.history.past import Past, Timed, of_agent
+from jacaros.mas.history.patterns import Question
 
 MOST_GOALS = 5
 """Maximum number of goals of a stack in an answer."""
@@ -15,8 +16,9 @@ MOST_INTENTIONS = 20
 """Maximum number of intentions in an answer."""
 
 
-def explain_waiting(past: Past, question: str, agent: str = "") -> Explanation:
+def explain_waiting(past: Past, asked: Question) -> Explanation:
     """Explain what each intention waits for."""
+    question, agent = asked.written, asked.agent
     found = _open(past, agent)
     waiting = sum(data.state != "runs" for _, data in found)
     who = agent or "all agents"
@@ -55,8 +57,9 @@ def _state(data: records.Intention) -> str:
     return f"waits for {waits}" if waits else "waits"
 
 
-def explain_idleness(past: Past, question: str, agent: str = "") -> Explanation:
+def explain_idleness(past: Past, asked: Question) -> Explanation:
     """Explain why nothing happens: the run has ended or is paused, goals were lost, or everything waits."""
+    agent = asked.agent
     last = next(reversed(of_agent(past.deliberations, agent)), None)
     found = _open(past, agent)
     facts = [
@@ -68,7 +71,7 @@ def explain_idleness(past: Past, question: str, agent: str = "") -> Explanation:
         told = f"the last event `{shown(last[1].trigger)}` had no applicable plan"
         facts.append(Fact("event", told, last[0], last[1].agent))
     because = () if last is None else chain(past, last[1].id)
-    return Explanation(question, _why_idle(past, agent, found, last), past.end, tuple(facts), because)
+    return Explanation(asked.written, _why_idle(past, agent, found, last), past.end, tuple(facts), because)
 
 
 def _why_idle(

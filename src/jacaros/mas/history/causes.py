@@ -7,7 +7,7 @@ from jacaros.mas.history import records
 from jacaros.mas.history.records import Tell
 from jacaros.mas.history.words import call_text, limited, message_text, request_text
 from jacaros.runtime.clock import Clock
-from jacaros.runtime.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause
 
 _GENERATION = 4096
 """Number of causes that are kept at least, until something needs them; at most twice as many."""
@@ -107,16 +107,6 @@ class CauseRecords:
         self._old: dict[int, Link] = {}
         self._samples: set[int] = set()
         """Messages that have led to something. Each is kept, or recorded, once."""
-
-    def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
-        """Trace a system through *trace*. Return a function that ends this."""
-        trace(self)
-
-        def end() -> None:
-            trace(None)
-            self.flush(all_of_them=True)
-
-        return end
 
     def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
         """Create the next link of a chain. See `jacaros.runtime.trace.Tracer`."""

@@ -2,6 +2,8 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from jacaros.agents.mind.mind import Mind
@@ -10,6 +12,7 @@ from jacaros.mas.history import records
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.goals import GoalRecords
 from jacaros.mas.history.intentions import Looks, Moments
+from jacaros.mas.history.lasting import Lasting
 from jacaros.mas.history.minds import IN_ALL, Allowance, MessageRecords, MindRecords, Shared
 from jacaros.mas.history.programs import ProgramRecords
 from jacaros.mas.history.records import Tell
@@ -18,7 +21,6 @@ from jacaros.runtime.trace import Cause
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:
-    from jacaros.mas.python_agents.host import PythonAgentHost
     from jacaros.sim.ground_truth import Record
     from jacaros.sim.world import World
 
@@ -42,15 +44,6 @@ class Happening(NamedTuple):
 
 Listener = Callable[[float, str, Mapping[str, Any]], None]
 """Called with ``t``, ``event`` and ``data`` of a record. See `Happening`."""
-
-_LASTING: Mapping[str, tuple[str, ...]] = {
-    "run": (),
-    "source": ("file",),
-    "agent": ("agent",),
-    "program": ("agent",),
-    "artifact": ("artifact",),
-}
-"""Records that describe a state: the newest of each is kept while the state lasts, identified by these fields."""
 
 
 def run_record(system: ObservedSystem) -> records.Run:
@@ -79,10 +72,10 @@ class History:
         self.beginning = system.clock.now()
         self.events: deque[Happening] = deque(maxlen=kept)
         self._kept = kept
-        self._lasting: dict[tuple[object, ...], Happening] = {}
+        self._lasting: Lasting[Happening] = Lasting()
         self._listeners: tuple[Listener, ...] = ()
-        self._message_listeners: tuple[Callable[[float, str, Any], None], ...] = ()
-        self._ends: list[Callable[[], None]] = []
+        self._message_listeners: list[Callable[[float, str, Any], None]] = []
+        self._ends = ExitStack()
         self._starts = 0
         self._agents: AgentRecords | None = None
 
@@ -95,18 +88,12 @@ class History:
 
         return end
 
-    def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> Callable[[], None]:
-        """Call *listener* with time, topic and ROS message of each message that has an effect. Return a function that
-        ends this.
+    def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> None:
+        """Call *listener* with time, topic and ROS message of each message that has an effect.
 
         Effects are, for example, a belief change that a plan handles, or a command of an operation.
         """
-        self._message_listeners = (*self._message_listeners, listener)
-
-        def end() -> None:
-            self._message_listeners = tuple(each for each in self._message_listeners if each is not listener)
-
-        return end
+        self._message_listeners.append(listener)
 
     def _hear_message(self, t: float, topic: str, message: Any) -> None:
         for listener in self._message_listeners:
@@ -118,17 +105,18 @@ class History:
         if self._starts > 1:
             return
         self.record(run_record(self._system))
-        self.environment_records = RunEnvironmentRecords(self._system, self.beginning, self.record)
-        self.environment_records.causes.with_effect = self._hear_message
-        self._agents = AgentRecords(self._system, self.environment_records.causes, self.t, self.record)
-        self._ends += [self.environment_records.start(), self._agents.start(), self._observe_world()]
+        environment = RunEnvironmentRecords(self._system, self.beginning, self.record)
+        environment.causes.with_effect = self._hear_message
+        environment.start(self._ends)
+        self._agents = AgentRecords(self._system, environment.causes, self.t, self.record)
+        self._agents.start(self._ends)
+        self._ends.callback(self._system.ros.watch_world(self._observe_world))
 
     def stop(self) -> None:
         """End the observation, unless it was started several times. The records are kept."""
         self._starts = max(0, self._starts - 1)
         if not self._starts:
-            while self._ends:
-                self._ends.pop()()
+            self._ends.close()
 
     def look(self) -> None:
         """Record the current state of the agents: while the run is paused, no timer does so."""
@@ -154,42 +142,18 @@ class History:
         t = round((self._system.clock.now() - self.beginning) * 1e3) / 1e3
         events = self.events
         if len(events) == self._kept:
-            self._keep(events[0])
+            _, kind, forgotten = events[0]
+            self._lasting.take(kind, forgotten, events[0])
         events.append(tuple.__new__(Happening, (t, event, data)))
         for listener in self._listeners:
             listener(t, event, data)
 
-    def _keep(self, forgotten: Happening) -> None:
-        event, data = forgotten.event, forgotten.data
-        fields = _LASTING.get(event)
-        if fields is None:
-            return
-        key = tuple(data.get(field) for field in fields)
-        if data.get("state") in ("ended", "disposed"):
-            for each in ("agent", "program", "artifact"):
-                self._lasting.pop((each, *key), None)
-        else:
-            self._lasting[event, *key] = forgotten
-
     def all(self) -> list[Happening]:
-        """Return the records that a new listener needs: those that describe agents, programs and artifacts, and the
-        newest `events`.
-        """
-        return [*self._lasting.values(), *self.events]
+        """Return the records that a new listener needs: those that describe what lasts, and the newest `events`."""
+        return [*sorted(self._lasting, key=itemgetter(0)), *self.events]
 
-    def _observe_world(self) -> Callable[[], None]:
-        ends: list[Callable[[], None]] = []
-
-        def listen(world: "World") -> None:
-            ends.append(world.ground_truth.listen_to_events(self._hear_world))
-
-        ends.append(self._system.ros.watch_world(listen))
-
-        def end() -> None:
-            for each in ends:
-                each()
-
-        return end
+    def _observe_world(self, world: "World") -> None:
+        self._ends.callback(world.ground_truth.listen_to_events(self._hear_world))
 
     def _hear_world(self, record: "Record") -> None:
         if record["event"] != "battery":  # each percent of each robot, which is also in the frames
@@ -214,24 +178,22 @@ class AgentRecords:
         examinations = Allowance(t, IN_ALL)
         self._shared = Shared(tell, t, links, examinations, ProgramRecords(tell), messages, self._looks)
         self._minds: dict[str, MindRecords] = {}
-        self._ends: dict[str, Callable[[], None]] = {}
+        self._ends: dict[str, ExitStack] = {}
 
-    def start(self) -> Callable[[], None]:
-        """Observe all agents, including future ones. Return a function that ends this."""
+    def start(self, ends: ExitStack) -> None:
+        """Observe all agents, including future ones, until *ends* is closed."""
+        ends.callback(self._end)
         for host in self._system.directory:
             self._began(host)
-        end_watch = self._system.directory.watch(self._changed)
+        ends.callback(self._system.directory.watch(self._changed))
         self._system.mailboxes.observer = self._shared.messages.sent
 
-        def end() -> None:
-            end_watch()
-            self._system.mailboxes.observer = None
-            self._looks.look()
-            self._looks.stop()
-            for name in list(self._ends):
-                self._ends.pop(name)()
-
-        return end
+    def _end(self) -> None:
+        self._system.mailboxes.observer = None
+        self._looks.look()
+        self._looks.stop()
+        for name in list(self._ends):
+            self._ends.pop(name).close()
 
     def look(self) -> None:
         """Record programs and intentions that have changed."""
@@ -256,39 +218,22 @@ class AgentRecords:
         what = "asl" if isinstance(mind, Mind) else "python"
         self._tell(records.Agent(host.name, "began", what))
         self._goals.listen(host)
+        ends = self._ends[host.name] = ExitStack()
         if isinstance(mind, Mind):
-            self._ends[host.name] = self._observe_mind(host, mind)
+            seen = self._minds[host.name] = MindRecords(mind, self._shared)
+            seen.had_turn()
+            ends.callback(seen.end)
+            ends.callback(observe_turns(host, seen.had_turn))
             return
         from jacaros.mas.python_agents.host import PythonAgentHost  # here: most runs have no agent in Python
 
         if isinstance(host, PythonAgentHost):
-            self._ends[host.name] = self._observe_inbox(host)
-
-    def _observe_inbox(self, host: "PythonAgentHost") -> Callable[[], None]:
-        inbox = host.mail.inbox
-        inbox.when_read = self._shared.messages.read
-
-        def end() -> None:
-            inbox.when_read = None
-
-        return end
-
-    def _observe_mind(self, host: AgentHost, mind: Mind) -> Callable[[], None]:
-        records = self._minds[host.name] = MindRecords(mind, self._shared)
-        records.had_turn()
-        end_turns = observe_turns(host, records.had_turn)
-
-        def end() -> None:
-            end_turns()
-            records.end()
-
-        return end
+            host.mail.inbox.when_read = self._shared.messages.read
+            ends.callback(setattr, host.mail.inbox, "when_read", None)
 
     def _ended(self, name: str) -> None:
         self._minds.pop(name, None)
-        end = self._ends.pop(name, None)
-        if end is not None:
-            end()
+        self._ends.pop(name, ExitStack()).close()
         self._goals.drop(name)
         self._tell(records.Agent(name, "ended", ""))
 

@@ -1,6 +1,8 @@
 """Records of intentions: changes in those of agents that had a turn, at most ten times a second."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import zip_longest
+from operator import is_
 from typing import Any, NamedTuple
 
 from jacaros.agents.language.diagnostics import Span
@@ -33,6 +35,8 @@ PERIOD = 0.1
 """Seconds of the run's clock between two checks of an agent."""
 MOST = 100
 """Maximum number of intentions of one agent that are checked."""
+DEEPEST = 24
+"""Maximum number of recorded goals of a stack: the lowest one, and those next to the top."""
 MOST_AGENTS = 50
 """Maximum number of agents that are checked per period. Of thousands of busy agents, some are checked later."""
 
@@ -74,25 +78,26 @@ class Looks:
             self._timer = None
 
 
+class _Level(NamedTuple):
+    """A level of a stack as recorded. Without variables in its goals, it is valid until its step changes."""
+
+    frame: Frame
+    above: Frame | None
+    step: object
+    lasting: bool
+    data: records.Step
+
+    def is_still(self, frame: Frame, above: Frame | None) -> bool:
+        """Return whether nothing of it has changed."""
+        return self.lasting and self.frame is frame and self.above is above and self.step is frame[STEP]
+
+
 class _Seen(NamedTuple):
-    """What was recorded of an intention: its stack, step and wait, compared by identity."""
+    """What was recorded of an intention: the levels of its stack, and what changes with it, compared by identity."""
 
     depth: int
-    frame: Frame
-    step: object
-    waiting: Waiting | None
-    suspended: object
-
-    def is_still(self, intention: Intention) -> bool:
-        """Return whether nothing of it has changed."""
-        frames = intention.frames
-        return (
-            self.depth == len(frames)
-            and self.frame is frames[-1]
-            and self.step is frames[-1][STEP]
-            and self.waiting is intention.waiting
-            and self.suspended is intention.suspended
-        )
+    parts: tuple[object, ...]
+    levels: list[_Level]
 
 
 class IntentionRecords:
@@ -117,8 +122,7 @@ class IntentionRecords:
         looks: Looks,
     ) -> None:
         self._mind, self._cause, self._t = mind, cause, t
-        self._stacks = Stacks(numbers)
-        self._tell, self._looks = tell, looks
+        self._numbers, self._tell, self._looks = numbers, tell, looks
         self._seen: dict[int, _Seen] = {}
         self._is_due = False
 
@@ -134,24 +138,46 @@ class IntentionRecords:
         alive = self._mind.alive
         for number in [number for number in self._seen if number not in alive]:
             del self._seen[number]
-            self._stacks.forget(number)
             self._tell(records.Intention(self._mind.name, number, "over"))
         for _, intention in zip(range(MOST), list(alive.values()), strict=False):
-            seen = self._seen.get(intention.id)
-            if intention.frames and (seen is None or not seen.is_still(intention)):
-                frame = intention.frames[-1]
-                new = _Seen(len(intention.frames), frame, frame[STEP], intention.waiting, intention.suspended)
-                self._seen[intention.id] = new
-                self._record(intention)
+            if frames := intention.frames:
+                parts = frames[-1], frames[-1][STEP], intention.waiting, intention.suspended
+                seen = self._seen.get(intention.id)
+                if seen is None or seen.depth != len(frames) or not all(map(is_, seen.parts, parts)):
+                    levels = self._levels(frames, seen.levels if seen is not None else ())
+                    self._seen[intention.id] = _Seen(len(frames), parts, levels)
+                    self._record(intention, [each.data for each in levels])
 
-    def _record(self, intention: Intention) -> None:
+    def _levels(self, frames: Sequence[Frame], known: Sequence[_Level]) -> list[_Level]:
+        """Return the goals of a stack from the bottom up, with their current steps."""
+        frames = [frame for frame in frames if frame[GOAL][0].functor.namespace != "jacaros"]
+        levels = list(zip(frames, [*frames[1:], None], strict=True))
+        if len(levels) > DEEPEST:
+            levels = [levels[0], *levels[1 - DEEPEST :]]
+        return [
+            before if before is not None and before.is_still(*level) else self._level(*level)
+            for before, level in zip_longest(known[: len(levels)], levels)
+        ]
+
+    def _level(self, frame: Frame, above: Frame | None) -> _Level:
+        plan: Plan = frame[PLAN]
+        if above is None:
+            span, step, lasting = _span(frame), step_of(frame), False
+        else:
+            span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
+            lasting = all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
+        file, line = (plan.file, 0) if span is None else (span.file.name, span.line)
+        data = records.Step(shown_goal(frame), self._numbers[plan], file, line, step)
+        return _Level(frame, above, frame[STEP], lasting, data)
+
+    def _record(self, intention: Intention, stack: list[records.Step]) -> None:
         waiting, suspended, cause = intention.waiting, intention.suspended, self._cause(intention)
         self._tell(
             records.Intention(
                 self._mind.name,
                 intention.id,
                 "suspended" if suspended is not None else "waits" if waiting is not None else "runs",
-                self._stacks.of(intention),
+                stack,
                 "" if waiting is None or waiting.ended else waits_for(waiting),
                 self._t(None if waiting is None else waiting.began),
                 "" if suspended is None else shown(suspended),
@@ -167,70 +193,6 @@ class IntentionRecords:
         return max(selections.of_plan(frame[PLAN]) for frame in intention.frames)
 
 
-# ---- stacks
-
-DEEPEST = 24
-"""Maximum number of recorded goals of a stack: the lowest one, and those next to the top."""
-
-
-class Stacks:
-    """Shows the stacks of intentions. A level whose goals have no variables is unchanged as long as its step is.
-
-    Args:
-        numbers: numbers of the plans.
-    """
-
-    def __init__(self, numbers: PlanNumbers) -> None:
-        self._numbers = numbers
-        self._levels: dict[int, list[_Shown]] = {}
-
-    def of(self, intention: Intention) -> list[records.Step]:
-        """Return the goals of an intention from the bottom up, with their current steps."""
-        frames = [frame for frame in intention.frames if frame[GOAL][0].functor.namespace != "jacaros"]
-        levels = list(zip(frames, [*frames[1:], None], strict=True))
-        if len(levels) > DEEPEST:
-            levels = [levels[0], *levels[1 - DEEPEST :]]
-        known = self._levels.get(intention.id, ())
-        shown = [
-            known[place] if place < len(known) and known[place].is_still(*level) else self._show(*level)
-            for place, level in enumerate(levels)
-        ]
-        self._levels[intention.id] = shown
-        return [each.data for each in shown]
-
-    def forget(self, number: int) -> None:
-        """Forget a finished intention."""
-        self._levels.pop(number, None)
-
-    def _show(self, frame: Frame, above: Frame | None) -> "_Shown":
-        lasting = above is not None and all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
-        return _Shown(frame, above, frame[STEP], lasting, _level(frame, above, self._numbers))
-
-
-class _Shown(NamedTuple):
-    """A level of a stack as recorded, and whether it is valid until its step changes."""
-
-    frame: Frame
-    above: Frame | None
-    step: object
-    lasting: bool
-    data: records.Step
-
-    def is_still(self, frame: Frame, above: Frame | None) -> bool:
-        """Return whether nothing of it has changed."""
-        return self.lasting and self.frame is frame and self.above is above and self.step is frame[STEP]
-
-
-def _level(frame: Frame, above: Frame | None, numbers: PlanNumbers) -> records.Step:
-    plan: Plan = frame[PLAN]
-    if above is not None:
-        span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
-    else:
-        span, step = _span(frame), step_of(frame)
-    file, line = (plan.file, 0) if span is None else (span.file.name, span.line)
-    return records.Step(shown_goal(frame), numbers[plan], file, line, step)
-
-
 def shown_goal(frame: Frame) -> str:
     """Return the goal of a frame without its ``+``: ``!go(dock)``, or the event that it handles: ``+low(9)``."""
     goal = frame[GOAL]
@@ -243,10 +205,8 @@ def place_of(intention: Intention, numbers: PlanNumbers) -> dict[str, Any]:
     if not intention.frames:
         return {}
     frame = intention.frames[-1]
-    span = _span(frame)
-    if span is None:
-        return {"plan": numbers[frame[PLAN]]}
-    return {"plan": numbers[frame[PLAN]], "file": span.file.name, "line": span.line}
+    span, plan = _span(frame), {"plan": numbers[frame[PLAN]]}
+    return plan if span is None else {**plan, "file": span.file.name, "line": span.line}
 
 
 def step_of(frame: Frame) -> str:

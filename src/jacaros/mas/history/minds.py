@@ -15,7 +15,7 @@ from jacaros.agents.terms.values import Annotated, Functor, Term, atom
 from jacaros.mas.history import records
 from jacaros.mas.history.causes import CauseRecords
 from jacaros.mas.history.intentions import IntentionRecords, Looks, Moments, place_of
-from jacaros.mas.history.programs import PlanNumbers, ProgramRecords
+from jacaros.mas.history.programs import ProgramRecords
 from jacaros.mas.history.records import Tell
 from jacaros.mas.history.words import shown, shown_event
 from jacaros.runtime.trace import Cause, Tracer
@@ -24,6 +24,8 @@ PER_SECOND = 10
 """Maximum number of contexts of one agent that are examined per second of the run's clock, at about 50 µs each."""
 IN_ALL = 100
 """The same limit for all agents of a run."""
+_FORGOTTEN = 100
+"""Number of finished intentions whose causes are forgotten at once."""
 MOST_OPTIONS = 12
 """Maximum number of plans of one deliberation that are examined."""
 
@@ -65,105 +67,6 @@ class Allowance:
             self._second, self._taken = second, 0
         self._taken += 1
         return self._taken <= self._most
-
-
-class DeliberationRecords:
-    """Records the deliberations of one agent, and keeps the causes of the plans on its stacks.
-
-    Args:
-        mind: mind of the agent.
-        numbers: numbers of its plans.
-        links: creates links.
-        t: returns seconds of the run's clock.
-        in_all: limits the contexts of all agents that are examined.
-        tell: takes the records.
-    """
-
-    def __init__(
-        self,
-        mind: Mind,
-        numbers: PlanNumbers,
-        links: CauseRecords,
-        t: Callable[[], float],
-        in_all: Allowance,
-        tell: Tell,
-    ) -> None:
-        self._mind, self._numbers, self._links, self._tell = mind, numbers, links, tell
-        self._in_all = in_all
-        self._reasons: dict[int, list[_Reason]] = {}
-        """By intention, the causes of the plans on its stack, the lowest first."""
-        self._candidates: dict[Trigger, list[Plan]] = {}
-        self._allowance = Allowance(t, PER_SECOND)
-
-    def plans_changed(self) -> None:
-        """Compute the candidates again."""
-        self._candidates.clear()
-
-    def cause_of(self, intention: Intention) -> Cause | None:
-        """Return the cause of the plan on top of an intention."""
-        reasons = self._reasons.get(intention.id)
-        while reasons and not reasons[-1].is_on(intention.frames):
-            reasons.pop()
-        return reasons[-1].link if reasons else intention.cause
-
-    def selected(
-        self,
-        goal: Goal,
-        annotations: EventAnnotations,
-        intention: Intention | None,
-        frame: Frame | None,
-        cause: Cause | None,
-    ) -> Cause | None:
-        """Record a deliberation. See `jacaros.agents.mind.state.act.MindObserver`."""
-        plans = self._plans_for(goal[0])
-        if not plans and frame is None and not goal[0].kind:
-            return cause  # no plan is relevant for this event
-        parent = self.cause_of(intention) if intention is not None else cause
-        trigger = shown_event(goal)
-        link = self._links.link("event", trigger, parent)
-        if intention is not None and frame is not None:
-            reason = _Reason(len(intention.frames), frame, link)
-            self._reasons.setdefault(intention.id, []).append(reason)
-        if parent is not None:
-            self._links.need(parent)
-        chosen = None if frame is None else frame[PLAN]
-        place = plans.index(chosen) if chosen in plans else len(plans) if chosen is None else 0
-        self._tell(
-            records.Deliberation(
-                link.id,
-                self._mind.name,
-                trigger,
-                link.parent,
-                None if intention is None else intention.id,
-                None if chosen is None else self._numbers[chosen],
-                self._options(goal, annotations, plans[:place]),
-                [self._numbers[plan] for plan in plans[place + 1 :]],
-            )
-        )
-        return link
-
-    def _plans_for(self, kind: Trigger) -> list[Plan]:
-        found = self._candidates.get(kind)
-        if found is None:
-            found = self._candidates[kind] = self._mind.library.relevant(kind)
-        return found
-
-    def _options(self, goal: Goal, annotations: EventAnnotations, plans: list[Plan]) -> list[records.Option]:
-        options: list[records.Option] = []
-        if not plans:
-            return options
-        contexts = FailingContexts(self._mind, goal, annotations)
-        for plan in plans[:MOST_OPTIONS]:
-            if not (self._allowance.take() and self._in_all.take()):
-                break
-            if contexts.fits(plan):
-                options.append(records.Option(self._numbers[plan], contexts.stop(plan)))
-        return options
-
-    def forget(self) -> None:
-        """Forget the stacks of finished intentions."""
-        for number in [number for number in self._reasons if number not in self._mind.alive]:
-            del self._reasons[number]
 
 
 KEPT = 5_000
@@ -229,7 +132,7 @@ class Shared(NamedTuple):
         tell: takes the records.
         t: returns times.
         links: creates the links of causal chains.
-        examinations: limits the contexts of plans that are examined.
+        examinations: limits the contexts of plans of all agents that are examined.
         programs, messages, looks: record programs and messages, check intentions.
     """
 
@@ -253,11 +156,13 @@ class MindRecords:
     def __init__(self, mind: Mind, shared: Shared) -> None:
         self._mind, self._shared = mind, shared
         self._numbers = shared.programs.begin(mind)
-        self._deliberations = DeliberationRecords(
-            mind, self._numbers, shared.links, shared.t, shared.examinations, shared.tell
+        self.intentions = IntentionRecords(
+            mind, self._numbers, self._cause_of, shared.t, shared.tell, shared.looks
         )
-        cause_of = self._deliberations.cause_of
-        self.intentions = IntentionRecords(mind, self._numbers, cause_of, shared.t, shared.tell, shared.looks)
+        self._reasons: dict[int, list[_Reason]] = {}
+        """By intention, the causes of the plans on its stack, the lowest first."""
+        self._candidates: dict[Trigger, list[Plan]] = {}
+        self._allowance = Allowance(shared.t, PER_SECOND)
         self._message: Cause | None = None
         self._told: dict[int, tuple[Annotations, str]] = {}
         """The texts of annotations, which many beliefs share."""
@@ -276,6 +181,9 @@ class MindRecords:
         if self._plans_changed:
             self._plans_changed = False
             self._shared.programs.record(self._mind, self._numbers)
+        alive = self._mind.alive
+        if len(self._reasons) > 2 * len(alive) + _FORGOTTEN:
+            self._reasons = {number: each for number, each in self._reasons.items() if number in alive}
         self.intentions.had_turn()
 
     # ---- called by the mind
@@ -289,12 +197,37 @@ class MindRecords:
         cause: Cause | None,
     ) -> Cause | None:
         """Record a deliberation."""
-        return self._deliberations.selected(goal, annotations, intention, frame, cause)
+        plans = self._plans_for(goal[0])
+        if not plans and frame is None and not goal[0].kind:
+            return cause  # no plan is relevant for this event
+        parent = self._cause_of(intention) if intention is not None else cause
+        trigger = shown_event(goal)
+        link = self._shared.links.link("event", trigger, parent)
+        if intention is not None and frame is not None:
+            reason = _Reason(len(intention.frames), frame, link)
+            self._reasons.setdefault(intention.id, []).append(reason)
+        if parent is not None:
+            self._shared.links.need(parent)
+        chosen = None if frame is None else frame[PLAN]
+        place = plans.index(chosen) if chosen in plans else len(plans) if chosen is None else 0
+        self._shared.tell(
+            records.Deliberation(
+                link.id,
+                self._mind.name,
+                trigger,
+                link.parent,
+                None if intention is None else intention.id,
+                None if chosen is None else self._numbers[chosen],
+                self._options(goal, annotations, plans[:place]),
+                [self._numbers[plan] for plan in plans[place + 1 :]],
+            )
+        )
+        return link
 
     def cause(self) -> Cause | None:
         """Return the cause of the step, or message, that the mind is processing."""
         current = self._mind.current
-        return self._message if current is None else self._deliberations.cause_of(current)
+        return self._message if current is None else self._cause_of(current)
 
     def place(self, intention: Intention) -> Mapping[str, Any]:
         """Return plan, file and line of an intention's current step."""
@@ -324,8 +257,35 @@ class MindRecords:
 
     def plans_changed(self) -> None:
         """Record the program again at the end of the turn."""
-        self._deliberations.plans_changed()
+        self._candidates.clear()
         self._plans_changed = True
+
+    # ---- deliberations
+
+    def _cause_of(self, intention: Intention) -> Cause | None:
+        """Return the cause of the plan on top of an intention."""
+        reasons = self._reasons.get(intention.id)
+        while reasons and not reasons[-1].is_on(intention.frames):
+            reasons.pop()
+        return reasons[-1].link if reasons else intention.cause
+
+    def _plans_for(self, kind: Trigger) -> list[Plan]:
+        found = self._candidates.get(kind)
+        if found is None:
+            found = self._candidates[kind] = self._mind.library.relevant(kind)
+        return found
+
+    def _options(self, goal: Goal, annotations: EventAnnotations, plans: list[Plan]) -> list[records.Option]:
+        options: list[records.Option] = []
+        if not plans:
+            return options
+        contexts = FailingContexts(self._mind, goal, annotations)
+        for plan in plans[:MOST_OPTIONS]:
+            if not (self._allowance.take() and self._shared.examinations.take()):
+                break
+            if contexts.fits(plan):
+                options.append(records.Option(self._numbers[plan], contexts.stop(plan)))
+        return options
 
     # ---- beliefs
 

@@ -1,6 +1,7 @@
 """Literals in questions, such as ``+alarm(_)`` or ``!go(dock)``, matched against recorded texts."""
 
 import re
+from dataclasses import dataclass
 
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import parse_literal
@@ -14,6 +15,24 @@ from jacaros.errors import UsageError
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
 _PLAIN_NAME = re.compile(r"~?(?:\w+::)?(?:'[^']*'|\w+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A parsed question.
+
+    Attributes:
+        written: as it was asked.
+        kind: one of `jacaros.mas.history.why.KINDS`, or ``name`` (a lone word, which may be a belief, a goal or a label).
+        about: its subject: a literal, a plan, a topic; empty without one.
+        agent, robot: the only ones that the answer is about; empty for all.
+    """
+
+    written: str
+    kind: str = "event"
+    about: str = ""
+    agent: str = ""
+    robot: str = ""
 
 
 class Pattern:

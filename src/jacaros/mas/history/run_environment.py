@@ -3,6 +3,7 @@
 import asyncio
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, Protocol
 
 from msgspec.structs import replace
@@ -57,7 +58,7 @@ class ObservedSystem(Protocol):
 
 
 class RunEnvironmentRecords:
-    """Records the environment of the agents of a system. `start` returns a function that ends this.
+    """Records the environment of the agents of a system.
 
     Args:
         system: the system.
@@ -71,34 +72,31 @@ class RunEnvironmentRecords:
     def __init__(self, system: ObservedSystem, beginning: float, tell: Tell) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
-        self.causes = CauseRecords(system.clock, beginning, tell, self._listener_of)
+        self._moving = RobotRecords(system.clock, tell, self._robot_at, lambda: system.ros.node, self._truths)
+        self.causes = CauseRecords(system.clock, beginning, tell, self._moving.listener_of)
         self._environment = EnvironmentRecords(system.clock, tell, robot_finder(self._robots))
         self._graph = GraphRecords(tell, self.causes)
-        self._moving = RobotRecords(system.clock, tell, self._robot_at, lambda: system.ros.node, self._truths)
         self._timer: Timer | None = None
         self._looked = system.clock.elapsed
         self._looking: asyncio.Task[None] | None = None
 
-    def start(self) -> Callable[[], None]:
-        """Begin to observe. Return a function that ends this."""
+    def start(self, ends: ExitStack) -> None:
+        """Observe until *ends* is closed."""
         system = self._system
-        ends = (
-            system.when_situated(self._environment.observe),
-            self._environment.end,
-            self.causes.listen_to(system.trace),
-            system.listen_to_log(self._logged),
-        )
+        ends.callback(system.listen_to_log(self._logged))
+        ends.callback(self.causes.flush, all_of_them=True)
+        ends.callback(system.trace, None)
+        system.trace(self.causes)
+        ends.callback(self._environment.end)
+        ends.callback(system.when_situated(self._environment.observe))
+        ends.callback(self._stop_looking)
         self._look()
 
-        def end() -> None:
-            if self._timer is not None:
-                self._timer.cancel()
-            if self._looking is not None:
-                self._looking.cancel()
-            for each in ends:
-                each()
-
-        return end
+    def _stop_looking(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._looking is not None:
+            self._looking.cancel()
 
     def _look(self) -> None:
         self._timer = self._clock.call_later(PERIOD, self._look)
@@ -110,9 +108,6 @@ class RunEnvironmentRecords:
         if backend is not None and passed >= self._graph.pause and not is_looking:
             self._looked = self._clock.elapsed
             self._looking = asyncio.get_running_loop().create_task(self._graph.look(backend, passed))
-
-    def _listener_of(self, message: Any) -> Callable[[str, Any], None] | None:
-        return self._moving.listener_of(message)
 
     def _logged(self, text: str, level: str) -> None:
         if level != "debug":

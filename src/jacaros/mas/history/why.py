@@ -16,7 +16,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from jacaros.errors import UsageError
@@ -36,7 +36,7 @@ from jacaros.mas.history.chains import is_written
 from jacaros.mas.history.explanation import Explanation
 from jacaros.mas.history.history import History
 from jacaros.mas.history.past import Past
-from jacaros.mas.history.patterns import Pattern, literal_at, name_of
+from jacaros.mas.history.patterns import Pattern, Question, literal_at, name_of
 from jacaros.mas.history.records import Record, decoded
 
 MOST_NAMES = 12
@@ -90,24 +90,6 @@ _FILLERS = frozenset(
 _STARTS_NAME = re.compile(r"[~a-z]\w*$")
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
-    """A parsed question.
-
-    Attributes:
-        written: as it was asked.
-        kind: one of `KINDS`, or ``name`` (a lone word, which may be a belief, a goal or a label).
-        about: its subject: a literal, a plan, a topic; empty without one.
-        agent, robot: the only ones that the answer is about; empty for all.
-    """
-
-    written: str
-    kind: str
-    about: str = ""
-    agent: str = ""
-    robot: str = ""
-
-
 class _Kind(NamedTuple):
     """A kind of questions: how to ask, each with its meaning; words that tell it; and what answers."""
 
@@ -120,17 +102,17 @@ KINDS: Mapping[str, _Kind] = {
     "stopped": _Kind(
         {"stopped": "why the robot stopped"},
         "stop stopped stops stopping stand stands standing still halt halted",
-        lambda past, asked: explain_stop(past, asked.written, asked.agent, asked.robot),
+        explain_stop,
     ),
     "command": _Kind(
         {"command [TOPIC]": "what led to the last command"},
         "command commands commanded drive drives driving move moves moving",
-        lambda past, asked: explain_command(past, asked.written, asked.about, asked.robot),
+        explain_command,
     ),
     "operation": _Kind(
         {"operation [NAME]": "what led to the last operation"},
         "operation operations",
-        lambda past, asked: explain_operation(past, asked.written, asked.about, asked.agent),
+        explain_operation,
     ),
     "event": _Kind(
         {
@@ -138,27 +120,27 @@ KINDS: Mapping[str, _Kind] = {
             "!GOAL, ?TEST, -!GOAL": "the same for a goal, a test goal or a failure",
         },
         "",
-        lambda past, asked: explain_event(past, asked.written, asked.about, asked.agent),
+        explain_event,
     ),
     "plan": _Kind(
         {"plan @LABEL, plan FILE:LINE": "when a plan was chosen, and why it was not"},
         "",
-        lambda past, asked: explain_plan(past, asked.written, asked.about, asked.agent),
+        explain_plan,
     ),
     "belief": _Kind(
         {"belief BELIEF": "what last changed a belief, such as `battery(_)`"},
         "",
-        lambda past, asked: explain_belief(past, asked.written, asked.about, asked.agent),
+        explain_belief,
     ),
     "waiting": _Kind(
         {"waiting": "what each intention waits for"},
         "wait waits waiting",
-        lambda past, asked: explain_waiting(past, asked.written, asked.agent),
+        explain_waiting,
     ),
     "idle": _Kind(
         {"nothing": "why nothing happens"},
         "nothing idle stuck hang hangs silent",
-        lambda past, asked: explain_idleness(past, asked.written, asked.agent),
+        explain_idleness,
     ),
 }
 """The kinds of questions."""
@@ -310,7 +292,7 @@ class Announcer:
         if event == "ended":
             past = Past.of(self._history.all())
             for asked in self._unmet:
-                self._tell(explain_event(past, asked, asked).text())
+                self._tell(explain_event(past, Question(asked, about=asked)).text())
         elif event in _READERS:
             record = decoded(event, data)
             happened = _READERS[event](record)
@@ -327,7 +309,7 @@ class Announcer:
             case records.Deliberation():
                 return explain_deliberation(past, asked, t, record)
             case records.Belief() if not _has_plan(past, record):
-                return explain_event(past, asked, asked, record.agent)
+                return explain_event(past, Question(asked, about=asked, agent=record.agent))
             case records.Goal():
                 return Explanation(asked, f"{record.agent}: {goal_text(t, record)}", t)
         return None

@@ -45,16 +45,37 @@ def test_old_records_are_dropped_except_those_that_describe_present_agents():
         history.record(records.Agent("ann", "began"))
         history.record(records.Agent("bob", "began"))
         for number in range(3):
-            history.record(records.Ended(number))
+            history.record(records.Log("info", str(number)))
         assert [data for _, _, data in history.all()][:2] == [
             {"agent": "ann", "state": "began"},
             {"agent": "bob", "state": "began"},
         ]
-        assert [data.get("code") for _, _, data in history.events] == [0, 1, 2]
+        assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
         history.record(records.Agent("ann", "ended"))
         for number in range(3):
-            history.record(records.Ended(number))
+            history.record(records.Log("info", str(number)))
         assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
+
+    observed(act)
+
+
+def test_nothing_of_an_ended_agent_lasts():
+    def act(history):
+        for name in ("ann", "bob"):
+            history.record(records.Agent(name, "began"))
+            history.record(records.Belief(name, "+", "kind"))
+            history.record(records.Goal(name, "!go", "pursued", 1))
+            history.record(records.Goal(name, "!go", "suspended", 1))
+        history.record(records.Agent("ann", "ended"))
+        for number in range(3):
+            history.record(records.Log("info", str(number)))
+        assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
+            ("agent", "began"),
+            ("belief", None),
+            ("goal", "pursued"),
+            ("goal", "suspended"),
+        ]
+        assert all(data["agent"] == "bob" for _, _, data in history.all()[:-3])
 
     observed(act)
 
@@ -95,7 +116,7 @@ def test_an_artifact_that_was_disposed_is_not_kept():
             history.record(records.Artifact("/main/lamp", state=state))
         history.record(records.Artifact("/main/door", state="made"))
         for number in range(3):
-            history.record(records.Ended(number))
+            history.record(records.Log("info", str(number)))
         assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
 
     observed(act)
