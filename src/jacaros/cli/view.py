@@ -47,10 +47,10 @@ def command(
         return
     from jacaros.cli.pages import log_address, open_page
     from jacaros.inspector.live.access import Access
-    from jacaros.inspector.live.recorded_view import RecordedView
+    from jacaros.inspector.live.live_view import LiveView
     from jacaros.inspector.live.server import LiveServer, bound_socket
 
-    source = RecordedView(recording)
+    source = LiveView.of_recording(recording)
     access = Access(view_address, view_token)
     server = LiveServer(bound_socket(view_address, view_port), access, source)
 

@@ -10,8 +10,7 @@ from jacaros.cli.outputs import Outputs
 from jacaros.cli.usage import usage_error
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
-from jacaros.inspector.watch import Watch, Watcher
-from jacaros.inspector.watch_of import watch_of
+from jacaros.inspector.watch import Watch, Watcher, watch_of
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
 from jacaros.sim import World

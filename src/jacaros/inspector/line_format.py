@@ -40,7 +40,7 @@ def encoded(data: object, spaced: bool = False) -> bytes:
 
 
 class Lines:
-    """A file of lines (see `jacaros.inspector.recording_file.RecordingFile`)."""
+    """A file of lines (see `jacaros.inspector.recorder.RecordingFile`)."""
 
     def pack(self, records: Sequence[Line]) -> bytes:
         """Return lines of JSON; each begins with its ``kind``."""

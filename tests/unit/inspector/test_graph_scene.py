@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.inspector.graph_scene import GraphScene
-from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
+from jacaros.inspector.graph_scene import GraphScene, can_be_drawn, map_drawing
 from jacaros.inspector.page import frames, lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder

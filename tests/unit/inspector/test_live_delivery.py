@@ -7,12 +7,10 @@ import pytest
 
 from jacaros.inspector.live import delivery as delivering
 from jacaros.inspector.live.commands import Commands
-from jacaros.inspector.live.delivery import QUEUED, Delivery
+from jacaros.inspector.live.delivery import LONGEST, QUEUED, Delivery, LiveRecord, Past, json_text
 from jacaros.inspector.live.live_view import LiveView
-from jacaros.inspector.live.past import Past
-from jacaros.inspector.live.records import LONGEST, FrameRecord, LiveRecord, json_text
 from jacaros.inspector.scene import RobotView
-from jacaros.mas.history.records import Happened, World
+from jacaros.mas.history.records import Frame, Happened, World
 
 
 def event(number: int, name: str, /, **data: object) -> LiveRecord:
@@ -135,7 +133,7 @@ def test_records_are_bounded_and_the_state_is_kept() -> None:
     past.take(event(15, "source", file="bob.asl", text="b."))
     for number in range(16, 116):
         past.take(event(number, "deliberation", id=number))
-        past.take(FrameRecord(1000 + number, float(number), []))
+        past.take(LiveRecord(1000 + number, Frame(float(number), [])))
     state = [each.number for each in past.records()]
     assert state[:9] == [0, 2, 5, 6, 9, 11, 12, 14, 15]
     assert state[9:] == [1112, *range(106, 116), 1113, 1114, 1115]

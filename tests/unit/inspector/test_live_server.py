@@ -17,7 +17,8 @@ from websockets.sync.client import connect as sync_connect
 import jacaros
 from jacaros import Mas, UsageError
 from jacaros.inspector import view
-from jacaros.inspector.live import allowance, server
+from jacaros.inspector.live import server
+from jacaros.inspector.live import timing as allowance
 from jacaros.inspector.live.access import Access
 from jacaros.mas.history import records
 

@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 from devtools import chromium, needs_chromium
 
-from jacaros.inspector.modules import bundle
-from jacaros.inspector.page import STATIC
+from jacaros.inspector.page import STATIC, bundle
 
 
 def evaluated(tmp_path: Path, entry: str, exports: str, expression: str) -> Any:

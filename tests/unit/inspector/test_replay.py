@@ -16,8 +16,7 @@ import pytest
 from devtools import Page, chromium, needs_chromium
 
 from jacaros.errors import JacarosError
-from jacaros.inspector.modules import bundle
-from jacaros.inspector.page import STATIC, lines_of, replay_html, write_replay
+from jacaros.inspector.page import STATIC, bundle, lines_of, replay_html, write_replay
 from jacaros.inspector.picture import picture_svg, write_picture
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording

@@ -9,9 +9,8 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from jacaros.inspector.braille import BrailleMap
 from jacaros.inspector.scene import RobotView
-from jacaros.inspector.terminal_view import TerminalView
+from jacaros.inspector.terminal_view import BrailleMap, TerminalView
 from jacaros.sim import World
 
 
