@@ -7,7 +7,7 @@ import webbrowser
 from collections.abc import Callable
 
 from jacaros.cli.outputs import LOOPBACK, Outputs
-from jacaros.inspector.live.run_view import Place, RunView
+from jacaros.inspector.live.run_view import RunView
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
 
@@ -18,9 +18,8 @@ def serve_pages(mas: System, outputs: Outputs, console: Console) -> RunView:
     Raises:
         UsageError: the page cannot be served at the address.
     """
-    place = Place(outputs.view_address, outputs.view_port, outputs.view_token)
-    view = RunView(mas, place)
-    log_address(view.address, place.address, console.log)
+    view = RunView(mas, outputs.view_address, outputs.view_port, outputs.view_token)
+    log_address(view.address, outputs.view_address, console.log)
     view.awaited = open_page(view.address) is not None
     return view
 

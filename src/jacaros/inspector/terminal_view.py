@@ -98,25 +98,10 @@ class BrailleMap:
         """Return the dots of a character cell, 0 for none."""
         return self._cells.get((column, row), 0)
 
-    def text(self) -> str:
-        """Return the map as lines of text."""
-        return "\n".join(
-            "".join(character(self.bits(column, row)) for column in range(self.columns))
-            for row in range(self.rows)
-        )
-
 
 def character(bits: int) -> str:
     """Return the braille character with these dots; a blank for none."""
     return chr(_EMPTY | bits) if bits else " "
-
-
-def draw_world(world: Mapping[str, Any], columns: int, rows: int) -> BrailleMap:
-    """Draw the walls and furniture of a world."""
-    shown = BrailleMap(world["bounds"], columns, rows)
-    for ax, ay, bx, by in world["walls"]:
-        shown.line(ax, ay, bx, by)
-    return shown
 
 
 # ---- the view
@@ -320,8 +305,10 @@ class TerminalView:
         self._size = size
         robots = max(1, len(self._drawing["robots"]))
         rows = max(6, min(32, size[1] - 2 * robots - _PRINTS - 3))
-        self._walls = draw_world(self._drawing, max(20, size[0] - 2), rows)
-        self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
+        bounds, columns = self._drawing["bounds"], max(20, size[0] - 2)
+        self._walls, self._trail = BrailleMap(bounds, columns, rows), BrailleMap(bounds, columns, rows)
+        for wall in self._drawing["walls"]:
+            self._walls.line(*wall)
 
     def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
         """Return the characters shown instead of dots: closed doors, docks, people, and robots over them."""

@@ -5,9 +5,8 @@ import contextlib
 import time
 from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
 
-from jacaros.inspector.live.access import LOOPBACK, Access
+from jacaros.inspector.live.access import Access
 from jacaros.inspector.live.commands import (
     Commands,
     Text,
@@ -36,27 +35,14 @@ SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where to serve pages.
-
-    Attributes:
-        address: address of this machine; only this machine reaches the loopback address.
-        port: port; 0 for a free one.
-        token: token in the path; None for a random one.
-    """
-
-    address: str = LOOPBACK
-    port: int = 0
-    token: str | None = None
-
-
 class RunView:
     """Serves the live pages of one run.
 
     Args:
         system: the run; already started.
-        place: where to serve.
+        address: address of this machine; only this machine reaches the loopback address.
+        port: port; 0 for a free one.
+        token: token in the path; None for a random one.
 
     Attributes:
         watcher: receives the run.
@@ -67,13 +53,13 @@ class RunView:
         UsageError: the address cannot be used, or the token is invalid.
     """
 
-    def __init__(self, system: System, place: Place) -> None:
+    def __init__(self, system: System, address: str, port: int, token: str | None) -> None:
         self._system = system
         self.awaited = False
         self.commands = Commands(self._note)
         self.watcher = LiveView(system.deployment.name, self.commands)
-        access = Access(place.address, place.token)
-        self._server = LiveServer(bound_socket(place.address, place.port), access, self.watcher)
+        access = Access(address, token)
+        self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
         self._explaining = asyncio.Lock()
         self._rested_at = 0.0
@@ -174,7 +160,7 @@ async def view(
         UsageError: the address cannot be used, or the token is invalid.
         RunEnded: the system is not running.
     """
-    shown = RunView(mas.system, Place(address, port, token))
+    shown = RunView(mas.system, address, port, token)
     watch = watch_of(mas.system, [shown.watcher], live=True)
     watch.start()
     end_prints = mas.on_print(watch.text)

@@ -59,7 +59,7 @@ class Past:
     Attributes:
         end: seconds of the last record.
         links: the links of causal chains by id.
-        deliberations, beliefs, goals, messages, properties: with their times, the oldest first.
+        deliberations, beliefs, goals: with their times, the oldest first.
         programs: the plans of each agent by id, as in the newest ``program``.
         rules: the rules of each agent as text.
         intentions: the newest record of each, by agent and id.
@@ -79,8 +79,6 @@ class Past:
     deliberations: Timed[records.Deliberation] = field(default_factory=list)
     beliefs: Timed[records.Belief] = field(default_factory=list)
     goals: Timed[records.Goal] = field(default_factory=list)
-    messages: Timed[records.Message] = field(default_factory=list)
-    properties: Timed[records.Property] = field(default_factory=list)
     programs: dict[str, dict[Any, records.Plan]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
     intentions: dict[tuple[str, Any], tuple[float, records.Intention]] = field(default_factory=dict)
@@ -103,7 +101,7 @@ class Past:
                 continue
             past.end = max(past.end, t)
             try:
-                past._take(t, event, None if event in FIELDS else decoded(event, data))
+                past._take(t, None if event in FIELDS else decoded(event, data))
             except ValidationError:
                 continue
             if isinstance(robot := data.get("robot"), str) and event not in _WITH_ROBOT:
@@ -111,7 +109,7 @@ class Past:
                 past.robots.add(robot)
         return past
 
-    def _take(self, t: float, event: str, data: Any) -> None:
+    def _take(self, t: float, data: Any) -> None:
         match data:
             case records.Cause():
                 known = self.links.get(data.id)
@@ -124,15 +122,13 @@ class Past:
                 self.links[data.id] = Link(self.links[data.id].t if data.id in self.links else t, cause, data)
             case records.Operation():
                 self._take_operation(t, data)
-            case records.Message():
-                self.messages.append((t, data))
-                if isinstance(data.id, int) and data.id not in self.links:
-                    cause = records.Cause(data.id, "message", data.content, data.cause or 0)
-                    self.links[data.id] = Link(t, cause, data)
+            case records.Message(id=int(number)) if number not in self.links:
+                cause = records.Cause(number, "message", data.content, data.cause or 0)
+                self.links[number] = Link(t, cause, data)
             case _:
-                self._take_state(t, event, data)
+                self._take_state(t, data)
 
-    def _take_state(self, t: float, event: str, data: Any) -> None:
+    def _take_state(self, t: float, data: Any) -> None:
         match data:
             case records.Program():
                 self.programs[data.agent] = {each.id: each for each in data.plans or ()}
@@ -156,10 +152,10 @@ class Past:
                 self.debug = data
             case records.Ended():
                 self.exit_code = data.code
-            case records.Belief() | records.Goal():
-                getattr(self, f"{event}s").append((t, data))
-            case records.Property():
-                self.properties.append((t, data))
+            case records.Belief():
+                self.beliefs.append((t, data))
+            case records.Goal():
+                self.goals.append((t, data))
 
     def _take_operation(self, t: float, data: records.Operation) -> None:
         if data.state != "began":

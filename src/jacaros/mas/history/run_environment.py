@@ -240,8 +240,8 @@ class RobotRecords:
         clock: Clock,
         tell: Tell,
         robot_at: Callable[[str], str],
-        find_robots: "Callable[[], SimNode | None]" = lambda: None,
-        truths: Truths = dict,
+        find_robots: "Callable[[], SimNode | None]",
+        truths: Truths,
     ) -> None:
         self._clock, self._tell, self._robot_at = clock, tell, robot_at
         self._find_robots, self._truths = find_robots, truths

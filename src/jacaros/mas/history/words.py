@@ -2,8 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from collections.abc import Iterable
 from typing import Any
 
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
@@ -14,6 +13,7 @@ from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.operation import OperationRequest
 from jacaros.artifacts.env.values import Out
 from jacaros.artifacts.env.values import text as value_text
+from jacaros.ros.message import field_names
 
 LONGEST = 300
 """Maximum number of characters of a recorded term."""
@@ -116,7 +116,7 @@ def message_text(message: Any) -> str:
 
 
 def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
-    for name in _field_names(message.__class__):
+    for name in field_names(message) or ():
         value = getattr(message, name)
         if isinstance(value, float):
             if value:
@@ -129,13 +129,3 @@ def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
                 found.append(f"{path}{name}=[{len(value)} values]")
         elif name != "header" and depth and len(found) <= _FIELDS:
             _add_fields(value, f"{path}{name}.", depth - 1, found)
-
-
-@lru_cache(256)
-def _field_names(message_class: type) -> Sequence[str]:
-    """Return the names of the fields of a message class, whichever library has created it."""
-    for attribute in ("__dataclass_fields__", "_fields_and_field_types", "__slots__"):
-        names = getattr(message_class, attribute, None)
-        if names is not None:
-            return [name for name in names if not name.startswith("_")]
-    return ()
