@@ -1,9 +1,11 @@
-"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, world_keys.md, and more.
+"""Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, world_keys.md, recordings.md
+and more; and what the page shares with records, src/jacaros/inspector/static/schema.js.
 
-make_reference.py [FOLDER]      FOLDER instead of docs/reference; a test compares the two
+make_reference.py [FOLDER]      FOLDER instead of these folders; a test compares the two
 """
 
 import inspect
+import json
 import math
 import re
 import sys
@@ -23,11 +25,15 @@ from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.motion import WheeledArtifact
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.files.entries import declared_entries
+from jacaros.inspector.recording import NOWHERE
+from jacaros.mas.history.records import EVENTS, VERSION
 from jacaros.plane.shapes import Segment
 from jacaros.sim.data import robot, world
 from jacaros.sim.data.faults import Fault
+from jacaros.sim.data.ground_truth import FIELDS, RobotState
 
 ROOT = Path(__file__).resolve().parent.parent
+REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",
@@ -74,7 +80,9 @@ def main(folder: Path) -> None:
         ("artifacts.md", artifacts()),
         ("grammar.md", grammar()),
         ("world_keys.md", world_keys()),
+        ("recordings.md", recordings()),
         (ACTIONS / "index.md", internal_actions()),
+        (STATIC / "schema.js" if folder == REFERENCE else "schema.js", page_constants()),
     )
     for name, lines in pages:
         (folder / name).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
@@ -110,6 +118,36 @@ def grammar() -> Iterator[str]:
         .rstrip()
     )
     yield "```"
+
+
+def recordings() -> Iterator[str]:
+    """The page about recordings, with the tables of events."""
+    yield NOTE
+    yield "# Recordings\n"
+    for line in (ROOT / "tools" / "recordings.md").read_text(encoding="utf-8").splitlines():
+        if line.startswith("<!-- events"):
+            yield "| event | data |\n|---|---|"
+        if line == "<!-- events of the world -->":
+            yield from (
+                f"| `{kind}` | {', '.join(f'`{name}`' for name in names)} |"
+                for kind, names in FIELDS.items()
+                if kind != "battery"
+            )
+        elif line.startswith("<!-- events: "):
+            for kind in line.removeprefix("<!-- events: ").removesuffix(" -->").split():
+                yield f"| `{kind}` | {' '.join((EVENTS[kind].__doc__ or '').split())} |"
+        else:
+            yield line
+
+
+def page_constants() -> Iterator[str]:
+    """The module of the page with what it shares with the readers in Python."""
+    yield "// Written by tools/make_reference.py from the code; change it there.\n"
+    yield f"/** The version of recordings that this page knows. */\nexport const VERSION = {VERSION};\n"
+    fields = json.dumps(RobotState._fields)
+    yield f"/** The fields of a robot's row in a frame, in their order. */\nexport const ROBOT_STATE = {fields};\n"
+    empty = json.dumps({**NOWHERE, "bounds": None}, indent=2)
+    yield f"/** The drawing of an unknown world. */\nexport const EMPTY = {empty};"
 
 
 def world_keys() -> Iterator[str]:

@@ -1,18 +1,22 @@
 """The generated reference pages are up to date."""
 
+import re
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
+import msgspec
 import pytest
 from pages import ROOT
 
 from jacaros.artifacts.registry import BUILT_IN
 from jacaros.cli.main import COMMANDS
+from jacaros.mas.history.records import EVENTS
+from jacaros.sim.data.ground_truth import FIELDS
 from jacaros.sim.files.world import shipped_worlds
 
-REFERENCE = ROOT / "docs" / "reference"
+REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"
 
 
 @pytest.fixture(scope="module")
@@ -22,10 +26,21 @@ def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("page", ["cli.md", "artifacts.md", "world_keys.md", "internal_actions/index.md"])
+@pytest.mark.parametrize(
+    "page",
+    ["cli.md", "artifacts.md", "world_keys.md", "recordings.md", "internal_actions/index.md", "schema.js"],
+)
 def test_a_generated_page_is_up_to_date(page: str, fresh: Path) -> None:
-    same = (REFERENCE / page).read_text(encoding="utf-8") == (fresh / page).read_text(encoding="utf-8")
-    assert same, f"docs/reference/{page} is out of date: run `make reference`"
+    kept = (STATIC if page == "schema.js" else REFERENCE) / page
+    same = kept.read_text(encoding="utf-8") == (fresh / page).read_text(encoding="utf-8")
+    assert same, f"{kept} is out of date: run `make reference`"
+
+
+def test_the_schema_says_what_each_field_of_an_event_is() -> None:
+    for kind, event in EVENTS.items():
+        if kind not in FIELDS:
+            described = set(re.findall(r"\w+", event.__doc__ or ""))
+            assert {each.encode_name for each in msgspec.structs.fields(event)} <= described, kind
 
 
 def test_every_command_and_artifact_is_described() -> None:

@@ -51,7 +51,6 @@ CACHES = {
     "agents.body.body.keys": "of nothing",
     "agents.body.values.symbol_of": "of a name",
     "mas.mappings.stored_interfaces": "of files of the package",
-    "mas.history.values._field_names": "of a class of messages",
 }
 CONTAINERS = (dict, list, set, deque, bytearray, WeakKeyDictionary, WeakSet, WeakValueDictionary)
 

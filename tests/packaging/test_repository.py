@@ -126,6 +126,7 @@ def test_constraints_hold_all_that_the_base_install_brings_along() -> None:
 def test_the_base_install_has_neither_numpy_nor_rosbags() -> None:
     assert {Requirement(text).name for text in project()["dependencies"]} == {
         "click",
+        "msgspec",
         "rich",
         "ruamel.yaml",
         "websockets",

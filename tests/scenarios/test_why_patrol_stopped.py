@@ -6,8 +6,7 @@ import pytest
 
 from jacaros.cli.main import call
 from jacaros.inspector import Recording
-from jacaros.mas.history.past import Record
-from jacaros.mas.history.well_formed import is_well_formed
+from jacaros.mas.history.records import Record, is_well_formed
 from jacaros.mas.history.why import explain
 from jacaros.mas.replaying import replay_against
 

@@ -10,7 +10,7 @@ from jacaros.artifacts.map import map_files
 from jacaros.artifacts.map.cells import FREE, OBSTACLE
 from jacaros.artifacts.map.map_files import Grid
 from jacaros.files import maps
-from jacaros.inspector.map_drawing import map_drawing
+from jacaros.inspector.graph_scene import map_drawing
 from jacaros.sim import World
 from jacaros.sim.files.map import map_of_world, read_map
 

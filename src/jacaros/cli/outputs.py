@@ -34,7 +34,7 @@ class Outputs:
         replay: file for the replay page, or None.
         ground_truth: file for the ground truth of the world, or None.
         view: ``page`` (in the browser), ``terminal``, or None for no view.
-        view_address, view_port, view_token: where to serve the page; see `jacaros.inspector.live.run_view.Place`.
+        view_address, view_port, view_token: where to serve the page; see `jacaros.inspector.live.run_view.RunView`.
         record_limit: size limit of the recording, in megabytes.
     """
 

@@ -42,11 +42,11 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
         return
     from jacaros.cli.watching import log_address, open_page
     from jacaros.inspector.live.access import Access
-    from jacaros.inspector.live.recorded_view import RecordedView
+    from jacaros.inspector.live.live_view import LiveView
     from jacaros.inspector.live.server import LiveServer, bound_socket
 
     access = Access(view_address, view_token)
-    server = LiveServer(bound_socket(view_address, view_port), access, RecordedView(recording))
+    server = LiveServer(bound_socket(view_address, view_port), access, LiveView.of_recording(recording))
 
     async def serve() -> None:
         await server.start()

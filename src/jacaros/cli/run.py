@@ -203,7 +203,7 @@ def _launch(
 ) -> int:
     def begin(mas: System) -> None:
         if explained:
-            from jacaros.mas.history.announcing import Announcer  # here: few runs are explained
+            from jacaros.mas.history.why import Announcer  # here: few runs are explained
 
             Announcer(mas.keep_history(), explained, mas.console.log).begin()
         if options.fast:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 from jacaros.cli.outputs import LOOPBACK, Outputs, has_display
 from jacaros.cli.usage import usage_error
 from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.watch import Watch, Watcher
-from jacaros.inspector.watch_of import watch_of
+from jacaros.inspector.watch import Watch, Watcher, watch_of
 from jacaros.mas.console import Console
 from jacaros.mas.system import System
 from jacaros.sim.process import GroundTruthFile
@@ -91,11 +90,11 @@ class Watching(ExitStack):
         Raises:
             UsageError: the page cannot be served at the address.
         """
-        from jacaros.inspector.live.run_view import Place, RunView  # here: it imports a server
+        from jacaros.inspector.live.run_view import RunView  # here: it imports a server
 
-        place = Place(self._outputs.view_address, self._outputs.view_port, self._outputs.view_token)
-        view = RunView(mas, place)
-        log_address(view.address, place.address, self.log)
+        address = self._outputs.view_address
+        view = RunView(mas, address, self._outputs.view_port, self._outputs.view_token)
+        log_address(view.address, address, self.log)
         view.awaited = open_page(view.address) is not None
         return view
 

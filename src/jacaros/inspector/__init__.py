@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 from jacaros.exports import exported
 
 if TYPE_CHECKING:
-    from jacaros.inspector.live.view import view
+    from jacaros.inspector.live.run_view import view
     from jacaros.inspector.page import write_replay
     from jacaros.inspector.picture import write_picture
-    from jacaros.inspector.recorder import Recorder
-    from jacaros.inspector.recording import Frame, Recording
-    from jacaros.inspector.run_recording import record
+    from jacaros.inspector.recorder import Recorder, record
+    from jacaros.inspector.recording import Recording
     from jacaros.inspector.scene import RobotView, views_of
     from jacaros.inspector.terminal_view import TerminalView
     from jacaros.inspector.watch import Watch, Watcher
+    from jacaros.mas.history.records import Frame
 
 __all__ = [
     "Frame",
@@ -31,15 +31,15 @@ __all__ = [
 ]
 
 _MODULES = {
-    "jacaros.inspector.live.view": "view",
+    "jacaros.inspector.live.run_view": "view",
     "jacaros.inspector.page": "write_replay",
     "jacaros.inspector.picture": "write_picture",
-    "jacaros.inspector.recorder": "Recorder",
-    "jacaros.inspector.recording": "Frame Recording",
-    "jacaros.inspector.run_recording": "record",
+    "jacaros.inspector.recorder": "Recorder record",
+    "jacaros.inspector.recording": "Recording",
     "jacaros.inspector.scene": "RobotView views_of",
     "jacaros.inspector.terminal_view": "TerminalView",
     "jacaros.inspector.watch": "Watch Watcher",
+    "jacaros.mas.history.records": "Frame",
 }
 """Loaded on first use: recording a run must not import servers, terminals or pictures."""
 

@@ -6,42 +6,45 @@ import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import msgspec
+
+from jacaros.mas.history.records import Line
+
 _MEMBER = 1 << 20
 """Size of the lines in one independently readable part of a compressed file, in bytes."""
 _LEVEL = 1
 _PIECE = 1 << 16
 _GZIP = 31
 """Window of zlib for the gzip format."""
-_BETWEEN = '}, {"kind": "'
-_encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
-
-Data = Mapping[str, Any]
 
 
-def lines_of(records: Sequence[Data]) -> str:
-    """Return records as lines of JSON; each begins with its ``kind``."""
-    # Encoding a list costs half as much as encoding its elements one by one.
-    text = _encode(records)[1:-1]
-    if (
-        text.count(_BETWEEN) != len(records) - 1
-    ):  # a record contains a text that looks like the start of the next
-        text = "\n".join(map(_encode, records))
-    else:
-        text = text.replace(_BETWEEN, '}\n{"kind": "')
-    return f"{text}\n"
+def _as_json(value: Any) -> Any:
+    """Return what JSON has for a value that is of no type of it."""
+    for kind in (str, int, float):
+        if isinstance(value, kind):
+            return kind(value)
+    return dict(value) if isinstance(value, Mapping) else str(value)
+
+
+_encode = msgspec.json.Encoder(enc_hook=_as_json).encode
+
+
+def encoded(data: object, spaced: bool = False) -> bytes:
+    """Return *data* as JSON in one line, with null for NaN and infinity; compact, or *spaced* for people."""
+    try:
+        text = _encode(data)
+        return msgspec.json.format(text, indent=0) if spaced else text
+    except UnicodeEncodeError:  # a lone surrogate, which Python's encoder escapes
+        plain = msgspec.to_builtins(data, enc_hook=_as_json)
+        return json.dumps(plain, separators=None if spaced else (",", ":")).encode()
 
 
 class Lines:
-    """A file of lines (see `jacaros.inspector.recording_file.Format`)."""
+    """A file of lines (see `jacaros.inspector.recorder.RecordingFile`)."""
 
-    def begin(self, header: Data) -> bytes:
-        """Return the line of the header."""
-        return self.pack([header])
-
-    def pack(self, records: Sequence[Data]) -> bytes:
-        """Return lines."""
-        # A lone surrogate is escaped, as in JSON.
-        return lines_of(records).encode("utf-8", "backslashreplace")
+    def pack(self, records: Sequence[Line]) -> bytes:
+        """Return lines of JSON; each begins with its ``kind``."""
+        return b"".join(encoded(each, spaced=True) + b"\n" for each in records)
 
     def end(self) -> bytes:
         """Return nothing: the file is complete."""
@@ -59,7 +62,7 @@ class CompressedLines(Lines):
         self._packer: Any = None
         self._size = 0
 
-    def pack(self, records: Sequence[Data]) -> bytes:
+    def pack(self, records: Sequence[Line]) -> bytes:
         """Return lines, compressed."""
         data = super().pack(records)
         if self._packer is None:

@@ -1,26 +1,26 @@
 """Records and ROS messages in an MCAP file, which Foxglove and ROS's tools open (extra ``mcap``)."""
 
-import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from mcap.writer import CompressionType, Writer
 
-from jacaros.inspector.foxglove import LOG, SCENE, TRANSFORMS, log_line, scene, transforms
+from jacaros.inspector.line_format import encoded
+from jacaros.mas.history.records import Frame, Happened, Heard, Line, Text, World
 from jacaros.ros.message import plain
+from jacaros.sim.data.ground_truth import RobotState
 from jacaros.version import VERSION as JACAROS
 
 _CHUNK = 1 << 16
 """Chunk size in bytes: complete chunks are readable even after a crash."""
-_encode = json.JSONEncoder(ensure_ascii=False, check_circular=False, default=str).encode
 
-Data = Mapping[str, Any]
 Packed = tuple[str, str, Any]
 """Topic, schema and content of a message in the file."""
 
 
 class McapFile:
-    """A file of MCAP (see `jacaros.inspector.recording_file.Format`).
+    """A file of MCAP (see `jacaros.inspector.recorder.Format`).
 
     Each kind of record has a channel ``/jacaros/KIND``, with JSON and a schema for it.  Robots are transforms, the world is
     a scene and what agents print is a log, as Foxglove shows them.  Messages of ROS keep their topics and types, as JSON.
@@ -35,19 +35,14 @@ class McapFile:
         self._robots: list[str] = []
         self._t = 0.0
 
-    def begin(self, header: Data) -> bytes:
-        """Return the beginning of a file, with the world."""
-        return self.pack([header])
-
-    def pack(self, records: Sequence[Data]) -> bytes:
+    def pack(self, records: Sequence[Line]) -> bytes:
         """Return the bytes for the records; the last records may wait for a full chunk."""
         for record in records:
-            self._t = float(record.get("t", self._t))
+            self._t = float(getattr(record, "t", self._t))
             moment = max(0, round(self._t * 1e9))
             for topic, schema, content in self._packed(record):
                 channel = self._channel(topic, schema, content)
-                data = _encode(content).encode("utf-8", "backslashreplace")
-                self._writer.add_message(channel, moment, data, moment)
+                self._writer.add_message(channel, moment, encoded(content), moment)
         return self._stream.take()
 
     def end(self) -> bytes:
@@ -55,37 +50,34 @@ class McapFile:
         self._writer.finish()  # type: ignore[no-untyped-call]
         return self._stream.take()
 
-    def _packed(self, record: Data) -> Iterator[Packed]:
-        kind = record["kind"]
-        if kind == "message":
-            yield record["topic"], record["type"], plain(record["message"])
-        elif kind == "event":
-            yield _topic(record["event"]), f"jacaros.{record['event']}", {"t": record["t"], **record["data"]}
-        else:
-            yield (
-                _topic(kind),
-                f"jacaros.{kind}",
-                {key: each for key, each in record.items() if key != "kind"},
-            )
-        if kind == "world":
-            self._robots = [str(robot["name"]) for robot in record["world"].get("robots", ())]
-            yield "/jacaros/scene", SCENE, scene(record["world"], self._t)
-        elif kind == "frame":
-            yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, record["robots"], self._t)
-        elif kind == "text":
-            yield "/jacaros/output", LOG, log_line(record["agent"], record["text"], self._t)
+    def _packed(self, record: Line) -> Iterator[Packed]:
+        match record:
+            case Heard():
+                yield record.topic, record.type, plain(record.message)
+            case Happened():
+                yield _own(record.event, {"t": record.t, **record.data})
+            case World(world=world):
+                self._robots = [str(robot["name"]) for robot in world.get("robots", ())]
+                yield _own("world", {"version": record.version, "part": record.part, "world": world})
+                yield "/jacaros/scene", SCENE, scene(world, self._t)
+            case Frame(t=t, robots=robots):
+                yield _own("frame", {"t": t, "robots": robots})
+                yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, robots, self._t)
+            case Text(t=t, agent=agent, text=text):
+                yield _own("text", {"t": t, "agent": agent, "text": text})
+                yield "/jacaros/output", LOG, log_line(agent, text, self._t)
 
     def _channel(self, topic: str, schema: str, content: Any) -> int:
         known = self._channels.get((topic, schema))
         if known is None:
-            shape = _encode({"title": schema, **_schema_of(content)}).encode("utf-8", "backslashreplace")
+            shape = encoded({"title": schema, **_schema_of(content)})
             number = self._writer.register_schema(schema, "jsonschema", shape)
             known = self._channels[topic, schema] = self._writer.register_channel(topic, "json", number)
         return known
 
 
-def _topic(kind: str) -> str:
-    return f"/jacaros/{kind}"
+def _own(kind: str, content: Any) -> Packed:
+    return f"/jacaros/{kind}", f"jacaros.{kind}", content
 
 
 _TIMES = ("timestamp", "lifetime")
@@ -129,3 +121,92 @@ class _Taken:
         """Return the bytes written since the last call."""
         pieces, self._pieces = self._pieces, []
         return b"".join(pieces)
+
+
+# ---- message types that Foxglove displays without configuration
+
+TRANSFORMS, SCENE, LOG = "foxglove.FrameTransforms", "foxglove.SceneUpdate", "foxglove.Log"
+WORLD = "map"
+"""Frame of the world; the frame of each robot has the robot's name."""
+_LINE_LIST = 2
+_INFO = 2
+_HEIGHT = 0.2
+_RADIUS = 0.17
+_WALL = {"r": 0.4, "g": 0.4, "b": 0.45, "a": 1.0}
+_BODY = {"r": 0.2, "g": 0.5, "b": 0.9, "a": 0.8}
+_UPRIGHT = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+
+
+def _time(t: float) -> dict[str, int]:
+    seconds = math.floor(t)
+    return {"sec": seconds, "nsec": round((t - seconds) * 1e9)}
+
+
+def _point(x: float, y: float, z: float = 0.0) -> dict[str, float]:
+    return {"x": x, "y": y, "z": z}
+
+
+def transforms(names: Sequence[str], robots: Sequence[RobotState], t: float) -> dict[str, Any]:
+    """Return the poses of robots; *names* of robots discovered late may be missing."""
+    found = []
+    for index, robot in enumerate(robots):
+        found.append(
+            {
+                "timestamp": _time(t),
+                "parent_frame_id": WORLD,
+                "child_frame_id": names[index] if index < len(names) else f"robot {index}",
+                "translation": _point(robot.x, robot.y),
+                "rotation": {"x": 0.0, "y": 0.0, "z": math.sin(robot.yaw / 2), "w": math.cos(robot.yaw / 2)},
+            }
+        )
+    return {"transforms": found}
+
+
+def scene(world: Mapping[str, Any], t: float) -> dict[str, Any]:
+    """Return the walls of a world, and a body for each robot."""
+    walls = [_point(x, y) for ax, ay, bx, by in world.get("walls", ()) for x, y in ((ax, ay), (bx, by))]
+    lines = {
+        "type": _LINE_LIST,
+        "pose": {"position": _point(0.0, 0.0), "orientation": _UPRIGHT},
+        "thickness": 0.03,
+        "scale_invariant": False,
+        "points": walls,
+        "color": _WALL,
+        "colors": [],
+        "indices": [],
+    }
+    entities = [_entity("walls", WORLD, t, {"lines": [lines]})]
+    entities += [
+        _entity(str(robot["name"]), str(robot["name"]), t, {"cylinders": [_body(robot)]})
+        for robot in world.get("robots", ())
+    ]
+    return {"deletions": [], "entities": entities}
+
+
+def _body(robot: Mapping[str, Any]) -> dict[str, Any]:
+    width = 2.0 * float(robot.get("radius", _RADIUS))
+    return {
+        "pose": {"position": _point(0.0, 0.0, _HEIGHT / 2), "orientation": _UPRIGHT},
+        "size": _point(width, width, _HEIGHT),
+        "bottom_scale": 1.0,
+        "top_scale": 1.0,
+        "color": _BODY,
+    }
+
+
+def _entity(name: str, frame: str, t: float, shapes: Mapping[str, Any]) -> dict[str, Any]:
+    kinds = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "texts", "models")
+    return {
+        "timestamp": _time(t),
+        "frame_id": frame,
+        "id": name,
+        "lifetime": {"sec": 0, "nsec": 0},
+        "frame_locked": True,
+        "metadata": [],
+        **{kind: shapes.get(kind, []) for kind in kinds},
+    }
+
+
+def log_line(agent: str, text: str, t: float) -> dict[str, Any]:
+    """Return an agent's output as a log message."""
+    return {"timestamp": _time(t), "level": _INFO, "message": text, "name": agent, "file": "", "line": 0}

@@ -9,16 +9,17 @@ import base64
 import gzip
 import hashlib
 import html
-import json
 import re
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from operator import itemgetter
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from jacaros.inspector.modules import bundle
-from jacaros.inspector.recording import Recording, event_record, text_record, world_record
+from jacaros.errors import JacarosError
+from jacaros.inspector.line_format import encoded
+from jacaros.inspector.recording import Recording
+from jacaros.mas.history.records import VERSION, Happened, Line, Text, World
 
 STATIC = Path(__file__).parent / "static"
 """The page and its modules; a server serves this folder unchanged."""
@@ -81,19 +82,16 @@ def title_of(recording: Recording) -> str:
 
 def packed(recording: Recording) -> str:
     """Return the records of a recording in the format of the page: a line of frames, then a line for each other record."""
-    lines = "\n".join(
-        json.dumps(record, separators=(",", ":"), ensure_ascii=False, default=str)
-        for record in (frames(recording), *records(recording))
-    )
-    return base64.b64encode(gzip.compress(lines.encode("utf-8", "replace"), 9, mtime=0)).decode("ascii")
+    lines = b"\n".join(map(encoded, (frames(recording), *lines_of(recording))))
+    return base64.b64encode(gzip.compress(lines, 9, mtime=0)).decode("ascii")
 
 
-def records(recording: Recording) -> Iterator[dict[str, Any]]:
+def lines_of(recording: Recording) -> Iterator[Line]:
     """Yield the records of a recording except frames, in time order, as in its file."""
-    yield world_record(recording.world)
-    texts = (text_record(*text) for text in recording.texts)
-    events = (event_record(*event) for event in recording.events)
-    yield from sorted((*texts, *events), key=itemgetter("t"))
+    yield World(version=VERSION, world=recording.world)
+    texts = (Text(*text) for text in recording.texts)
+    events = (Happened(*event) for event in recording.events)
+    yield from sorted((*texts, *events), key=attrgetter("t"))
 
 
 def frames(recording: Recording) -> dict[str, Any]:
@@ -126,3 +124,50 @@ def _differences(values: Iterable[float], scale: int) -> list[int]:
 
 def _hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+# ---- modules
+
+_IMPORT = re.compile(r'^import\s*\{([\w\s,]*)\}\s*from\s*"\./(\w+)\.js";$', re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=(?:async )?(?:class|function|const) (\w+))", re.MULTILINE)
+_OTHER_FORM = re.compile(r"^(?:import|export)\b.*", re.MULTILINE)
+
+
+def bundle(folder: Path, entry: str) -> str:
+    """Return one script with the module *entry* (without its suffix) and all modules that it imports.
+
+    Browsers refuse to load modules of a page that was opened as a file.  So each module becomes a function that returns
+    what it exports, in an order in which each comes after those that it imports.  The modules keep to two forms::
+
+        import { one, two } from "./other.js";
+        export class One {        (also function, async function, const)
+
+    Raises:
+        JacarosError: a module has an unsupported import or export, or the imports are circular.
+        OSError: a module cannot be read.
+    """
+    parts: dict[str, str] = {}
+    _add(folder, entry, parts, ())
+    return "\n".join(parts.values())
+
+
+def _add(folder: Path, name: str, parts: dict[str, str], importers: tuple[str, ...]) -> None:
+    if name in importers:
+        raise JacarosError(f"modules import each other: {' -> '.join((*importers, name))}")
+    if name in parts:
+        return
+    source = (folder / f"{name}.js").read_text(encoding="utf-8")
+    for found in _IMPORT.finditer(source):
+        _add(folder, found[2], parts, (*importers, name))
+    # Only the entry, which no module imports, may await at its top level.
+    parts[name] = _as_function(name, source, "" if importers else "async ")
+
+
+def _as_function(name: str, source: str, prefix: str) -> str:
+    exports = _EXPORT.findall(source)
+    body = _IMPORT.sub(r"const {\1} = module_\2;", source)
+    body = _EXPORT.sub("", body)
+    other = _OTHER_FORM.search(body)
+    if other is not None:
+        raise JacarosError(f"{name}.js: import or export of another form: {other[0]}")
+    return f"const module_{name} = ({prefix}() => {{\n{body}\nreturn {{ {', '.join(exports)} }};\n}})();"

@@ -5,12 +5,12 @@ It suits light and dark pages, needs no other files, and is identical for identi
 
 import html
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jacaros.inspector.people import PeopleSeen
 from jacaros.inspector.recording import Recording
+from jacaros.inspector.scene import PersonView, SceneState
 from jacaros.plane.pose import Pose
 from jacaros.sim.data.ground_truth import RobotState
 
@@ -48,19 +48,19 @@ def write_picture(recording: Recording, path: str | Path, width: int = 640) -> N
 
 def picture_svg(recording: Recording, width: int = 640) -> str:
     """Return the SVG text."""
-    sheet = _Sheet(recording, width)
+    sheet, state = _Sheet(recording, width), SceneState(recording.drawing)
+    for event in recording.events:
+        state.event(*event)
     parts = [
         *_floor(sheet, recording.drawing),
         *(sheet.rectangle(room["area"], "area") for room in recording.drawing["rooms"]),
         *_docks(sheet, recording.drawing),
         *_walls(sheet, recording.drawing),
-        *_dirt(sheet, recording),
-    ]
-    parts += [
-        *_doors(sheet, recording),
+        *_dirt(sheet, recording.drawing, state),
+        *_doors(sheet, recording.drawing, state),
         *_paths(sheet, recording),
-        *_objects(sheet, recording),
-        *_people(sheet, recording),
+        *_objects(sheet, recording.drawing, state),
+        *_people(sheet, state.people(recording.duration)),
         *_room_names(sheet, recording),
         *_robots(sheet, recording),
     ]
@@ -117,14 +117,11 @@ def _floor(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
     yield f'<path class="grid" d="{"".join(lines)}"/>'
 
 
-def _dirt(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+def _dirt(sheet: _Sheet, world: dict[str, Any], state: SceneState) -> Iterator[str]:
     """Draw the remaining dirt at the end; darker means more."""
-    left = {
-        (data["room"], data["dirt"]): data["grams"] for _, kind, data in recording.events if kind == "cleaned"
-    }
-    for room in recording.drawing["rooms"]:
+    for room in world["rooms"]:
         for dirt in room.get("dirt", ()):
-            grams = left.get((room["name"], dirt["kind"]), dirt["grams"])
+            grams = state.dirt[room["name"], dirt["kind"]]
             if grams > 0.0:
                 yield sheet.rectangle(dirt["area"], "dirt", f' opacity="{0.3 * grams / dirt["grams"]:.2f}"')
 
@@ -138,41 +135,27 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
         yield f'<path class="bolt" transform="translate({x} {y}) scale({size})" d="{bolt}"/>'
 
 
-def _doors(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+def _doors(sheet: _Sheet, world: dict[str, Any], state: SceneState) -> Iterator[str]:
     """Draw the doors in their state at the end."""
-    doors = {door["name"]: door for door in recording.drawing["doors"]}
-    moves = {
-        data["door"]: kind for _, kind, data in recording.events if kind in ("door_opened", "door_closed")
-    }
-    for name, door in doors.items():
-        opened = moves.get(name, "door_opened" if door["open"] else "") == "door_opened"
+    for door in world["doors"]:
         ax, ay, bx, by = door["segment"]
         line = f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"
-        yield f'<path class="{"open" if opened else "door"}" d="{line}"/>'
+        yield f'<path class="{"open" if state.open[door["name"]] else "door"}" d="{line}"/>'
 
 
-def _objects(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+def _objects(sheet: _Sheet, world: dict[str, Any], state: SceneState) -> Iterator[str]:
     """Draw the objects on the floor at the end, without those that robots carry."""
-    places = {each["name"]: each["place"] for each in recording.drawing["objects"]}
-    for _, kind, data in recording.events:
-        if kind == "placed":
-            places[data["object"]] = (data["x"], data["y"])
-        elif kind == "picked":
-            places.pop(data["object"], None)
-    for each in recording.drawing["objects"]:
-        if each["name"] in places:
-            x, y = places[each["name"]]
+    for each in world["objects"]:
+        if each["name"] in state.places:
+            x, y = state.places[each["name"]]
             fill, size = html.escape(each["color"] or "#5aa05a"), max(3.0, sheet.size(each["radius"]))
             dot = f'<circle style="fill:{fill}" cx="{sheet.x(x)}" cy="{sheet.y(y)}" r="{size}"/>'
             yield f"<g><title>{html.escape(each['name'])}</title>{dot}</g>"
 
 
-def _people(sheet: _Sheet, recording: Recording) -> Iterator[str]:
+def _people(sheet: _Sheet, people: Iterable[PersonView]) -> Iterator[str]:
     """Draw the people who are present at the end, with their paths."""
-    seen = PeopleSeen(recording.drawing)
-    for event in recording.events:
-        seen.event(*event)
-    for person in seen.at(recording.duration):
+    for person in people:
         line = "L".join(f"{sheet.x(x)} {sheet.y(y)}" for x, y in person.path)
         stroke, fill = (
             f' style="{key}:{html.escape(person.color)}"' if person.color else ""

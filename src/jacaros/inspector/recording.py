@@ -1,54 +1,51 @@
 """A recorded run in memory, read from a recorder's file."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
+
+import msgspec
+from msgspec import Struct, ValidationError, convert
 
 from jacaros.errors import JacarosError
 from jacaros.files.texts import LARGEST, file_bytes, printable, text_of
 from jacaros.inspector.line_format import MAGIC, unpacked
-from jacaros.sim.data.ground_truth import FIELDS, RobotState, present_kind
+from jacaros.mas.history.records import VERSION, AnyLine, Data, Frame, Happened, Number, Text, World, decoded
+from jacaros.sim.data.ground_truth import RobotState, present_kind
 
-VERSION = 2
-"""Version of the written format; older versions are read completely, and known records of newer ones."""
 LARGEST_RECORDING = 2**32
 """Maximum size of a recording to read, in bytes."""
 LARGEST_RATIO = 32
 """A compressed recording contains at most this number of times its size, or `LARGEST` bytes: runs reach 8 to 15 times."""
 
 _COLUMNS = len(RobotState._fields)
-_LARGEST = 1e15
+_BEGINNING = '{"kind": '
 
 
-class Frame(NamedTuple):
-    """The robots at a time."""
+class _Robot(Struct):
+    """A robot of a drawing, as far as viewers rely on it."""
 
-    t: float
-    robots: tuple[RobotState, ...]
-
-    def record(self) -> dict[str, Any]:
-        """Return the record of the frame."""
-        return {"kind": "frame", **self._asdict()}
+    name: str
+    radius: Number = 0.0
+    footprint: Sequence[Number] = ()
 
 
-def world_record(world: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of a world: its drawing, see `jacaros.sim.WorldDescription.drawing`."""
-    return {"kind": "world", "version": VERSION, "world": world}
+class _Drawing(Struct):
+    robots: Sequence[_Robot] = ()
+    bounds: Sequence[Number] = ()
 
 
-def text_record(t: float, agent: str, text: str) -> dict[str, Any]:
-    """Return the record of a line of an agent's output."""
-    return {"kind": "text", "t": round(t, 3), "agent": agent, "text": text}
+class _Kind(Struct):
+    kind: str
 
 
-def event_record(t: float, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of an event; *t* is a whole millisecond."""
-    return {"kind": "event", "t": t, "event": event, "data": data}
+_read_line = msgspec.json.Decoder(AnyLine).decode
+_KINDS = ("world", "frame", "text", "event")
 
 
-_NOWHERE: dict[str, Any] = {
+NOWHERE: dict[str, Any] = {
     "name": "",
     "bounds": [-1, -1, 1, 1],
     **{
@@ -103,7 +100,7 @@ class Recording:
     @property
     def drawing(self) -> dict[str, Any]:
         """The drawing of the world, with everything that viewers expect."""
-        return {**_NOWHERE, **self.world}
+        return {**NOWHERE, **self.world}
 
     def rows(self) -> list[list[RobotState]]:
         """The rows of each robot, one per frame; before its discovery, a robot stays where it was discovered."""
@@ -143,95 +140,65 @@ class Recording:
         described = damaged = False
         for number, line in enumerate(lines, 1):
             try:
-                record = _mapping(json.loads(line))
+                record = _record(line)
                 self._take(record)
-                described = described or record["kind"] == "world"
-            except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
+                described = described or isinstance(record, World)
+            except (ValueError, RecursionError) as error:
                 cut_off = number == len(lines) or line.startswith(_BEGINNING)
                 if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
                     damaged = True
                     continue
-                raise _not_a_recording(f"{path}:{number}", _reason(error)) from None
+                raise _not_a_recording(f"{path}:{number}", str(error)) from None
         if not described:
             raise _not_a_recording(str(path), "no line of it describes a world")
         if damaged and not self.warnings:
             self.warnings.append(f"{path} is cut off or damaged: what can be read of it is shown")
 
-    def _take(self, record: dict[str, Any]) -> None:
-        kind = record["kind"]
-        if kind == "world":
-            self.world = _world(record["world"])
-        elif kind == "frame":
-            width = _COLUMNS if not self.warnings else None
-            rows = tuple(_row(row, width) for row in record["robots"])
-            self.frames.append(Frame(_number(record["t"]), rows))
-        elif kind == "text":
-            self.texts.append((_number(record["t"]), _text(record["agent"]), _text(record["text"])))
-        elif kind == "event":
-            self._take_event(_number(record["t"]), _text(record["event"]), _mapping(record["data"]))
+    def _take(self, record: AnyLine | None) -> None:
+        match record:
+            case World():
+                convert(record.world, _Drawing)
+                self.world = record.world
+            case Frame():
+                rows = tuple(_row(row, exactly=not self.warnings) for row in record.robots)
+                self.frames.append(Frame(record.t, rows))
+            case Text():
+                self.texts.append((record.t, record.agent, record.text))
+            case Happened():
+                self._take_event(record.t, present_kind(record.event, record.data), record.data)
 
-    def _take_event(self, t: float, kind: str, data: dict[str, Any]) -> None:
-        kind = present_kind(kind, data)
-        missing = [name for name in FIELDS.get(kind, ()) if name not in data]
-        if not missing:
-            self.events.append((t, kind, data))
-        elif not self.warnings:
-            self.warnings.append(
-                f"events without data are skipped: `{kind}` at {t:g} s without `{missing[0]}`"
-            )
+    def _take_event(self, t: float, kind: str, data: Data) -> None:
+        try:
+            decoded(kind, data)
+            self.events.append((t, kind, dict(data)))
+        except ValidationError as error:
+            if not self.warnings:
+                self.warnings.append(f"malformed events are skipped: `{kind}` at {t:g} s: {error}")
 
 
-def _reason(error: Exception) -> str:
-    """Return the error in a line, as text."""
-    if isinstance(error, KeyError):
-        return f"the key {error} is missing"
-    if isinstance(error, json.JSONDecodeError):
-        return f"invalid JSON: {error.msg}"
-    return str(error)
+def _record(line: str) -> AnyLine | None:
+    """Return the record of a line; None for one of an unknown kind.
+
+    Raises:
+        ValidationError: it is no record.
+        JSONDecodeError: it is not JSON.
+    """
+    try:
+        return _read_line(line)
+    except ValidationError:
+        if msgspec.json.decode(line, type=_Kind).kind in _KINDS:
+            raise
+        return None
+    except ValueError:  # NaN and lone surrogates, which only Python's decoder knows
+        return convert(json.loads(line), AnyLine)  # type: ignore[no-any-return]
 
 
-def _number(value: Any) -> float:
-    """Return a number of a recording that pages and pictures can scale."""
-    if not isinstance(value, int | float) or not -_LARGEST < value < _LARGEST:
-        raise TypeError(f"a number is expected, not {str(value)[:40]}")
-    return value
-
-
-def _text(value: Any) -> str:
-    if not isinstance(value, str):
-        raise TypeError(f"a text is expected, not {str(value)[:40]}")
-    return value
-
-
-def _mapping(value: Any) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise TypeError(f"names with values are expected, not {str(value)[:40]}")
-    return value
-
-
-def _row(values: Any, width: int | None = _COLUMNS) -> RobotState:
-    """Return a robot's row of a frame; without *width*, further columns are dropped."""
-    row = tuple(map(_number, values))
-    if len(row) < _COLUMNS or (width is not None and len(row) != width):
-        raise TypeError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
+def _row(values: Any, exactly: bool) -> RobotState:
+    """Return a robot's row of a frame; unless it has to have *exactly* its columns, further ones are dropped."""
+    row = convert(values, list[Number])
+    if len(row) < _COLUMNS or (exactly and len(row) != _COLUMNS):
+        raise ValidationError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
     return RobotState._make(row[:_COLUMNS])
-
-
-def _world(drawing: Any) -> dict[str, Any]:
-    """Return a drawing of the world that viewers can draw."""
-    world = _mapping(drawing)
-    for robot in world.get("robots", []):
-        _text(_mapping(robot)["name"])
-        _number(robot.get("radius", 0.0))
-        for number in robot.get("footprint", []):
-            _number(number)
-    for number in world.get("bounds", []):
-        _number(number)
-    return world
-
-
-_BEGINNING = '{"kind": '
-"""Maximum size of a line."""
 
 
 def older_part(path: Path) -> Path:

@@ -9,7 +9,7 @@ import math
 import sys
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, TextIO, cast
 
@@ -17,9 +17,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from jacaros.inspector.braille import BrailleMap, character, draw_world
-from jacaros.inspector.people import PeopleSeen
-from jacaros.inspector.scene import UNKNOWN, RobotView
+from jacaros.inspector.scene import UNKNOWN, RobotView, SceneState
 from jacaros.inspector.terminal_console import TerminalConsole
 from jacaros.runtime.output import Output, Wrapped
 
@@ -34,6 +32,79 @@ _DOOR = ("▒", "bold yellow")
 _OPEN = ("pursued", "resumed", "suspended")
 _INTENTIONS = 4
 """Maximum number of intentions shown for one agent."""
+
+
+# ---- a map of braille dots: two by four dots per character cell
+
+_DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+_EMPTY = 0x2800
+
+
+class BrailleMap:
+    """A part of the plane on character cells, as large as possible.
+
+    Attributes:
+        columns, rows: character cells in use.
+
+    Args:
+        bounds: left, bottom, right, top in metres.
+        columns, rows: available character cells.
+    """
+
+    def __init__(self, bounds: Iterable[float], columns: int, rows: int) -> None:
+        self._left, bottom, right, self._top = bounds
+        width, height = max(0.1, right - self._left), max(0.1, self._top - bottom)
+        # One dot stays free at each edge, so that the border is visible.
+        self._scale = min((columns * 2 - 2) / width, (rows * 4 - 2) / height)
+        self.columns = min(columns, int(width * self._scale) // 2 + 1)
+        self.rows = min(rows, int(height * self._scale) // 4 + 1)
+        self._cells: dict[tuple[int, int], int] = {}
+
+    def dot_of(self, x: float, y: float) -> tuple[int, int]:
+        """Return column and row of the dot for a point (metres); it may be outside."""
+        return round((x - self._left) * self._scale), round((self._top - y) * self._scale)
+
+    def cell_of(self, x: float, y: float) -> tuple[int, int]:
+        """Return column and row of the character cell for a point; it may be outside."""
+        column, row = self.dot_of(x, y)
+        return column // 2, row // 4
+
+    def cells_between(self, ax: float, ay: float, bx: float, by: float) -> set[tuple[int, int]]:
+        """Return the character cells of a straight line."""
+        return {(column // 2, row // 4) for column, row in self._dots_between(ax, ay, bx, by)}
+
+    def point(self, x: float, y: float) -> None:
+        """Set the dot for a point."""
+        self._set(*self.dot_of(x, y))
+
+    def line(self, ax: float, ay: float, bx: float, by: float) -> None:
+        """Set the dots of a straight line."""
+        for column, row in self._dots_between(ax, ay, bx, by):
+            self._set(column, row)
+
+    def _dots_between(self, ax: float, ay: float, bx: float, by: float) -> Iterator[tuple[int, int]]:
+        (first_column, first_row), (last_column, last_row) = self.dot_of(ax, ay), self.dot_of(bx, by)
+        across, down = last_column - first_column, last_row - first_row
+        steps = max(abs(across), abs(down), 1)
+        for step in range(steps + 1):
+            yield first_column + round(across * step / steps), first_row + round(down * step / steps)
+
+    def _set(self, column: int, row: int) -> None:
+        if 0 <= column < self.columns * 2 and 0 <= row < self.rows * 4:
+            cell = (column // 2, row // 4)
+            self._cells[cell] = self._cells.get(cell, 0) | _DOTS[row % 4][column % 2]
+
+    def bits(self, column: int, row: int) -> int:
+        """Return the dots of a character cell, 0 for none."""
+        return self._cells.get((column, row), 0)
+
+
+def character(bits: int) -> str:
+    """Return the braille character with these dots; a blank for none."""
+    return chr(_EMPTY | bits) if bits else " "
+
+
+# ---- the view
 
 
 class Screen(Wrapped):
@@ -79,8 +150,7 @@ class TerminalView:
     ) -> None:
         self._screen = Screen(stream or sys.stderr) if console is None else None
         self._drawing: Mapping[str, Any] = {}
-        self._open: dict[str, bool] = {}
-        self._people = PeopleSeen({})
+        self._state = SceneState({})
         self._console = console if console is not None else TerminalConsole(file=cast(TextIO, self._screen))
         self._wall = wall
         self._live: Live | None = None
@@ -105,8 +175,7 @@ class TerminalView:
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world; when it changes to another one, the path so far is lost."""
         self._drawing = drawing
-        self._open = {door["name"]: door["open"] for door in drawing.get("doors", ())}
-        self._people = PeopleSeen(drawing)
+        self._state = SceneState(drawing)
         self._size = (0, 0)
 
     def frame(self, t: float, robots: Sequence[RobotView]) -> None:
@@ -133,9 +202,7 @@ class TerminalView:
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Process an event; goals, doors and people are shown."""
-        self._people.event(t, kind, data)
-        if kind in ("door_opened", "door_closed"):
-            self._open[data["door"]] = kind == "door_opened"
+        self._state.event(t, kind, data)
         if kind != "goal":
             return
         goal, state = str(data.get("goal", "")), str(data.get("state", ""))
@@ -238,18 +305,20 @@ class TerminalView:
         self._size = size
         robots = max(1, len(self._drawing["robots"]))
         rows = max(6, min(32, size[1] - 2 * robots - _PRINTS - 3))
-        self._walls = draw_world(self._drawing, max(20, size[0] - 2), rows)
-        self._trail = BrailleMap(self._drawing["bounds"], max(20, size[0] - 2), rows)
+        bounds, columns = self._drawing["bounds"], max(20, size[0] - 2)
+        self._walls, self._trail = BrailleMap(bounds, columns, rows), BrailleMap(bounds, columns, rows)
+        for wall in self._drawing["walls"]:
+            self._walls.line(*wall)
 
     def _marks(self, shown: BrailleMap) -> dict[tuple[int, int], tuple[str, str]]:
         """Return the characters shown instead of dots: closed doors, docks, people, and robots over them."""
         marks = {}
         for door in self._drawing.get("doors", ()):
-            if not self._open[door["name"]]:
+            if not self._state.open[door["name"]]:
                 marks.update(dict.fromkeys(shown.cells_between(*door["segment"]), _DOOR))
         for dock in self._drawing["docks"]:
             marks[shown.cell_of(dock["pose"][0], dock["pose"][1])] = ("◎", "bold yellow")
-        for person in self._people.at(self._t):
+        for person in self._state.people(self._t):
             marks[shown.cell_of(person.x, person.y)] = ("☻", "bold white")
         for index, robot in enumerate(self._robots):
             arrow = _ARROWS[round(robot.yaw / (math.pi / 4)) % 8]

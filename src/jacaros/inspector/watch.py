@@ -1,10 +1,11 @@
 """Samples a running world many times per second of the run's clock, for a recorder and views."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
-from jacaros.inspector.scene import RobotView, Scene
+from jacaros.inspector.scene import EmbeddedScene, RobotView, Scene
 from jacaros.mas.history.history import History
+from jacaros.mas.system import System
 from jacaros.runtime.clock import Clock, Timer
 
 PERIOD, LIVE_PERIOD = 0.3, 0.05
@@ -16,7 +17,10 @@ REST = 1.0
 
 
 class Watcher(Protocol):
-    """Receives the records of a run: a `jacaros.inspector.recorder.Recorder` or a view."""
+    """Receives the records of a run: a `jacaros.inspector.recorder.Recorder` or a view.
+
+    One with a true attribute `takes_messages` has a method ``message``, too, which takes ROS messages that had an effect.
+    """
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Receive the world, before everything else, and again when more of it is known."""
@@ -29,16 +33,6 @@ class Watcher(Protocol):
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Receive an event."""
-
-
-@runtime_checkable
-class MessageWatcher(Protocol):
-    """A watcher that also receives ROS messages while `takes_messages` is true."""
-
-    takes_messages: bool
-
-    def message(self, t: float, topic: str, message: Any) -> None:
-        """Receive a message that had an effect."""
 
 
 class Watch:
@@ -81,8 +75,8 @@ class Watch:
                 self.event(*happening)
             for watcher in self.watchers:
                 self._stop_listening.append(self._history.listen(watcher.event))
-                if isinstance(watcher, MessageWatcher) and watcher.takes_messages:
-                    self._history.listen_to_messages(watcher.message)
+                if getattr(watcher, "takes_messages", False):
+                    self._history.listen_to_messages(watcher.message)  # type: ignore[attr-defined]
             self._history.start()
 
     def _show_world(self, drawing: Mapping[str, Any]) -> None:
@@ -140,3 +134,24 @@ class Watch:
             self._history.stop()
             while self._stop_listening:
                 self._stop_listening.pop()()
+
+
+def watch_of(mas: System, watchers: list[Watcher], live: bool = False) -> Watch:
+    """Create the watch of a started system; its embedded world may be created later.
+
+    Args:
+        mas: the system.
+        watchers: receive the records.
+        live: whether a live page is among the watchers.
+    """
+    period = LIVE_PERIOD if live and not mas.clock.virtual else PERIOD
+    return Watch(mas.clock, watchers, _scene_of(mas), mas.history(), period)
+
+
+def _scene_of(mas: System) -> Scene:
+    backend = mas.ros.joined
+    if mas.ros.world is not None or backend is None or backend.name == "memory":
+        return EmbeddedScene(lambda: mas.ros.world)
+    from jacaros.inspector.graph_scene import GraphScene  # here: only for runs on a real graph
+
+    return GraphScene(backend, mas.clock, mas.deployment.name)

@@ -188,7 +188,7 @@ def test_an_internal_error_prints_a_traceback_and_the_command(
 
 NOT_FOR_A_LONE_PROGRAM = (
     # other people's: robots, worlds, pictures
-    *("numpy", "rosbags", "rich", "ruamel", "rclpy", "rospy", "yaml"),
+    *("msgspec", "numpy", "rosbags", "rich", "ruamel", "rclpy", "rospy", "yaml"),
     # Python's own that are slow to load
     *("argparse", "decimal", "difflib", "http.server", "importlib.metadata", "importlib.resources"),
     *("multiprocessing", "sqlite3", "tempfile", "unittest", "xml", "zipfile"),

@@ -4,7 +4,7 @@ import io
 
 from rich.console import Console
 
-from jacaros.inspector.page import records
+from jacaros.inspector.page import lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.terminal_view import TerminalView
@@ -45,4 +45,4 @@ def test_the_picture_shows_the_doors_as_they_are_at_the_end() -> None:
     recorder.event(2.0, "door_closed", {"door": "a", "robot": ""})
     recorder.event(2.0, "door_closed", {"door": "b", "robot": ""})
     assert picture_svg(recorder.recording).count('class="door"') == 2
-    assert [door["name"] for door in next(records(recorder.recording))["world"]["doors"]] == ["a", "b"]
+    assert [door["name"] for door in next(lines_of(recorder.recording)).world["doors"]] == ["a", "b"]

@@ -9,9 +9,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.inspector.graph_scene import GraphScene
-from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
-from jacaros.inspector.page import frames, records
+from jacaros.inspector.graph_scene import GraphScene, can_be_drawn, map_drawing
+from jacaros.inspector.page import frames, lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
@@ -185,7 +184,7 @@ def test_a_world_discovered_late_is_recorded(tmp_path: Path) -> None:
     recording = Recording.read(path)
     assert recording.robots == ["robot_0", "robot_1"]
     shown = frames(recording)
-    assert next(records(recording))["world"]["name"] == "late"
+    assert next(lines_of(recording)).world["name"] == "late"
     for robot, x in zip(shown["robots"], (-1000, 1000), strict=True):
         assert 0 < len(robot["x"]) < len(shown["t"]), "nothing was known at first"
         assert robot["x"][0] == x

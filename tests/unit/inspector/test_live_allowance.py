@@ -4,8 +4,8 @@ import asyncio
 
 import pytest
 
-from jacaros.inspector.live import allowance
-from jacaros.inspector.live.allowance import AHEAD, SHARE, Allowances, metered
+from jacaros.inspector.live import timing as allowance
+from jacaros.inspector.live.timing import AHEAD, SHARE, Allowances, metered
 
 
 class Time:

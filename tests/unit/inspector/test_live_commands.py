@@ -14,7 +14,7 @@ from jacaros.artifacts import Artifact, operation
 from jacaros.inspector import view
 from jacaros.inspector.live import run_view
 from jacaros.mas.history.explanation import Explanation
-from jacaros.mas.history.past import Record
+from jacaros.mas.history.records import Record
 from jacaros.mas.history.why import explain
 
 WORLD = """
@@ -183,7 +183,7 @@ def test_the_console_answers(line: str, result: str) -> None:
         ("?ready(", "expected"),
         ("+3", "expected a literal"),
         ("! ", "expected ?query, !goal"),
-        ("", "`text` must be a text"),
+        ("", "Expected `str` matching regex"),
     ],
 )
 def test_the_console_reports_errors_in_one_line(line: str, why: str) -> None:
@@ -265,8 +265,8 @@ def test_a_text_of_a_command_has_a_largest_length() -> None:
             name = command.pop("do")
             await done(page, name, agent="bob", **{**command, "text": command["text"].ljust(2000)})
             why = await refused(page, name, agent="bob", **{**command, "text": command["text"].ljust(2001)})
-            assert why == "`text` is longer than 2000 characters"
-        assert "longer than 2000" in await refused(page, "why", question="x" * 2001)
+            assert why == "Expected `str` of length <= 2000 - at `$.text`"
+        assert "of length <= 2000" in await refused(page, "why", question="x" * 2001)
 
     commanding(test)
 
@@ -307,9 +307,9 @@ def test_an_operation_is_executed() -> None:
         ({"do": "nothing"}, "unknown command here: `nothing`"),
         ({}, "unknown command here"),
         ({"do": ["x"]}, "unknown command here"),
-        ({"do": "belief"}, "`agent` must be a text"),
-        ({"do": "belief", "agent": "eve"}, "unknown agent: `eve`"),
-        ({"do": "belief", "agent": 3}, "`agent` must be a text"),
+        ({"do": "belief"}, "Object missing required field `agent`"),
+        ({"do": "belief", "agent": "eve", "text": "x", "op": "+"}, "unknown agent: `eve`"),
+        ({"do": "belief", "agent": 3}, "Expected `str`, got `int` - at `$.agent`"),
         ({"do": "belief", "agent": "bob", "text": "x", "op": "*"}, "`op` must be one of +, -"),
     ],
 )
@@ -344,8 +344,10 @@ def test_a_robot_is_moved() -> None:
         assert "a wall is in the way" in await refused(page, "move_robot", robot="turtlebot", x=0, y=2)
         assert "outside of the world" in await refused(page, "move_robot", robot="turtlebot", x=9, y=2)
         assert "unknown robot 'r2'" in await refused(page, "move_robot", robot="r2", x=1, y=2)
-        assert "`x` must be a number" in await refused(page, "move_robot", robot="turtlebot", x="1", y=2)
-        assert "`yaw` must be a number" in await refused(
+        assert "Expected `float`, got `str` - at `$.x`" in await refused(
+            page, "move_robot", robot="turtlebot", x="1", y=2
+        )
+        assert "got `bool` - at `$.yaw`" in await refused(
             page, "move_robot", robot="turtlebot", x=1, y=1, yaw=True
         )
 
@@ -420,7 +422,9 @@ def test_a_fault_begins_and_ends() -> None:
             await done(page, "fault", name="stuck", on=False)
             assert mas.world.faults.at_work == []
             assert "unknown fault 'fire'" in await refused(page, "fault", name="fire", on=True)
-            assert "true or false" in await refused(page, "fault", name="stuck", on="yes")
+            assert "Expected `bool`, got `str` - at `$.on`" in await refused(
+                page, "fault", name="stuck", on="yes"
+            )
 
     jacaros.run(main())
 
@@ -465,7 +469,7 @@ def test_a_breakpoint_stops_the_run() -> None:
         await done(page, "continue")
         await mas.agent("bob").until("at(dock)", 5)
         assert "not set" in await refused(page, "breakpoint", op="remove", at=at)
-        assert "`at` must describe" in await refused(page, "breakpoint", op="add", at="here")
+        assert "got `str` - at `$.at`" in await refused(page, "breakpoint", op="add", at="here")
         assert "invalid breakpoint" in await refused(page, "breakpoint", op="add", at={"line": 3})
         assert "must be one of" in await refused(page, "step", what="mile")
 
@@ -530,7 +534,7 @@ def test_a_question_is_answered() -> None:
         await done(page, "goal", agent="bob", op="post", text="go(dock)")
         await mas.agent("bob").until("at(dock)", 5)
         assert "!go(dock) achieved" in str(await done(page, "why", question="!go(dock)"))
-        assert "`question` must be a text" in await refused(page, "why")
+        assert "missing required field `question`" in await refused(page, "why")
         assert await refused(page, "why", question="gibberish of no kind at all")
 
     commanding(test)

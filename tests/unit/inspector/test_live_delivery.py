@@ -7,16 +7,15 @@ import pytest
 
 from jacaros.inspector.live import delivery as delivering
 from jacaros.inspector.live.commands import Commands
-from jacaros.inspector.live.delivery import QUEUED, Delivery
+from jacaros.inspector.live.delivery import LONGEST, QUEUED, Delivery, LiveRecord, Past, json_text
 from jacaros.inspector.live.live_view import LiveView
-from jacaros.inspector.live.past import Past
-from jacaros.inspector.live.records import LONGEST, LiveRecord, json_text
 from jacaros.inspector.scene import RobotView
+from jacaros.mas.history.records import Frame, Happened, World
 
 
 def event(number: int, name: str, /, **data: object) -> LiveRecord:
     """A record of an event."""
-    return LiveRecord(number, {"kind": "event", "t": float(number), "event": name, "data": data})
+    return LiveRecord(number, Happened(float(number), name, data))
 
 
 def received(delivery: Delivery) -> list[Any]:
@@ -116,7 +115,7 @@ def test_a_slow_page_does_not_restart_all_the_time(monkeypatch: pytest.MonkeyPat
 
 def test_records_are_bounded_and_the_state_is_kept() -> None:
     past = Past(events=10, frames=3)
-    past.take(LiveRecord(0, {"kind": "world", "version": 2, "world": {"name": "lab"}}))
+    past.take(LiveRecord(0, World(world={"name": "lab"})))
     past.take(event(1, "source", file="bob.asl", text="a."))
     past.take(event(2, "belief", agent="bob", op="+", belief="kept"))
     past.take(event(3, "belief", agent="bob", op="+", belief="gone"))
@@ -134,7 +133,7 @@ def test_records_are_bounded_and_the_state_is_kept() -> None:
     past.take(event(15, "source", file="bob.asl", text="b."))
     for number in range(16, 116):
         past.take(event(number, "deliberation", id=number))
-        past.take(LiveRecord(1000 + number, {"kind": "frame", "t": float(number), "robots": []}, "frame"))
+        past.take(LiveRecord(1000 + number, Frame(float(number), [])))
     state = [each.number for each in past.records()]
     assert state[:9] == [0, 2, 5, 6, 9, 11, 12, 14, 15]
     assert state[9:] == [1112, *range(106, 116), 1113, 1114, 1115]
@@ -145,7 +144,7 @@ def test_records_are_bounded_and_the_state_is_kept() -> None:
     [
         ({"a": float("nan"), "b": [float("inf"), 1.5]}, '{"a":null,"b":[null,1.5]}'),
         ({"a": "\ud800 \u2028 é"}, '{"a":"\\ud800 \\u2028 \\u00e9"}'),
-        ({"a": {1}}, '{"a":"{1}"}'),
+        ({"a": str}, '{"a":"<class \'str\'>"}'),
         ({"a": (1, 2)}, '{"a":[1,2]}'),
     ],
 )

@@ -17,8 +17,10 @@ from websockets.sync.client import connect as sync_connect
 import jacaros
 from jacaros import Mas, UsageError
 from jacaros.inspector import view
-from jacaros.inspector.live import allowance, server
+from jacaros.inspector.live import server
+from jacaros.inspector.live import timing as allowance
 from jacaros.inspector.live.access import Access
+from jacaros.mas.history import records
 
 TOKEN = "a-token-that-tests-know"
 COUNTS = "!count(0). +!count(N) <- -+counted(N); .wait(10); !count(N + 1)."
@@ -345,7 +347,7 @@ def test_a_blocked_page_is_disconnected(monkeypatch: pytest.MonkeyPatch) -> None
         socket.transport.pause_reading()
         async with live_page(address) as page:
             for index in range(3000):
-                mas.system.history().record("log", {"level": "info", "text": f"{index} {'x' * 4000}"})
+                mas.system.history().record(records.Log("info", f"{index} {'x' * 4000}"))
                 if index % 300 == 0:
                     await asyncio.sleep(0)
             await page.until(lambda: any(f"2999 {'x' * 9}" in str(each) for each in page.records[-500:]))

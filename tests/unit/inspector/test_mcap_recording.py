@@ -98,7 +98,7 @@ def test_a_long_recording_starts_a_second_complete_part(tmp_path: Path) -> None:
         recorder.event(number / 10, "noise", {"bits": f"{(number * 2654435761) ** 40:x}"})
     recorder.close()
     parts = channels(path.with_name("run.mcap.1")), channels(path)
-    assert [content["part"] for _, _, content in parts[1]["/jacaros/world"]] != []
+    assert [content["part"] > 1 for _, _, content in parts[1]["/jacaros/world"]] == [True]
     numbers = [round(content["t"] * 10) for part in parts for _, _, content in part["/jacaros/noise"]]
     assert numbers == list(range(6000 - len(numbers), 6000))
 

@@ -4,15 +4,16 @@ import json
 import re
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import jacaros
 from jacaros.inspector import Recording
-from jacaros.inspector.page import records
+from jacaros.inspector.page import lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
+from jacaros.mas.history.records import EVENTS
 from jacaros.sim import GroundTruth, World
-from jacaros.sim.data.ground_truth import FIELDS
 
 WORLD = """
 size: [4, 4]
@@ -47,7 +48,7 @@ def test_the_picture_shows_objects_at_their_final_places() -> None:
 def test_cliffs_are_in_the_picture_and_all_of_it_reaches_the_replay_page() -> None:
     recorder = recorded()
     assert "<title>cliff</title>" in picture_svg(recorder.recording)
-    world = next(records(recorder.recording))["world"]
+    world = next(lines_of(recorder.recording)).world
     assert world["cliffs"] == [[1, 1, 2, 2]]
     assert world["objects"][0] == {"name": "cup", "place": [1, 0], "radius": 0.03, "color": "#c0392b"}
 
@@ -91,7 +92,9 @@ def test_an_event_that_lacks_what_its_readers_need_is_skipped_with_a_warning(tmp
     (tmp_path / "run.jsonl").write_text(f"{json.dumps(header)}\n{json.dumps(event)}\n", encoding="utf-8")
     recording = Recording.read(tmp_path / "run.jsonl")
     assert recording.events == []
-    assert recording.warnings == ["events without data are skipped: `picked` at 2.5 s without `object`"]
+    assert recording.warnings == [
+        "malformed events are skipped: `picked` at 2.5 s: Object missing required field `object`"
+    ]
 
 
 def test_the_page_has_words_only_for_what_an_event_of_the_world_has() -> None:
@@ -103,10 +106,10 @@ def test_the_page_has_words_only_for_what_an_event_of_the_world_has() -> None:
         for name, text in zip(parts[1::2], parts[2::2], strict=True)
     }
     assert {"placed", "robot_placed", "docked", "fault"} <= uses.keys()
-    optional = {"fault": {"why"}, "debug": {"state", "why"}}
+    optional = {"fault": {"why"}}
     for name, used in uses.items():
-        if name in FIELDS:
-            assert used - optional.get(name, set()) <= set(FIELDS[name]), name
+        known = {each.encode_name for each in msgspec.structs.fields(EVENTS[name])}
+        assert used - optional.get(name, set()) <= known, name
 
 
 @pytest.mark.parametrize("kind", ["picked", "robot_placed"])

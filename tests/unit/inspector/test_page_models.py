@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 from devtools import chromium, needs_chromium
 
-from jacaros.inspector.modules import bundle
-from jacaros.inspector.page import STATIC
+from jacaros.inspector.page import STATIC, bundle
 
 
 def evaluated(tmp_path: Path, entry: str, exports: str, expression: str) -> Any:
@@ -74,3 +73,9 @@ def test_models_of_a_long_run_stay_small(tmp_path: Path) -> None:
     assert all(count <= 100_001 for count in counts[:3])
     assert counts[3] == 60, "the longest chain that is shown"
     assert counts[4] == 0
+
+
+@needs_chromium
+def test_a_number_that_is_rounded_to_zero_has_no_minus(tmp_path: Path) -> None:
+    shown = "[decimals(-0.004, 2), decimals(-0, 1), decimals(-0.006, 2), decimals(1.005, 1)]"
+    assert evaluated(tmp_path, "elements", "decimals", shown) == ["0.00", "0.0", "-0.01", "1.0"]

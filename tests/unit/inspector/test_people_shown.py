@@ -5,10 +5,10 @@ from typing import Any
 
 from rich.console import Console
 
-from jacaros.inspector.page import records
-from jacaros.inspector.people import PeopleSeen
+from jacaros.inspector.page import lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
+from jacaros.inspector.scene import SceneState
 from jacaros.inspector.terminal_view import TerminalView
 from jacaros.sim import World
 from jacaros.sim.data.ground_truth import Record
@@ -24,7 +24,7 @@ people:
 
 def test_a_person_is_shown_at_its_position() -> None:
     world = World.load(WORLD)
-    seen = PeopleSeen(world.description.drawing())
+    seen = SceneState(world.description.drawing())
 
     def take(record: Record) -> None:
         if record["kind"] == "event":
@@ -33,11 +33,11 @@ def test_a_person_is_shown_at_its_position() -> None:
     world.ground_truth.listen(take)
     for _ in range(50):
         world.run(0.5)
-        (view,), ann = seen.at(world.time), world.people["ann"]
+        (view,), ann = seen.people(world.time), world.people["ann"]
         assert abs(view.x - ann.x) + abs(view.y - ann.y) < 0.001
     assert view.path[-1] == view.path[0], "a loop is closed"
     world.remove_person("ann")
-    assert seen.at(world.time) == []
+    assert seen.people(world.time) == []
 
 
 def test_the_picture_shows_people_with_their_paths() -> None:
@@ -51,7 +51,7 @@ def test_the_picture_shows_people_with_their_paths() -> None:
     picture = picture_svg(recorder.recording)
     assert picture.count('class="person"') == 1
     assert ">&lt;bob&gt;</text>" in picture
-    assert [person["name"] for person in next(records(recorder.recording))["world"]["people"]] == ["ann"]
+    assert [person["name"] for person in next(lines_of(recorder.recording)).world["people"]] == ["ann"]
 
 
 def test_people_are_in_the_terminal() -> None:

@@ -11,7 +11,7 @@ import pytest
 from live_client import PATIENCE, get, live_page
 
 from jacaros.inspector.live.access import Access
-from jacaros.inspector.live.recorded_view import RecordedView
+from jacaros.inspector.live.live_view import LiveView
 from jacaros.inspector.live.server import LiveServer, bound_socket
 from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
@@ -37,7 +37,7 @@ def recorded(tmp_path: Path) -> Path:
 
 def test_a_page_receives_the_whole_recording_in_time_order(recorded: Path) -> None:
     async def main() -> None:
-        server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
+        server = LiveServer(bound_socket(), Access(), LiveView.of_recording(Recording.read(recorded)))
         await server.start()
         assert (await get(server.address))[0] == 200
         async with live_page(server.address) as page:
@@ -68,7 +68,7 @@ def test_a_page_receives_the_whole_recording_in_time_order(recorded: Path) -> No
 
 def test_closing_the_server_waits_for_an_opened_browser(recorded: Path) -> None:
     async def main() -> None:
-        server = LiveServer(bound_socket(), Access(), RecordedView(Recording.read(recorded)))
+        server = LiveServer(bound_socket(), Access(), LiveView.of_recording(Recording.read(recorded)))
         await server.start()
         closing = asyncio.create_task(server.close(PATIENCE, visited=True))
         await asyncio.sleep(0)

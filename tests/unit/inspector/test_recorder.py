@@ -7,6 +7,7 @@ import threading
 from pathlib import Path
 from random import Random
 
+import msgspec
 import pytest
 
 from jacaros.errors import JacarosError
@@ -16,6 +17,7 @@ from jacaros.inspector.recorder import Recorder
 from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import EmbeddedScene, RobotView
 from jacaros.inspector.watch import Watch
+from jacaros.mas.history.records import Happened, Text
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World
@@ -305,7 +307,7 @@ def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("line", "reason"),
-    [("[1, 2]", "names with values are expected, not [1, 2]"), ("{}", "the key 'kind' is missing")],
+    [("[1, 2]", "Expected `object`, got `array`"), ("{}", "Object missing required field `kind`")],
 )
 def test_an_invalid_line_is_described(tmp_path: Path, line: str, reason: str) -> None:
     path = tmp_path / "run.jsonl"
@@ -326,19 +328,19 @@ def test_errors_in_a_file_have_a_location_and_help(tmp_path: Path) -> None:
     with pytest.raises(JacarosError) as refused:
         Recording.read(path)
     assert str(refused.value) == (
-        f"error: not a recording: the key 'name' is missing\n  --> {path}:1\n"
+        f"error: not a recording: Object missing required field `name` - at `$.robots[0]`\n  --> {path}:1\n"
         "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
     )
 
 
 def test_a_text_that_looks_like_a_record_stays_in_its_record() -> None:
     records = [
-        {"kind": "event", "data": [{"kind": "a"}, {"kind": "b"}]},
-        {"kind": "text", "text": '}, {"kind": "x'},
-        {"kind": "text", "text": "\ud800 and ü"},
+        Happened(1.0, "x", {"data": [{"kind": "a"}, {"kind": "b"}]}),
+        Text(1.0, "ann", '}, {"kind": "x'),
+        Text(1.0, "ann", "\ud800 and ü"),
     ]
     lines = Lines().pack(records).decode("utf-8").splitlines()
-    assert [json.loads(line) for line in lines] == records
+    assert [json.loads(line) for line in lines] == msgspec.to_builtins(records)
 
 
 @pytest.mark.parametrize(("older", "read"), [(1, False), (2, True), (3, False)])

@@ -1,6 +1,6 @@
 """Dirt and furniture on the still picture: the remaining dirt at the end, and furniture in its colour."""
 
-from jacaros.inspector.page import records
+from jacaros.inspector.page import lines_of
 from jacaros.inspector.picture import picture_svg
 from jacaros.inspector.recorder import Recorder
 from jacaros.sim import World
@@ -23,7 +23,7 @@ def test_the_picture_shows_the_remaining_dirt() -> None:
     recorder.event(2.0, "cleaned", {**left, "dirt": "stains", "grams": 0.0, "percent": 0})
     picture = picture_svg(recorder.recording)
     assert picture.count('class="dirt"') == picture.count('class="dirt" opacity="0.15"') == 1
-    (room,) = next(records(recorder.recording))["world"]["rooms"]
+    (room,) = next(lines_of(recorder.recording)).world["rooms"]
     assert [dirt["kind"] for dirt in room["dirt"]] == ["dust", "stains"]
 
 
@@ -33,7 +33,7 @@ def test_the_picture_shows_furniture_in_its_colour() -> None:
     recorder.world(World.load(f"walls:\n  - box: {box}\nrobots: [{{pose: {{x: -1}}}}]").description.drawing())
     picture = picture_svg(recorder.recording)
     assert '<g><title>&lt;table&gt;</title><rect class="box" style="fill:#c0392b"' in picture
-    assert next(records(recorder.recording))["world"]["furniture"][0]["color"] == "#c0392b"
+    assert next(lines_of(recorder.recording)).world["furniture"][0]["color"] == "#c0392b"
 
 
 def test_colours_of_a_recording_are_escaped_in_pictures() -> None:

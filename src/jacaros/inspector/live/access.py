@@ -1,4 +1,4 @@
-"""Access control for live pages: the token in the path, the host names, and the origin of the request.
+"""What a request may get: access control by the token in the path, the host names and the origin, and the page's files.
 
 The token keeps out other users and programs of the machine. Checking host names prevents DNS rebinding, in which a foreign
 page reaches this server under its own name. Checking the origin stops scripts of other pages.
@@ -9,7 +9,8 @@ import ipaddress
 import re
 import secrets
 import socket
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from urllib.parse import urlsplit
 
 from jacaros.errors import UsageError
@@ -91,3 +92,57 @@ def _is_number(name: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+# ---- files
+
+STATIC = Path(__file__).parent.parent / "static"
+START = "page.html"
+"""The file at the root of the address."""
+_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+
+
+class Pages:
+    """The files below one folder, by request path; no other file is readable.
+
+    Args:
+        folder: folder with the files.
+    """
+
+    def __init__(self, folder: Path = STATIC) -> None:
+        self._files = {
+            each.relative_to(folder).as_posix(): each for each in folder.rglob("*") if each.suffix in _TYPES
+        }
+        self._read: dict[str, bytes] = {}
+
+    def find(self, path: str) -> tuple[str, bytes] | None:
+        """Return the media type and the content of a file; None for an unknown path."""
+        path = path or START
+        file = self._files.get(path)
+        if file is None:
+            return None
+        if path not in self._read:
+            self._read[path] = file.read_bytes()
+        return _TYPES[file.suffix], self._read[path]
+
+
+def security_headers(host: str) -> Mapping[str, str]:
+    """Return the headers of every response: no caching, framing, type guessing, or loading from other sites."""
+    policy = (
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+        f"connect-src 'self' ws://{host} wss://{host}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+    return {
+        "Content-Security-Policy": policy,
+        "Cache-Control": "no-store",
+        "X-Content-Type-Options": "nosniff",
+        "X-Frame-Options": "DENY",
+        "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+    }

@@ -1,14 +1,19 @@
-"""A run as shown on its live pages: receives the watch's records, keeps a bounded part, and delivers it."""
+"""A run or a recording as shown on live pages: keeps a part of its records, delivers them, and executes commands."""
 
 from collections.abc import Iterable, Mapping
+from heapq import merge
+from math import inf
+from operator import attrgetter
 from typing import Any
 
-from jacaros.inspector.live.commands import Commands
-from jacaros.inspector.live.delivery import Delivery
-from jacaros.inspector.live.past import Past
-from jacaros.inspector.live.records import FrameRecord, LiveRecord, hello
-from jacaros.inspector.recording import event_record, text_record, world_record
+from jacaros.inspector.live.commands import Commands, Text
+from jacaros.inspector.live.delivery import EVENTS, FRAMES, Delivery, LiveRecord, Past
+from jacaros.inspector.page import lines_of, title_of
+from jacaros.inspector.recording import Recording
 from jacaros.inspector.scene import RobotView
+from jacaros.mas.history import records
+from jacaros.mas.history.records import VERSION, Frame, Number
+from jacaros.mas.history.why import explain
 
 _NEWEST = ("laser", "believed")
 """Events of which only the newest for each robot matters."""
@@ -20,45 +25,61 @@ class LiveView:
     Args:
         title: title of the page.
         commands: commands available to pages.
-        live: whether the run continues; False for a recording.
+        live: whether the run continues; False for a recording, of which everything is kept.
     """
 
     def __init__(self, title: str, commands: Commands, live: bool = True) -> None:
         self._title, self._commands, self._live = title, commands, live
-        self._past = Past()
+        self._past = Past(EVENTS, FRAMES) if live else Past(inf, inf)
         self._deliveries: list[Delivery] = []
         self._number = 0
-        self._last: FrameRecord | None = None
+        self._last: Frame | None = None
         self._held: LiveRecord | None = None
         """The last frame, if nothing has moved since the previous one."""
+
+    @classmethod
+    def of_recording(cls, recording: Recording) -> "LiveView":
+        """Return a view of a recording, which answers questions."""
+
+        def why(question: Text, at: Number | None = None) -> str:
+            return explain(recording.events, question, at).text()
+
+        commands = Commands()
+        commands.add({"why": why})
+        view = cls(title_of(recording), commands, live=False)
+        world, *others = lines_of(recording)
+        # In time order; at equal times frames come first.
+        for record in (world, *merge(recording.frames, others, key=attrgetter("t"))):
+            view.take(record)
+        return view
 
     # ---- records of the watch
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
-        self._take(world_record(drawing))
+        self.take(records.World(version=VERSION, world=dict(drawing)))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Show the robots at a time."""
-        self._number += 1
-        frame = FrameRecord(self._number, t, list(robots))
-        if self._last is not None and self._last.robots == frame.robots:
-            self._held = frame  # pages see that time passes, but the frame is not stored
+        data = Frame(t, list(robots))
+        record = self._record(data, "frame")
+        if self._last is not None and self._last.robots == data.robots:
+            self._held = record  # pages see that time passes, but the frame is not stored
         else:
             if self._held is not None:
                 self._past.take(self._held)
-            self._past.take(frame)
-            self._last, self._held = frame, None
-        self._offer(frame)
+            self._past.take(record)
+            self._last, self._held = data, None
+        self._offer(record)
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
-        self._take(text_record(t, agent, text))
+        self.take(records.Text(round(t, 3), agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Show an event."""
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
-        self._take(event_record(t, kind, data), newest)
+        self.take(records.Happened(t, kind, data), newest)
 
     def commands_changed(self) -> None:
         """Tell the pages which commands are available from now on."""
@@ -68,12 +89,13 @@ class LiveView:
     def close(self) -> None:
         """Do nothing: there is nothing to close."""
 
-    def _take(self, data: Mapping[str, Any], newest: str | None = None) -> None:
+    def take(self, data: records.Line, newest: str | None = None) -> None:
+        """Keep and deliver a record. Of those with the same subject in *newest*, only the last one matters."""
         record = self._record(data, newest)
         self._past.take(record)
         self._offer(record)
 
-    def _record(self, data: Mapping[str, Any], newest: str | None) -> LiveRecord:
+    def _record(self, data: records.Line, newest: str | None) -> LiveRecord:
         self._number += 1
         return LiveRecord(self._number, data, newest)
 
@@ -84,8 +106,9 @@ class LiveView:
     # ---- requests of the server
 
     def begin(self) -> Delivery:
-        """Start delivering to another page."""
-        delivery = Delivery(self._past.records, hello(self._title, self._live, self._commands.names))
+        """Start delivering to another page; its first message has the title, and what the page can do."""
+        hello = {"kind": "hello", "version": VERSION, "title": self._title, "live": self._live}
+        delivery = Delivery(self._past.records, {**hello, "can": self._commands.names})
         self._deliveries.append(delivery)
         return delivery
 

@@ -1,7 +1,8 @@
 """Commands for agents: beliefs, goals, messages, and a console of AgentSpeak."""
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import islice
+from itertools import count, islice
+from typing import Literal
 
 from jacaros.agents.body.values import UNKEPT, to_term
 from jacaros.agents.language.loader import parse_term
@@ -13,42 +14,22 @@ from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.substitution import resolve
-from jacaros.agents.terms.text import excerpt, text
+from jacaros.agents.terms.text import excerpt
+from jacaros.agents.terms.text import text as term_text
 from jacaros.agents.terms.values import Term, Var
-from jacaros.inspector.live.commands import LONGEST, Command, Given, Refused, choice_in, text_in
-from jacaros.inspector.live.time_limit import within
+from jacaros.inspector.live.commands import LONGEST, YOU, Command, Refused, Text
+from jacaros.inspector.live.timing import within
 from jacaros.mas.embedding.running_agent import OpenMind, question
 from jacaros.mas.system import System
 
-YOU = "you"
-"""Sender of messages written on the page."""
 ANSWERS = 20
 """Number of answers shown for a query."""
 QUESTION_STEPS, QUESTION_TIME = 10_000, 0.1
 """Limits of a query: steps (see `jacaros.agents.mind.rules.context.reading`), and seconds."""
-PERFORMATIVES = (
-    "tell",
-    "untell",
-    "achieve",
-    "unachieve",
-    "signal",
-    "askOne",
-    "askAll",
-    "tellHow",
-    "untellHow",
-)
+Performative = Literal[
+    "tell", "untell", "achieve", "unachieve", "signal", "askOne", "askAll", "tellHow", "untellHow"
+]
 _CONSOLE = "expected ?query, !goal, !!goal, +belief, -belief or -+belief"
-
-
-def mind_commands(system: System) -> Mapping[str, Command]:
-    """Return the commands for the agents of a system."""
-    commands = _MindCommands(system)
-    return {
-        "belief": commands.belief,
-        "goal": commands.goal,
-        "message": commands.message,
-        "console": commands.console,
-    }
 
 
 class _PageMind(OpenMind):
@@ -79,62 +60,49 @@ class _You:
         """Ignore the message: the record of its delivery shows it."""
 
 
-class _MindCommands:
-    def __init__(self, system: System) -> None:
-        self._system = system
-        self._messages = 0
-        system.directory.join(_You())
+def mind_commands(system: System) -> Mapping[str, Command]:
+    """Return the commands for the agents of a system."""
+    numbers = count(1)
+    system.directory.join(_You())
 
-    def _mind(self, given: Given) -> _PageMind:
-        name = text_in(given, "agent")
-        host = self._system.directory.find(name)
+    def mind_of(agent: str) -> _PageMind:
+        host = system.directory.find(agent)
         if host is None or host.ended:
-            raise Refused(f"unknown agent: `{name[:80]}`")
+            raise Refused(f"unknown agent: `{agent[:80]}`")
         if not isinstance(host.mind, Mind):
-            raise Refused(f"`{name}` is written in Python: it has no beliefs and goals of the language")
+            raise Refused(f"`{agent}` is written in Python: it has no beliefs and goals of the language")
         return _PageMind(host.mind)
 
-    def belief(self, given: Given) -> None:
-        """Add or remove a belief."""
-        mind, written = self._mind(given), text_in(given, "text")
-        if choice_in(given, "op", ("+", "-")) == "+":
-            mind.add_belief(written)
-        else:
-            _remove(mind, written)
+    def belief(agent: Text, text: Text, op: Literal["+", "-"]) -> None:
+        (_add if op == "+" else _remove)(mind_of(agent), text)
 
-    def goal(self, given: Given) -> None:
-        """Post or drop a goal."""
-        mind, written = self._mind(given), text_in(given, "text").lstrip("!")
-        if choice_in(given, "op", ("post", "drop")) == "post":
+    def goal(agent: Text, text: Text, op: Literal["post", "drop"]) -> None:
+        mind, written = mind_of(agent), text.lstrip("!")
+        if op == "post":
             mind.post_goal(written)
         elif not mind.drop_goal(written):
             raise Refused(f"the agent does not pursue {written}")
 
-    def message(self, given: Given) -> str:
-        """Send a message to an agent; return the text to print."""
-        receiver, content = text_in(given, "agent"), text_in(given, "text")
-        performative = choice_in(given, "performative", PERFORMATIVES)
+    def message(agent: Text, text: Text, performative: Performative) -> str:
         how = performative in ("tellHow", "untellHow")
-        term = to_term(content, UNKEPT) if how else lower_value(parse_term(content))
-        self._messages += 1
+        term = to_term(text, UNKEPT) if how else lower_value(parse_term(text))
         try:
-            known = self._system.deliver(SpeechAct(performative, YOU, receiver, term, self._messages))
+            known = system.deliver(SpeechAct(performative, YOU, agent, term, next(numbers)))
         except Failure as failure:
             raise Refused(str(failure)) from None
         if not known:
-            raise Refused(f"unknown agent: `{receiver[:80]}`")
+            raise Refused(f"unknown agent: `{agent[:80]}`")
         return "sent; answers appear in Messages" if performative.startswith("ask") else "sent"
 
-    def console(self, given: Given) -> str:
-        """Execute a line of AgentSpeak; return the text to print."""
-        mind, line = self._mind(given), text_in(given, "text").removesuffix(".")
-        for prefix, execute in _LINES.items():
-            if line.startswith(prefix):
-                written = line.removeprefix(prefix).strip()
-                if not written:
-                    break
-                return execute(mind, written)
-        raise Refused(_CONSOLE)
+    def console(agent: Text, text: Text) -> str:
+        mind, line = mind_of(agent), text.removesuffix(".")
+        prefix = next((each for each in _LINES if line.startswith(each)), "")
+        written = line.removeprefix(prefix).strip()
+        if not prefix or not written:
+            raise Refused(_CONSOLE)
+        return _LINES[prefix](mind, written)
+
+    return {"belief": belief, "goal": goal, "message": message, "console": console}
 
 
 def _ask(mind: OpenMind, formula: str) -> str:
@@ -167,7 +135,7 @@ def _answers(view: ReadOnly, formula: str) -> str:
 def _values(shown: Mapping[str, Term]) -> str:
     """Return the bound variables: ``X = 3, Y = kitchen``."""
     found = ((name, resolve(excerpt(value, LONGEST))) for name, value in shown.items())
-    return ", ".join(f"{name} = {text(value)}" for name, value in found if value.__class__ is not Var)
+    return ", ".join(f"{name} = {term_text(value)}" for name, value in found if value.__class__ is not Var)
 
 
 def _post(mind: OpenMind, written: str) -> str:

@@ -3,19 +3,24 @@
 import asyncio
 import contextlib
 import time
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import AsyncIterator, Callable, Iterable
+from contextlib import asynccontextmanager
 
-from jacaros.inspector.live.access import LOOPBACK, Access
-from jacaros.inspector.live.artifact_commands import artifact_commands
-from jacaros.inspector.live.commands import Commands, Given, number_in, text_in
-from jacaros.inspector.live.debug_commands import debug_commands
+from jacaros.inspector.live.access import Access
+from jacaros.inspector.live.commands import (
+    Commands,
+    Text,
+    artifact_commands,
+    debug_commands,
+    world_commands,
+)
 from jacaros.inspector.live.live_view import LiveView
 from jacaros.inspector.live.mind_commands import mind_commands
 from jacaros.inspector.live.server import LiveServer, bound_socket
-from jacaros.inspector.live.world_commands import world_commands
-from jacaros.inspector.watch import Watch
-from jacaros.mas.history.past import Record
+from jacaros.inspector.watch import Watch, watch_of
+from jacaros.mas.embedding.mas import Mas
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Number, Record
 from jacaros.mas.history.why import explain
 from jacaros.mas.system import System
 from jacaros.runtime.clock import outside_run, start_thread
@@ -30,27 +35,14 @@ SIGNALS = 128
 """Exit codes from here on mean that a signal ended the run, which must then not wait."""
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where to serve pages.
-
-    Attributes:
-        address: address of this machine; only this machine reaches the loopback address.
-        port: port; 0 for a free one.
-        token: token in the path; None for a random one.
-    """
-
-    address: str = LOOPBACK
-    port: int = 0
-    token: str | None = None
-
-
 class RunView:
     """Serves the live pages of one run.
 
     Args:
         system: the run; already started.
-        place: where to serve.
+        address: address of this machine; only this machine reaches the loopback address.
+        port: port; 0 for a free one.
+        token: token in the path; None for a random one.
 
     Attributes:
         watcher: receives the run.
@@ -61,13 +53,13 @@ class RunView:
         UsageError: the address cannot be used, or the token is invalid.
     """
 
-    def __init__(self, system: System, place: Place) -> None:
+    def __init__(self, system: System, address: str, port: int, token: str | None) -> None:
         self._system = system
         self.awaited = False
         self.commands = Commands(self._note)
         self.watcher = LiveView(system.deployment.name, self.commands)
-        access = Access(place.address, place.token)
-        self._server = LiveServer(bound_socket(place.address, place.port), access, self.watcher)
+        access = Access(address, token)
+        self._server = LiveServer(bound_socket(address, port), access, self.watcher)
         self.address = self._server.address
         self._explaining = asyncio.Lock()
         self._rested_at = 0.0
@@ -80,9 +72,8 @@ class RunView:
         Args:
             watch: watch of the run, with `watcher` among its watchers.
         """
-        system, add = self._system, self.commands.add_changes
-        add(mind_commands(system))
-        add(artifact_commands(system))
+        system = self._system
+        self.commands.add({**mind_commands(system), **artifact_commands(system)}, changes=True)
         self.commands.add({"why": self._why})
         # The world may be created later, when an agent first needs a robot.
         system.ros.watch_world(lambda world: self._let_change(world, watch.look))
@@ -94,15 +85,15 @@ class RunView:
         self._serving.add_done_callback(lambda _: self._server.release())
 
     def _let_change(self, world: World, look: Callable[[], None]) -> None:
-        self.commands.add_changes(world_commands(self._system, world, look))
+        self.commands.add(world_commands(self._system, world, look), changes=True)
         self.watcher.commands_changed()
 
     def _debug(self) -> None:
         """Add the debugger's commands, and show its state."""
         debugger, history = self._system.debugger, self._system.history()
         self.commands.add(debug_commands(debugger))
-        history.record("debug", debugger.state.data())
-        self._end_debug = debugger.listen(lambda state: history.record("debug", state.data()))
+        history.record(records.Debug(**debugger.state.data()))
+        self._end_debug = debugger.listen(lambda state: history.record(records.Debug(**state.data())))
 
     async def close(self) -> None:
         """Send waiting records, and disconnect the pages."""
@@ -124,10 +115,8 @@ class RunView:
             else:
                 await self._server.close()
 
-    async def _why(self, given: Given) -> str:
+    async def _why(self, question: Text, at: Number | None = None) -> str:
         """Answer a question about the run so far, as lines; in a thread, because many records take seconds."""
-        at = number_in(given, "at") if given.get("at") is not None else None
-        question = text_in(given, "question")
         async with self._explaining:
             records = self._system.keep_history().all()
             return await start_thread(lambda: self._explain(records, question, at))
@@ -143,4 +132,42 @@ class RunView:
             self._rested_at = now + REST * (now - begun)
 
     def _note(self, what: str) -> None:
-        self._system.history().record("intervention", {"what": what})
+        self._system.history().record(records.Intervention(what))
+
+
+@asynccontextmanager
+async def view(
+    mas: Mas, *, address: str = "127.0.0.1", port: int = 0, token: str | None = None
+) -> AsyncIterator[str]:
+    """Serve live pages of a running system inside an ``async with``.
+
+    ::
+
+        async with Mas("patrol.jcm") as mas, view(mas) as page:
+            print(page)
+            await mas.ended()
+
+    Args:
+        mas: the running system.
+        address: address of this machine; by default one that only this machine can reach.
+        port: port; a free one by default.
+        token: token in the path, at least 16 letters and digits; random by default.
+
+    Returns:
+        The address of the page.
+
+    Raises:
+        UsageError: the address cannot be used, or the token is invalid.
+        RunEnded: the system is not running.
+    """
+    shown = RunView(mas.system, address, port, token)
+    watch = watch_of(mas.system, [shown.watcher], live=True)
+    watch.start()
+    end_prints = mas.on_print(watch.text)
+    shown.begin(watch)
+    try:
+        yield shown.address
+    finally:
+        end_prints()
+        watch.stop()
+        await shown.close()

@@ -9,10 +9,10 @@ import json
 import logging
 import socket
 from collections import Counter
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from http import HTTPStatus
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -20,12 +20,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from jacaros.errors import UsageError
-from jacaros.inspector.live.access import LOOPBACK, Access
-from jacaros.inspector.live.allowance import Allowance, Allowances, metered
-from jacaros.inspector.live.beat import Beat
-from jacaros.inspector.live.delivery import Delivery
-from jacaros.inspector.live.pages import Pages, security_headers
-from jacaros.inspector.live.records import json_text
+from jacaros.inspector.live.access import LOOPBACK, Access, Pages, security_headers
+from jacaros.inspector.live.delivery import Delivery, json_text
+from jacaros.inspector.live.live_view import LiveView
+from jacaros.inspector.live.timing import Allowance, Allowances, Beat, metered
 from jacaros.runtime.clock import real_time
 
 LIVE = "live"
@@ -52,21 +50,6 @@ GOODBYE = 0.5
 """Seconds for the last messages and for closing."""
 GARBAGE = 10
 """Number of unreadable commands after which a page is disconnected."""
-
-Answer = Callable[[Mapping[str, Any]], Awaitable[Mapping[str, Any]]]
-
-
-class Source(Protocol):
-    """Provides the records for pages."""
-
-    def begin(self) -> Delivery:
-        """Start delivering to another page."""
-
-    def end(self, delivery: Delivery) -> None:
-        """Stop delivering."""
-
-    async def answer(self, command: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Execute a command of a page and return the reply; never raises."""
 
 
 def bound_socket(address: str = LOOPBACK, port: int = 0) -> socket.socket:
@@ -100,7 +83,7 @@ class LiveServer:
     """
 
     def __init__(
-        self, listening: socket.socket, access: Access, source: Source, pages: Pages | None = None
+        self, listening: socket.socket, access: Access, source: LiveView, pages: Pages | None = None
     ) -> None:
         self._socket, self._access, self._source = listening, access, source
         self._pages = pages or Pages()

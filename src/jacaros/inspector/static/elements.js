@@ -25,6 +25,9 @@ export function clock(t) {
   return `${minutes}:${seconds < 10 ? "0" : ""}${seconds.toFixed(1)}`;
 }
 
+/** A number with `digits` decimals, without a minus before 0. */
+export function decimals(value, digits) { return (Number(value.toFixed(digits)) + 0).toFixed(digits); }
+
 const colours = new Map();  // by theme and name: asking the document for a style may cost a layout
 
 /** A colour of the theme, such as `themeColor("wall")`. */

@@ -1,5 +1,5 @@
 import { FloorDrawing } from "./floor_drawing.js";
-import { button, element } from "./elements.js";
+import { decimals, button, element } from "./elements.js";
 import { MapPointer } from "./map_pointer.js";
 import { Camera, Projection } from "./projection.js";
 import { drawBelieved, drawLaser, drawPlan, drawRobot } from "./robot_drawing.js";
@@ -137,7 +137,7 @@ export class MapView {
     const robots = [];
     for (let index = 0; index < this.world.robotCount; index++) {
       const state = this.world.state(index, t);
-      if (state) robots.push(`${this.world.robot(index).name} at ${state.x.toFixed(1)}, ${state.y.toFixed(1)}`);
+      if (state) robots.push(`${this.world.robot(index).name} at ${decimals(state.x, 1)}, ${decimals(state.y, 1)}`);
     }
     const { name, doors } = this.world.drawing(t);
     const open = doors.map((door) => `door ${door.name} ${this.world.doorOpen(door, t) ? "open" : "closed"}`);

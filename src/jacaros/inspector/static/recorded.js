@@ -1,5 +1,5 @@
 import { NO_COMMANDS, fragment, startPage } from "./main.js";
-import { ROBOT_STATE } from "./world.js";
+import { ROBOT_STATE } from "./schema.js";
 
 /** The records inside the page: lines of JSON, gzipped, in base64. The first line has the frames, as columns. */
 async function records() {

@@ -1,4 +1,4 @@
-import { button, element, setText } from "./elements.js";
+import { decimals, button, element, setText } from "./elements.js";
 import { robotColor } from "./palette.js";
 
 const FEW = 4;  // robots whose cards show everything; of more, names and batteries
@@ -51,7 +51,7 @@ export class RobotsView {
     card.gauge.setAttribute("aria-valuenow", String(level));
     card.fill.style.width = `${Math.max(0, state.battery)}%`;
     card.fill.className = level > 50 ? "high" : level > 20 ? "middle" : "low";
-    setText(card.where, `x ${state.x.toFixed(2)}  y ${state.y.toFixed(2)}  ${degrees(state.yaw)}°`);
+    setText(card.where, `x ${decimals(state.x, 2)}  y ${decimals(state.y, 2)}  ${degrees(state.yaw)}°`);
     card.state.className = `state ${state.charging ? "charging" : state.touching ? "touching" : ""}`;
     setText(card.state, state.charging ? "⚡ charging" : state.touching ? "⚠ touching" : "");
     setText(card.agents, agents.length ? `used by ${agents.join(", ")}` : "");

@@ -1,4 +1,5 @@
-const VERSION = 2;  // of recordings that this page knows
+import { VERSION } from "./schema.js";
+
 const FAULTS = 1000;
 
 /**

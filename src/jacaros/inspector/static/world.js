@@ -1,16 +1,9 @@
+import { EMPTY, ROBOT_STATE } from "./schema.js";
 import { Track, indexAt } from "./track.js";
 
 // A live page may be open for days: what is older is forgotten.
 const SCANS = 20000;  // of all robots
 const ROWS = 2000000;  // of frames: one for each robot
-
-/** The fields of `jacaros.sim.data.ground_truth.RobotState`, in the order of a robot's row. */
-export const ROBOT_STATE = ["x", "y", "yaw", "battery", "charging", "touching"];
-
-const EMPTY = {
-  name: "", bounds: null, walls: [], boxes: [], furniture: [], rooms: [], docks: [], doors: [], cliffs: [], robots: [],
-  people: [], objects: [],
-};
 
 /** The world and its robots over time. */
 export class World {

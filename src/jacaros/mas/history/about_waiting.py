@@ -3,9 +3,12 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from jacaros.mas.history.chains import chain, shown, source_line
+from jacaros.mas.history import records
+from jacaros.mas.history.about_events import goal_text
+from jacaros.mas.history.chains import chain, place_of, shown, source_line
 from jacaros.mas.history.explanation import Explanation, Fact, seconds
-from jacaros.mas.history.past import Data, Past
+from jacaros.mas.history.past import Past, Timed, of_agent
+from jacaros.mas.history.patterns import Question
 
 MOST_GOALS = 5
 """Maximum number of goals of a stack in an answer."""
@@ -13,80 +16,83 @@ MOST_INTENTIONS = 20
 """Maximum number of intentions in an answer."""
 
 
-def explain_waiting(past: Past, question: str, agent: str = "") -> Explanation:
+def explain_waiting(past: Past, asked: Question) -> Explanation:
     """Explain what each intention waits for."""
-    facts = tuple(_intentions(past, agent))
-    waiting = sum(data.get("state") != "runs" for (name, _), (_, data) in _open(past, agent))
+    question, agent = asked.written, asked.agent
+    found = _open(past, agent)
+    waiting = sum(data.state != "runs" for _, data in found)
     who = agent or "all agents"
-    if not facts:
+    if not found:
         return Explanation(question, f"no intention of {who} is open at {seconds(past.end)}", past.end)
-    answer = f"{waiting} of {len(facts)} intentions of {who} wait at {seconds(past.end)}"
-    return Explanation(question, answer, past.end, facts[:MOST_INTENTIONS])
+    answer = f"{waiting} of {len(found)} intentions of {who} wait at {seconds(past.end)}"
+    facts = tuple(islice(_intentions(past, found), MOST_INTENTIONS))
+    return Explanation(question, answer, past.end, facts)
 
 
-def _open(past: Past, agent: str) -> list[tuple[tuple[str, object], tuple[float, Data]]]:
-    return [each for each in past.intentions.items() if agent in ("", each[0][0])]
+def _open(past: Past, agent: str) -> Timed[records.Intention]:
+    return of_agent([*past.intentions.values()], agent)
 
 
-def _intentions(past: Past, agent: str) -> Iterator[Fact]:
-    for (name, number), (t, data) in _open(past, agent):
-        stack = list(data.get("stack") or ())
-        top = stack[-1] if stack else {}
-        file, line = str(top.get("file") or ""), int(top.get("line") or 0)
-        step = str(top.get("step") or "") or source_line(past, file, line)
-        goals = " > ".join(_short([shown(each.get("goal", "")) for each in stack]))
-        since = data.get("since")
-        time = t if since is None else float(since)
-        told = f"intention {number}{f', {goals},' if goals else ''} {_state(data)} since {seconds(time)}"
-        yield Fact("intention", f"{told}{f', in `{step}`' if step else ''}", time, name, file, line)
+def _intentions(past: Past, found: Timed[records.Intention]) -> Iterator[Fact]:
+    for t, data in found:
+        stack = data.stack or ()
+        top = stack[-1] if stack else None
+        file, line = place_of(top)
+        step = (top.step if top else "") or source_line(past, file, line)
+        goals = [shown(each.goal) for each in stack]
+        if len(goals) > MOST_GOALS:
+            goals = [*goals[:2], "...", *goals[-2:]]
+        pursued = f", {' > '.join(goals)}," if goals else ""
+        time = t if data.since is None else data.since
+        told = f"intention {data.id}{pursued} {_state(data)} since {seconds(time)}"
+        yield Fact("intention", f"{told}{f', in `{step}`' if step else ''}", time, data.agent, file, line)
 
 
-def _short(goals: list[str]) -> list[str]:
-    """Shorten a deep stack to its first and last goals."""
-    return goals if len(goals) <= MOST_GOALS else [*goals[:2], "...", *goals[-2:]]
-
-
-def _state(data: Data) -> str:
-    state = data.get("state")
-    if state == "runs":
+def _state(data: records.Intention) -> str:
+    if data.state == "runs":
         return "runs"
-    if state == "suspended":
-        reason = data.get("reason")
-        return f"is suspended{f': {reason},' if reason else ''}"
-    waits = str(data.get("waits") or "").removeprefix("for ")
+    if data.state == "suspended":
+        return f"is suspended{f': {data.reason},' if data.reason else ''}"
+    waits = (data.waits or "").removeprefix("for ")
     return f"waits for {waits}" if waits else "waits"
 
 
-def explain_idleness(past: Past, question: str, agent: str = "") -> Explanation:
+def explain_idleness(past: Past, asked: Question) -> Explanation:
     """Explain why nothing happens: the run has ended or is paused, goals were lost, or everything waits."""
-    last = _last_event(past, agent)
+    agent = asked.agent
+    last = next(reversed(of_agent(past.deliberations, agent)), None)
+    found = _open(past, agent)
     facts = [
         *_ends(past, agent),
         *_lost(past, agent),
-        *islice(_intentions(past, agent), MOST_INTENTIONS),
-        *_silence(past, last),
+        *islice(_intentions(past, found), MOST_INTENTIONS),
     ]
-    because = () if last is None else chain(past, last[1]["id"])
-    return Explanation(question, _why_idle(past, agent, last), past.end, tuple(facts), because)
+    if last is not None and last[1].chosen is None:
+        told = f"the last event `{shown(last[1].trigger)}` had no applicable plan"
+        facts.append(Fact("event", told, last[0], last[1].agent))
+    because = () if last is None else chain(past, last[1].id)
+    return Explanation(asked.written, _why_idle(past, agent, found, last), past.end, tuple(facts), because)
 
 
-def _why_idle(past: Past, agent: str, last: tuple[float, Data] | None) -> str:
+def _why_idle(
+    past: Past,
+    agent: str,
+    found: Timed[records.Intention],
+    last: tuple[float, records.Deliberation] | None,
+) -> str:
+    now = seconds(past.end)
     if past.exit_code is not None:
-        return f"the run ended at {seconds(past.end)} with exit code {past.exit_code}"
-    if past.debug.get("state") == "paused":
-        return f"the run is paused: {past.debug.get('why') or 'on request'}"
-    running = [each for each in _open(past, agent) if each[1][1].get("state") == "runs"]
+        return f"the run ended at {now} with exit code {past.exit_code}"
+    if past.debug is not None and past.debug.state == "paused":
+        return f"the run is paused: {past.debug.why or 'on request'}"
+    running = sum(data.state == "runs" for _, data in found)
     if running:
-        return f"the run is active: {len(running)} intentions run at {seconds(past.end)}"
-    if _open(past, agent):
-        return f"every open intention of {agent or 'all agents'} waits at {seconds(past.end)}"
-    when = "" if last is None else f"; the last event was `{shown(last[1]['trigger'])}` at {seconds(last[0])}"
+        return f"the run is active: {running} intentions run at {now}"
+    if found:
+        return f"every open intention of {agent or 'all agents'} waits at {now}"
+    when = "" if last is None else f"; the last event was `{shown(last[1].trigger)}` at {seconds(last[0])}"
     who = f"{agent} has neither a goal nor" if agent else "no agent has a goal or"
-    return f"{who} an event at {seconds(past.end)}{when}"
-
-
-def _last_event(past: Past, agent: str) -> tuple[float, Data] | None:
-    return next((each for each in reversed(past.deliberations) if agent in ("", each[1]["agent"])), None)
+    return f"{who} an event at {now}{when}"
 
 
 def _ends(past: Past, agent: str) -> Iterator[Fact]:
@@ -97,24 +103,12 @@ def _ends(past: Past, agent: str) -> Iterator[Fact]:
 
 def _lost(past: Past, agent: str) -> Iterator[Fact]:
     """Return the last failure of each agent that was not recovered."""
-    lost: dict[object, tuple[float, Data]] = {}
-    for t, data in past.goals:
-        if data.get("state") == "failed":
-            lost[data.get("agent"), data.get("id")] = t, data
+    lost: dict[object, tuple[float, records.Goal]] = {}
+    for t, data in of_agent(past.goals, agent):
+        if data.state == "failed":
+            lost[data.agent, data.id] = t, data
         else:
-            lost.pop((data.get("agent"), data.get("id")), None)
-    newest = {data["agent"]: (t, data) for t, data in lost.values() if agent in ("", data.get("agent"))}
+            lost.pop((data.agent, data.id), None)
+    newest = {data.agent: (t, data) for t, data in lost.values()}
     for name, (t, data) in newest.items():
-        why = f": {data['why']}" if data.get("why") else ""
-        yield Fact("goal", f"{data['goal']} failed at {seconds(t)}{why}", t, name)
-
-
-def _silence(past: Past, last: tuple[float, Data] | None) -> Iterator[Fact]:
-    """Return the last event, if no plan was chosen for it."""
-    if last is not None and last[1].get("chosen") is None:
-        yield Fact(
-            "event",
-            f"the last event `{shown(last[1]['trigger'])}` had no applicable plan",
-            last[0],
-            last[1]["agent"],
-        )
+        yield Fact("goal", goal_text(t, data), t, name)

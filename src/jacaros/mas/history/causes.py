@@ -3,9 +3,11 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.mas.history.values import call_text, limited, message_text, request_text
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Tell
+from jacaros.mas.history.words import call_text, limited, message_text, request_text
 from jacaros.runtime.clock import Clock
-from jacaros.runtime.trace import Cause, Tracer
+from jacaros.runtime.trace import Cause
 
 _GENERATION = 4096
 """Number of causes that are kept at least, until something needs them; at most twice as many."""
@@ -17,9 +19,6 @@ RECORDED = ("event", "message")
 """Links with records of their own: deliberations and messages. Their causes are recorded with these."""
 LARGE = 4096
 """Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
-
-Tell = Callable[[str, Mapping[str, Any]], None]
-
 
 Link = tuple[Cause, float, Any]
 """A cause, its time (by the clock, which continues during a pause on a real graph), and its subject."""
@@ -82,7 +81,7 @@ class CauseRecords:
     Args:
         clock: clock of the run.
         beginning: seconds of the clock from which ``at`` counts.
-        tell: takes the kind of a record and its data.
+        tell: takes the records.
         find_listener: returns a listener for the messages of a topic, given one of them; or None.
 
     Attributes:
@@ -108,16 +107,6 @@ class CauseRecords:
         self._old: dict[int, Link] = {}
         self._samples: set[int] = set()
         """Messages that have led to something. Each is kept, or recorded, once."""
-
-    def listen_to(self, trace: Callable[[Tracer | None], None]) -> Callable[[], None]:
-        """Trace a system through *trace*. Return a function that ends this."""
-        trace(self)
-
-        def end() -> None:
-            trace(None)
-            self.flush(all_of_them=True)
-
-        return end
 
     def link(self, kind: str, what: str, parent: Cause | None = None, about: Any = None) -> Cause:
         """Create the next link of a chain. See `jacaros.runtime.trace.Tracer`."""
@@ -207,10 +196,11 @@ class CauseRecords:
     def _record(self, link: Link) -> None:
         (number, parent, kind, what), moment, about = link
         at = round(moment - self._beginning, 3)
-        data = {"id": number, "parent": parent, "kind": kind, "what": what, "at": at}
-        if about is not None:
-            data.update(_details(kind, what, about))
-        self._tell("cause", data)
+        record = records.Cause(number, kind, what, parent, at)
+        if about is not None and kind in _DETAILS:
+            for field, value in _DETAILS[kind](what, about).items():
+                setattr(record, field, value)
+        self._tell(record)
         if self.with_effect is not None and kind in ("sample", "command") and about is not None:
             self.with_effect(at, what, about)
 
@@ -230,12 +220,6 @@ class CauseRecords:
 def _is_small(message: Any) -> bool:
     data = getattr(message, "data", ())
     return not hasattr(data, "__len__") or len(data) < LARGE
-
-
-def _details(kind: str, what: str, about: Any) -> dict[str, Any]:
-    """Return further fields of a record, for what a link of a kind is about."""
-    make = _DETAILS.get(kind)
-    return make(what, about) if make is not None else {}
 
 
 def _message_details(topic: str, message: Any) -> dict[str, Any]:
@@ -269,3 +253,4 @@ _DETAILS: Mapping[str, Callable[[str, Any], dict[str, Any]]] = {
     "operation": _operation_details,
     "act": _act_details,
 }
+"""Further fields of a record, for what a link of a kind is about."""

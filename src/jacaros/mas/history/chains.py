@@ -1,11 +1,11 @@
 """Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message."""
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
+from jacaros.mas.history import records
 from jacaros.mas.history.explanation import Fact
-from jacaros.mas.history.past import Data, Past
+from jacaros.mas.history.past import Link, Past
 from jacaros.mas.history.words import named
 
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
@@ -19,7 +19,7 @@ LONGEST_ROUND = 12
 
 def chain(past: Past, number: Any) -> tuple[Fact, ...]:
     """Return the links from one back to the beginning, as facts."""
-    links = _without_rounds([fact for t, data in past.chain(number) for fact in _facts(past, t, data)])
+    links = _without_rounds([_fact(past, link) for link in past.chain(number)])
     if len(links) > LONGEST_CHAIN:
         left = len(links) - LONGEST_CHAIN
         return (*links[: LONGEST_CHAIN - 1], Fact("note", f"{left} more causes"), links[-1])
@@ -54,94 +54,62 @@ def _loop(places: list[Any]) -> tuple[int, int]:
     return 1, 1
 
 
-def _facts(past: Past, t: float, link: Data) -> Iterator[Fact]:
-    kind = str(link.get("kind", ""))
-    make = _MAKERS.get(kind)
-    yield make(past, t, link) if make is not None else Fact(kind, str(link.get("what", "")), t)
+def _fact(past: Past, link: Link) -> Fact:
+    """Return a link as a line of an answer."""
+    t, cause, record = link
+    agent = cause.agent or ""
+    match cause.sort, record:
+        case _, records.Deliberation():
+            plan = past.plan(agent, record.chosen)
+            how = f", handled by {plan_name(plan)}" if plan else ""
+            return Fact("event", f"{shown(record.trigger)}{how}", t, agent, *place_of(plan))
+        case _, records.Message():
+            return Fact("message", message_text(record), t)
+        case "act", _:
+            plan, file, line = past.plan(agent, cause.plan), *place_of(cause)
+            written = source_line(past, file, line)
+            step = f"`{written}`" if written else cause.what.removeprefix(f"{agent} ")
+            return Fact("act", f"step {step}{f' of {plan_name(plan)}' if plan else ''}", t, agent, file, line)
+        case "operation", _:
+            known = past.operations.get(cause.id)
+            artifact = f" of {cause.artifact}" if cause.artifact else ""
+            end = f", {known.outcome}" if known is not None else ""
+            return Fact("operation", f"{cause.what}{artifact}{end}", t)
+        case "sample", _ if cause.topic and cause.topic not in cause.what:
+            return Fact("sample", f"{cause.topic}: {cause.what}", t)
+    return Fact(cause.sort, cause.what, t)
 
 
-def _event(past: Past, t: float, link: Data) -> Fact:
-    agent = str(link.get("agent", ""))
-    plan = past.plan(agent, link.get("chosen"))
-    how = f", handled by {plan_name(plan)}" if plan else ""
-    return Fact(
-        "event", f"{shown(link.get('trigger', link.get('what', '')))}{how}", t, agent, *place_of(plan)
-    )
-
-
-def _act(past: Past, t: float, link: Data) -> Fact:
-    agent, file, line = str(link.get("agent", "")), str(link.get("file") or ""), int(link.get("line") or 0)
-    what = str(link.get("what", "")).removeprefix(f"{agent} ")
-    plan = past.plan(agent, link.get("plan"))
-    written = source_line(past, file, line)
-    step = f"step `{written}`" if written else f"step {what}"
-    return Fact("act", f"{step}{f' of {plan_name(plan)}' if plan else ''}", t, agent, file, line)
-
-
-def _operation(past: Past, t: float, link: Data) -> Fact:
-    known = past.operations.get(link.get("id"))
-    artifact = f" of {link['artifact']}" if link.get("artifact") else ""
-    return Fact("operation", f"{link.get('what', '')}{artifact}{'' if known is None else _end(known)}", t)
-
-
-def _end(operation: Any) -> str:
-    if operation.ended is None:
-        return ", still running"
-    reason = f": {operation.reason}" if operation.reason else ""
-    return f", {operation.outcome} at {operation.ended:.3f} s{reason}"
-
-
-def _sample(_past: Past, t: float, link: Data) -> Fact:
-    what, topic = str(link.get("what", "")), str(link.get("topic") or "")
-    told = what if topic in what else f"{topic}: {what}"
-    return Fact("sample", told, t)
-
-
-def _message(_past: Past, t: float, link: Data) -> Fact:
-    if "performative" not in link:
-        return Fact("message", str(link.get("what", "")), t)
-    return Fact("message", message_text(link), t)
-
-
-_MAKERS = {
-    "event": _event,
-    "act": _act,
-    "operation": _operation,
-    "sample": _sample,
-    "message": _message,
-}
-
-
-def message_text(message: Data) -> str:
+def message_text(message: records.Message) -> str:
     """Return a message between agents as text."""
-    return f"{message['from']} to {message['to']}: {message['performative']} {message['content']}"
+    return f"{message.sender} to {message.receiver}: {message.performative} {message.content}"
 
 
-def plan_name(plan: Data) -> str:
+def plan_name(plan: records.Plan) -> str:
     """Return a plan as text: label, or trigger, with its context."""
-    label = str(plan.get("label") or "")
-    return f"@{label}" if is_written(label) else f"`{plan_text(plan)}`"
+    return f"@{plan.label}" if is_written(plan.label) else f"`{plan_text(plan)}`"
 
 
-def is_written(label: str) -> bool:
+def is_written(label: str | None) -> bool:
     """Return whether a label is from the program. Others are generated."""
-    return bool(label) and not label.startswith("p__")
+    return bool(label) and not str(label).startswith("p__")
 
 
-def plan_text(plan: Data) -> str:
+def plan_text(plan: records.Plan | None) -> str:
     """Return trigger and context of a plan."""
-    context = plan.get("context")
-    return shown(f"{plan.get('trigger', '?')}{f' : {context}' if context else ''}")
+    if plan is None:
+        return "?"
+    return shown(f"{plan.trigger}{f' : {plan.context}' if plan.context else ''}")
 
 
-def shown(text: Any) -> str:
+def shown(text: object) -> str:
     """Return a recorded text with `_` for unnamed variables, and without the annotations that all percepts have."""
     return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
 
 
-def place_of(plan: Data) -> tuple[str, int]:
-    """Return file and line of a plan."""
-    return str(plan.get("file") or ""), int(plan.get("line") or 0)
+def place_of(record: records.Plan | records.Cause | records.Belief | records.Step | None) -> tuple[str, int]:
+    """Return the file and line that a record names; empty and 0 without one."""
+    return ("", 0) if record is None else (record.file or "", record.line or 0)
 
 
 def source_line(past: Past, file: str, line: int) -> str:

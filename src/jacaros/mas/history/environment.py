@@ -1,7 +1,8 @@
 """Records of the environment: artifacts, focus, properties, signals and operations."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+
+from msgspec.structs import replace
 
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId
@@ -9,13 +10,14 @@ from jacaros.artifacts.env.execution import OperationExecution
 from jacaros.artifacts.env.operation import OperationOutcome
 from jacaros.artifacts.env.property import ObservableProperty, Observation
 from jacaros.artifacts.env.workspace import Workspace
-from jacaros.mas.history.values import call_text, json_values, limited, output_texts, request_text
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Tell
+from jacaros.mas.history.words import call_text, json_values, limited, output_texts, request_text
 from jacaros.runtime.clock import Clock
 
 PERIOD = 0.5
 """Seconds between two records of a property that changes continuously. The last value is always recorded."""
 
-Tell = Callable[[str, Mapping[str, Any]], None]
 _Key = tuple[ArtifactId, int]
 
 
@@ -24,7 +26,7 @@ class EnvironmentRecords:
 
     Args:
         clock: clock of the run.
-        tell: takes the kind of a record and its data.
+        tell: takes the records.
         robot_of: returns the robot that an artifact drives or senses, or None.
     """
 
@@ -36,7 +38,7 @@ class EnvironmentRecords:
         """Time of the last record of each property."""
         self._held: dict[_Key, tuple[ObservableProperty, int | None]] = {}
         """Values that came too soon after the last record, and their causes."""
-        self._running: dict[OperationExecution, dict[str, Any]] = {}
+        self._running: dict[OperationExecution, records.Operation] = {}
 
     def observe(self, environment: Environment) -> None:
         """Observe *environment*, and record its current state."""
@@ -59,15 +61,8 @@ class EnvironmentRecords:
     def artifact(self, artifact: ArtifactId, present: bool) -> None:
         """Record that an artifact is created or disposed."""
         made = self._environment.artifact(artifact) if present and self._environment is not None else None
-        self._tell(
-            "artifact",
-            {
-                "artifact": artifact.path,
-                "type": artifact.type_name,
-                "state": "made" if present else "disposed",
-                "robot": self._robot_of(made) if made is not None else None,
-            },
-        )
+        state, robot = "made" if present else "disposed", self._robot_of(made) if made is not None else None
+        self._tell(records.Artifact(artifact.path, artifact.type_name, state, robot))
         if present:
             self._known.add(artifact)
             if made is not None:
@@ -89,7 +84,7 @@ class EnvironmentRecords:
     def focused(self, artifact: ArtifactId, agent: str, on: bool) -> None:
         """Record that an agent focuses an artifact, or stops focusing it."""
         if artifact in self._known:
-            self._tell("focus", {"agent": agent, "artifact": artifact.path, "on": on})
+            self._tell(records.Focus(agent, artifact.path, on))
 
     def published(self, observation: Observation) -> None:
         """Record new values and signals."""
@@ -99,7 +94,7 @@ class EnvironmentRecords:
         number = cause.id if cause is not None else None
         for signal in observation.signals:
             written = call_text(signal.name, signal.arguments)
-            self._tell("signal", {"artifact": artifact.path, "signal": written, "cause": number})
+            self._tell(records.Signal(artifact.path, written, number))
         for _, new in observation.changed:
             self._property(artifact, new, number)
         for added in observation.added:
@@ -112,31 +107,29 @@ class EnvironmentRecords:
         request = execution.request
         if request.artifact not in self._known:
             return
-        cause = execution.cause
-        data = {
-            "id": cause.id if cause is not None else 0,
-            "artifact": request.artifact.path,
-            "operation": request_text(request),
-            "agent": request.agent,
-            "cause": request.cause.id if request.cause is not None else 0,
-        }
-        self._running[execution] = data
-        self._tell("operation", {**data, "state": "began"})
+        cause, parent = execution.cause, request.cause
+        self._running[execution] = began = records.Operation(
+            cause.id if cause is not None else 0,
+            request.artifact.path,
+            request_text(request),
+            "began",
+            request.agent,
+            parent.id if parent is not None else 0,
+        )
+        self._tell(began)
 
     def ended(self, execution: OperationExecution, outcome: OperationOutcome | None) -> None:
         """Record how an operation ended. A cancelled one has failed."""
-        data = self._running.pop(execution, None)
-        if data is None:
+        began = self._running.pop(execution, None)
+        if began is None:
             return
         if outcome is not None and outcome.ok:
-            outputs = output_texts(execution.request)
-            self._tell("operation", {**data, "state": "done", **({"outputs": outputs} if outputs else {})})
+            outputs = output_texts(execution.request) or None
+            self._tell(replace(began, state="done", outputs=outputs))
             return
-        reason = "cancelled" if outcome is None else limited(outcome.message or str(outcome.reason or ""))
         term = None if outcome is None or outcome.reason is None else limited(str(outcome.reason))
-        self._tell(
-            "operation", {**data, "state": "failed", "reason": reason, **({"term": term} if term else {})}
-        )
+        reason = "cancelled" if outcome is None else limited(outcome.message or str(outcome.reason or ""))
+        self._tell(replace(began, state="failed", reason=reason, term=term or None))
 
     # ---- properties
 
@@ -151,22 +144,12 @@ class EnvironmentRecords:
     def _record(self, key: _Key, new: ObservableProperty, cause: int | None, now: float) -> None:
         self._recorded[key] = now
         self._held.pop(key, None)
-        self._tell(
-            "property",
-            {
-                "artifact": key[0].path,
-                "name": new.name,
-                "key": new.key,
-                "values": json_values(new.values),
-                "cause": cause,
-            },
-        )
+        self._tell(records.Property(key[0].path, new.name, new.key, json_values(new.values), cause))
 
     def _property_gone(self, artifact: ArtifactId, old: ObservableProperty, cause: int | None) -> None:
         self._recorded.pop((artifact, old.key), None)
         self._held.pop((artifact, old.key), None)
-        data = {"artifact": artifact.path, "name": old.name, "key": old.key, "values": None, "cause": cause}
-        self._tell("property", data)
+        self._tell(records.Property(artifact.path, old.name, old.key, None, cause))
 
     def flush(self, all_of_them: bool = False) -> None:
         """Record the newest values that were held back for `PERIOD` seconds. Call it a few times a second."""

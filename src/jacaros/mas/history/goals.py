@@ -1,6 +1,5 @@
 """Records of the agents' goals: each change once, with unique numbers."""
 
-from collections.abc import Callable
 from functools import partial
 from itertools import count
 
@@ -10,9 +9,9 @@ from jacaros.agents.mind.rules.meta_events import observe_goals
 from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.substitution import is_ground
 from jacaros.mas.agents.host import AgentHost
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Tell
 from jacaros.mas.history.words import named
-
-Tell = Callable[[dict[str, object]], None]
 
 _OPEN = {"executing": "pursued", "resumed": "resumed", "suspended": "suspended"}
 _OVER = ("achieved", "dropped", "recovered", "replaced")
@@ -36,12 +35,11 @@ class GoalRecords:
 
     Goals are numbered in the order in which they begin, so the numbers are the same in each run with the same seed.
 
+    A goal that failed and has a plan for its failure is pursued again under its number. For a Python agent, the goals are
+    its ``run``, its operations and the running behaviours of its trees, all on one stack.
+
     Args:
-        tell: takes ``agent``, ``goal``, ``state`` (``pursued``, ``suspended``, ``resumed``, ``achieved``, ``failed``,
-            ``dropped``, ``recovered``: a plan for its failure has ended, ``replaced``: by the last goal of its plan, a tail
-            call), ``id``, counted from 1, ``intention``, the number of the stack of goals that it is on, and of a failure
-            ``why``. A goal that failed and has a plan for its failure is pursued again under its number. For a Python
-            agent, the goals are its ``run``, its operations and the running behaviours of its trees, all on one stack.
+        tell: takes each `records.Goal`, with ids counted from 1.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -99,14 +97,7 @@ class GoalRecords:
         is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state, known.text, known.intention = shown, goal, intention
         if is_news:
-            told = {
-                "agent": agent,
-                "goal": named(goal),
-                "state": shown,
-                "id": known.number,
-                "intention": intention,
-            }
-            self._tell({**told, "why": why} if why else told)
+            self._tell(records.Goal(agent, named(goal), shown, known.number, intention, why or None))
         if state in _OVER:
             del self._goals[agent, which]
 

@@ -1,35 +1,55 @@
 """The records of a run until a moment, indexed by what they concern."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
-from jacaros.mas.history.well_formed import is_well_formed
+from msgspec import ValidationError
 
-Data = Mapping[str, Any]
-"""The data of a record, see docs/reference/recordings.md."""
-Record = tuple[float, str, Data]
-"""``t`` in seconds since the run began, the event and its data."""
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Record, decoded
+from jacaros.sim.data.ground_truth import FIELDS
+
+Found = TypeVar("Found", bound=Any)
+Timed = list[tuple[float, Found]]
+"""Records with their times, the oldest first."""
+
+
+class Link(NamedTuple):
+    """A link of a causal chain: its time, its record of a cause, and for an event or a message its own record."""
+
+    t: float
+    cause: records.Cause
+    of: records.Deliberation | records.Message | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """An operation of an artifact, and how it ended.
+    """An operation of an artifact.
 
     Attributes:
-        data: data of its beginning.
+        data: record of its beginning.
         began, ended: seconds; *ended* is None while it runs.
-        outcome: ``done``, ``failed``, or empty while it runs.
-        reason: reason of its failure.
-        last: data of its end; empty while it runs.
+        last: record of its end; None while it runs.
     """
 
-    data: Data
+    data: records.Operation
     began: float
     ended: float | None = None
-    outcome: str = ""
-    reason: str = ""
-    last: Data = field(default_factory=dict)
+    last: records.Operation | None = None
+
+    @property
+    def reason(self) -> str:
+        """The reason of its failure; empty if it has not failed."""
+        return (self.last.reason or "") if self.last is not None else ""
+
+    @property
+    def outcome(self) -> str:
+        """How and when it ended, as text."""
+        if self.last is None or self.ended is None:
+            return "still running"
+        reason = f": {self.reason}" if self.reason else ""
+        return f"{self.last.state} at {self.ended:.3f} s{reason}"
 
 
 @dataclass
@@ -38,174 +58,146 @@ class Past:
 
     Attributes:
         end: seconds of the last record.
-        links: causes by id: ``cause`` records, and deliberations, operations and messages under their own ids.
-        deliberations, beliefs, goals, messages, properties: (t, data), the oldest first.
+        links: the links of causal chains by id.
+        deliberations, beliefs, goals: with their times, the oldest first.
         programs: the plans of each agent by id, as in the newest ``program``.
         rules: the rules of each agent as text.
         intentions: the newest record of each, by agent and id.
         operations: by id.
         agents: their newest state by name.
         began: when each agent began, in seconds.
-        artifacts: the newest record of each by path.
+        robots_of: the robots that artifacts drive or sense, by path.
         sources: texts of the programs by file.
-        world: events of robots and the world, as (t, event, data), the oldest first.
+        world: events of robots and the world, as (t, event, robot), the oldest first.
         robots: names of robots that appear in records.
         debug: the newest record of the debugger.
         exit_code: exit code of the run; None if it had not ended.
     """
 
     end: float = 0.0
-    links: dict[int, tuple[float, Data]] = field(default_factory=dict)
-    deliberations: list[tuple[float, Data]] = field(default_factory=list)
-    beliefs: list[tuple[float, Data]] = field(default_factory=list)
-    goals: list[tuple[float, Data]] = field(default_factory=list)
-    messages: list[tuple[float, Data]] = field(default_factory=list)
-    properties: list[tuple[float, Data]] = field(default_factory=list)
-    programs: dict[str, dict[Any, Data]] = field(default_factory=dict)
+    links: dict[Any, Link] = field(default_factory=dict)
+    deliberations: Timed[records.Deliberation] = field(default_factory=list)
+    beliefs: Timed[records.Belief] = field(default_factory=list)
+    goals: Timed[records.Goal] = field(default_factory=list)
+    programs: dict[str, dict[Any, records.Plan]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
-    intentions: dict[tuple[str, Any], tuple[float, Data]] = field(default_factory=dict)
+    intentions: dict[tuple[str, Any], tuple[float, records.Intention]] = field(default_factory=dict)
     operations: dict[Any, Operation] = field(default_factory=dict)
     agents: dict[str, tuple[float, str]] = field(default_factory=dict)
     began: dict[str, float] = field(default_factory=dict)
-    artifacts: dict[str, Data] = field(default_factory=dict)
+    robots_of: dict[str, str] = field(default_factory=dict)
     sources: dict[str, list[str]] = field(default_factory=dict)
-    world: list[Record] = field(default_factory=list)
+    world: list[tuple[float, str, str]] = field(default_factory=list)
     robots: set[str] = field(default_factory=set)
-    debug: Data = field(default_factory=dict)
+    debug: records.Debug | None = None
     exit_code: int | None = None
 
     @classmethod
-    def of(cls, records: Iterable[Record], until: float | None = None) -> "Past":
+    def of(cls, happened: Iterable[Record], until: float | None = None) -> "Past":
         """Read records. Those after *until* (seconds), of unknown kinds or malformed are skipped."""
         past = cls()
-        for t, event, data in records:
-            if until is not None and t > until:
+        for t, event, data in happened:
+            if (until is not None and t > until) or not isinstance(data, Mapping):
                 continue
             past.end = max(past.end, t)
-            if event in _SEEN_OFTEN or not is_well_formed(event, data):
+            try:
+                past._take(t, None if event in FIELDS else decoded(event, data))
+            except ValidationError:
                 continue
-            take = _TAKERS.get(event)
-            if take is not None:
-                take(past, t, data)
-            elif isinstance(data.get("robot"), str):
-                past.world.append((t, event, data))
-                past.robots.add(data["robot"])
+            if isinstance(robot := data.get("robot"), str) and event not in _WITH_ROBOT:
+                past.world.append((t, event, robot))
+                past.robots.add(robot)
         return past
 
-    def plan(self, agent: str, plan: Any) -> Data:
-        """Return a plan of an agent; empty if it is unknown."""
-        return self.programs.get(agent, {}).get(plan, {})
+    def _take(self, t: float, data: Any) -> None:
+        match data:
+            case records.Cause():
+                known = self.links.get(data.id)
+                at = t if data.at is None else data.at
+                # The record of a deliberation or an operation has more details than its link.
+                self.links[data.id] = Link(at, data) if known is None else known._replace(t=at)
+            case records.Deliberation():
+                self.deliberations.append((t, data))
+                cause = records.Cause(data.id, "event", data.trigger, data.parent or 0, agent=data.agent)
+                self.links[data.id] = Link(self.links[data.id].t if data.id in self.links else t, cause, data)
+            case records.Operation():
+                self._take_operation(t, data)
+            case records.Message(id=int(number)) if number not in self.links:
+                cause = records.Cause(number, "message", data.content, data.cause or 0)
+                self.links[number] = Link(t, cause, data)
+            case _:
+                self._take_state(t, data)
 
-    def plans(self, agent: str = "") -> Iterator[tuple[str, Data]]:
+    def _take_state(self, t: float, data: Any) -> None:
+        match data:
+            case records.Program():
+                self.programs[data.agent] = {each.id: each for each in data.plans or ()}
+                self.rules[data.agent] = list(data.rules or ())
+            case records.Intention(state="over"):
+                self.intentions.pop((data.agent, data.id), None)
+            case records.Intention():
+                self.intentions[data.agent, data.id] = t, data
+            case records.Agent():
+                self.agents[data.agent] = t, data.state
+                self.began.setdefault(data.agent, t)
+                if data.state == "ended":
+                    for key in [key for key in self.intentions if key[0] == data.agent]:
+                        del self.intentions[key]
+            case records.Source():
+                self.sources[data.file] = data.text.split("\n")
+            case records.Artifact(robot=str(robot)):  # the record of a disposed artifact has no robot
+                self.robots_of[data.artifact] = robot
+                self.robots.add(robot)
+            case records.Debug():
+                self.debug = data
+            case records.Ended():
+                self.exit_code = data.code
+            case records.Belief():
+                self.beliefs.append((t, data))
+            case records.Goal():
+                self.goals.append((t, data))
+
+    def _take_operation(self, t: float, data: records.Operation) -> None:
+        if data.state != "began":
+            known = self.operations.get(data.id, Operation(data, t))
+            self.operations[data.id] = Operation(known.data, known.began, t, data)
+            return
+        self.operations[data.id] = Operation(data, t)
+        if data.id not in self.links:
+            cause = records.Cause(
+                data.id,
+                "operation",
+                data.operation,
+                data.cause or 0,
+                agent=data.agent,
+                artifact=data.artifact,
+            )
+            self.links[data.id] = Link(t, cause)
+
+    def plan(self, agent: str | None, plan: Any) -> records.Plan | None:
+        """Return a plan of an agent; None if it is unknown."""
+        return self.programs.get(agent or "", {}).get(plan)
+
+    def plans(self, agent: str = "") -> Iterator[tuple[str, records.Plan]]:
         """Iterate over all plans with their agents, or the plans of *agent*."""
         for name, plans in self.programs.items():
             if agent in ("", name):
                 for each in plans.values():
                     yield name, each
 
-    def chain(self, number: Any) -> Iterator[tuple[float, Data]]:
+    def chain(self, number: Any) -> Iterator[Link]:
         """Iterate over the links from one back to the beginning of its chain."""
         seen = set()
         while number in self.links and number not in seen:
             seen.add(number)
             yield self.links[number]
-            number = self.links[number][1].get("parent", 0)
+            number = self.links[number].cause.parent
 
 
-def of_agent(records: Iterable[tuple[float, Data]], agent: str) -> Iterator[tuple[float, Data]]:
+def of_agent(timed: Timed[Found], agent: str) -> Timed[Found]:
     """Return the records of one agent; all if *agent* is empty."""
-    return (each for each in records if agent in ("", each[1].get("agent")))
+    return [each for each in timed if agent in ("", each[1].agent)]
 
 
-def _take_cause(past: Past, t: float, data: Data) -> None:
-    known = past.links.get(data["id"])
-    at = t if data.get("at") is None else data["at"]
-    # The record of a deliberation or an operation has more details than its link.
-    past.links[data["id"]] = (at, data) if known is None else (at, {**data, **known[1]})
-
-
-def _take_deliberation(past: Past, t: float, data: Data) -> None:
-    past.deliberations.append((t, data))
-    known = past.links.get(data["id"])
-    told = {**(known[1] if known is not None else {}), **data, "kind": "event", "what": data["trigger"]}
-    past.links[data["id"]] = (known[0] if known is not None else t, told)
-
-
-def _take_operation(past: Past, t: float, data: Data) -> None:
-    number, state = data["id"], data.get("state")
-    if state == "began":
-        past.operations[number] = Operation(data, t)
-        if number not in past.links:
-            parent = data.get("cause") or 0
-            past.links[number] = t, {**data, "parent": parent, "kind": "operation", "what": data["operation"]}
-        return
-    known = past.operations.get(number, Operation(data, t))
-    reason = str(data.get("reason") or "")
-    past.operations[number] = Operation(known.data, known.began, t, str(state), reason, data)
-
-
-def _take_program(past: Past, _: float, data: Data) -> None:
-    past.programs[data["agent"]] = {each["id"]: each for each in data["plans"] or ()}
-    past.rules[data["agent"]] = list(data.get("rules") or ())
-
-
-def _take_intention(past: Past, t: float, data: Data) -> None:
-    key = data["agent"], data["id"]
-    if data.get("state") == "over":
-        past.intentions.pop(key, None)
-    else:
-        past.intentions[key] = t, data
-
-
-def _take_agent(past: Past, t: float, data: Data) -> None:
-    past.agents[data["agent"]] = t, data["state"]
-    past.began.setdefault(data["agent"], t)
-    if data["state"] == "ended":
-        for key in [key for key in past.intentions if key[0] == data["agent"]]:
-            del past.intentions[key]
-
-
-def _take_source(past: Past, _: float, data: Data) -> None:
-    past.sources[data["file"]] = str(data["text"]).split("\n")
-
-
-def _take_artifact(past: Past, _: float, data: Data) -> None:
-    # The record of a disposed artifact has no robot.
-    robot = data.get("robot") or past.artifacts.get(data["artifact"], {}).get("robot")
-    past.artifacts[data["artifact"]] = {**data, "robot": robot}
-    if robot:
-        past.robots.add(robot)
-
-
-def _take_debug(past: Past, _: float, data: Data) -> None:
-    past.debug = data
-
-
-def _take_end(past: Past, _: float, data: Data) -> None:
-    past.exit_code = data.get("code")
-
-
-def _take_message(past: Past, t: float, data: Data) -> None:
-    past.messages.append((t, data))
-    if isinstance(data.get("id"), int) and data["id"] not in past.links:
-        past.links[data["id"]] = t, {**data, "kind": "message", "parent": data.get("cause") or 0}
-
-
-_TAKERS: dict[str, Callable[[Past, float, Data], None]] = {
-    "cause": _take_cause,
-    "deliberation": _take_deliberation,
-    "operation": _take_operation,
-    "program": _take_program,
-    "intention": _take_intention,
-    "agent": _take_agent,
-    "source": _take_source,
-    "artifact": _take_artifact,
-    "debug": _take_debug,
-    "ended": _take_end,
-    "message": _take_message,
-    "belief": lambda past, t, data: past.beliefs.append((t, data)),
-    "goal": lambda past, t, data: past.goals.append((t, data)),
-    "property": lambda past, t, data: past.properties.append((t, data)),
-}
-_SEEN_OFTEN = frozenset({"laser", "path", "believed"})
+_WITH_ROBOT = frozenset({"laser", "path", "believed", "artifact"})
 """Records that name a robot but are not events."""

@@ -1,6 +1,7 @@
 """Literals in questions, such as ``+alarm(_)`` or ``!go(dock)``, matched against recorded texts."""
 
 import re
+from dataclasses import dataclass
 
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import parse_literal
@@ -13,6 +14,25 @@ from jacaros.errors import UsageError
 
 _PARTS = re.compile(r"\s*([+\-^]*)\s*([!?]?)\s*(.*)", re.DOTALL)
 _NAME = re.compile(r"~?\s*(?:\w+::)?(?:'[^']*'|[\w.]+)")
+_PLAIN_NAME = re.compile(r"~?(?:\w+::)?(?:'[^']*'|\w+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A parsed question.
+
+    Attributes:
+        written: as it was asked.
+        kind: one of `jacaros.mas.history.why.KINDS`, or ``name`` (a lone word, which may be a belief, a goal or a label).
+        about: its subject: a literal, a plan, a topic; empty without one.
+        agent, robot: the only ones that the answer is about; empty for all.
+    """
+
+    written: str
+    kind: str = "event"
+    about: str = ""
+    agent: str = ""
+    robot: str = ""
 
 
 class Pattern:
@@ -68,6 +88,22 @@ def _split(text: str) -> tuple[str, str, str]:
 def name_of(text: str) -> str:
     """Return the name in a trigger, goal or belief, such as ``go`` in ``+!go(dock)``; empty if it has none."""
     return _name(_split(text)[2])
+
+
+def literal_at(text: str, start: int) -> str:
+    """Return the literal at a position of a text, without what follows its name and arguments."""
+    name = _PLAIN_NAME.match(text, start)
+    if name is None:
+        return text[start:]
+    if text[name.end() : name.end() + 1] != "(":
+        return name[0]
+    depth, quoted = 0, False
+    for at in range(name.end(), len(text)):
+        quoted ^= text[at] == '"'
+        depth += 0 if quoted else (text[at] in "([{") - (text[at] in ")]}")
+        if depth == 0:
+            return text[start : at + 1]
+    return text[start:]
 
 
 def unsigned(text: str) -> str:

@@ -1,7 +1,6 @@
 """Records of programs: source files, and the plans of each agent by number."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import SourceFile
@@ -11,22 +10,22 @@ from jacaros.agents.mind.rules.failure_reason import unbracketed
 from jacaros.agents.mind.state.plan import Plan, Rule, every_plan
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.terms.text import text
+from jacaros.mas.history import records
+from jacaros.mas.history.records import Tell
 from jacaros.mas.history.words import named
-
-Tell = Callable[[str, Mapping[str, Any]], None]
 
 
 class ProgramRecords:
     """Records the programs of agents. Agents with the same program share the texts.
 
     Args:
-        tell: takes the kind of a record and its data.
+        tell: takes the records.
     """
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self._files: dict[str, str] = {}
-        self._known: dict[int, tuple[ProgramPlans, list[dict[str, Any]]]] = {}
+        self._known: dict[int, tuple[ProgramPlans, list[records.Plan]]] = {}
 
     def begin(self, mind: Mind) -> "PlanNumbers":
         """Record the program of an agent. Return the numbers of its plans."""
@@ -45,10 +44,9 @@ class ProgramRecords:
         for span in (each.span for each in (*(plan.node for plan in library.plans), *rules)):
             if span is not None:
                 self._source(span.file)
-        shown = [_written(rule) for rule in rules]
-        self._tell("program", {"agent": mind.name, "plans": plans, "rules": shown})
+        self._tell(records.Program(mind.name, plans, [_written(rule) for rule in rules]))
 
-    def _of_program(self, program: ProgramPlans) -> list[dict[str, Any]]:
+    def _of_program(self, program: ProgramPlans) -> list[records.Plan]:
         known = self._known.get(id(program))
         if known is None:
             numbers = PlanNumbers(program.plans)
@@ -59,7 +57,7 @@ class ProgramRecords:
     def _source(self, file: SourceFile) -> None:
         if self._files.get(file.name) != file.text:
             self._files[file.name] = file.text
-            self._tell("source", {"file": file.name, "text": file.text})
+            self._tell(records.Source(file.name, file.text))
 
 
 class PlanNumbers(dict[Plan, int]):
@@ -79,17 +77,12 @@ class PlanNumbers(dict[Plan, int]):
         return number
 
 
-def _plan(plan: Plan, number: int) -> dict[str, Any]:
+def _plan(plan: Plan, number: int) -> records.Plan:
     node, span = plan.node, plan.node.span
-    return {
-        "id": number,
-        "label": text(plan.label),
-        "trigger": named(format_term(node.trigger)),
-        "context": "" if node.context is None else _written(node.context),
-        "file": plan.file,
-        "line": 0 if span is None else span.line,
-        "end": 0 if span is None else span.end_line,
-    }
+    context = "" if node.context is None else _written(node.context)
+    first, last = (0, 0) if span is None else (span.line, span.end_line)
+    trigger = named(format_term(node.trigger))
+    return records.Plan(number, trigger, text(plan.label), context, plan.file, first, last)
 
 
 def _written(node: nodes.Node) -> str:

@@ -8,7 +8,8 @@ from typing import Any
 from jacaros.mas.history.about_events import candidates
 from jacaros.mas.history.chains import is_written, place_of, plan_name, plan_text, shown
 from jacaros.mas.history.explanation import Fact, seconds
-from jacaros.mas.history.past import Data, Past, Record
+from jacaros.mas.history.past import Past, Timed
+from jacaros.mas.history.records import Deliberation, Plan, Record
 
 MOST_EVENTS = 5
 """Number of events of one run only that the text lists."""
@@ -100,7 +101,7 @@ def compare(
     same = 0
     for event, handled in before.items():
         for (t, was), (_, is_now) in zip(handled, after[event], strict=False):
-            if identity.is_same(was.get("chosen"), is_now.get("chosen")):
+            if identity.is_same(was.chosen, is_now.chosen):
                 same += 1
             else:
                 decisions.append(_decision(old, new, t, event, was, is_now))
@@ -109,23 +110,23 @@ def compare(
     return Comparison(agent, same, tuple(decisions), only_then, only_now, tuple(waiting), unreadable)
 
 
-def _by_event(past: Past, agent: str) -> dict[str, list[tuple[float, Data]]]:
-    found: dict[str, list[tuple[float, Data]]] = defaultdict(list)
+def _by_event(past: Past, agent: str) -> dict[str, Timed[Deliberation]]:
+    found: dict[str, Timed[Deliberation]] = defaultdict(list)
     for t, data in past.deliberations:
-        if data.get("agent") == agent:
-            found[shown(data["trigger"])].append((t, data))
+        if data.agent == agent:
+            found[shown(data.trigger)].append((t, data))
     return found
 
 
-def _rest(
-    first: dict[str, list[tuple[float, Data]]], other: dict[str, list[tuple[float, Data]]]
-) -> tuple[str, ...]:
+def _rest(first: dict[str, Timed[Deliberation]], other: dict[str, Timed[Deliberation]]) -> tuple[str, ...]:
     """Return the events that only the first run has, the oldest first."""
     left = [(t, event) for event, handled in first.items() for t, _ in handled[len(other.get(event, ())) :]]
     return tuple(f"{event} at {seconds(t)}" for t, event in sorted(left))
 
 
-def _decision(old: Past, new: Past, t: float, event: str, was: Data, is_now: Data) -> Decision:
+def _decision(
+    old: Past, new: Past, t: float, event: str, was: Deliberation, is_now: Deliberation
+) -> Decision:
     then, now = (_chosen(past, data) for past, data in ((old, was), (new, is_now)))
     reasons = tuple(
         each for each in candidates(new, is_now) if not each.text.endswith((": chosen", "before it"))
@@ -133,8 +134,8 @@ def _decision(old: Past, new: Past, t: float, event: str, was: Data, is_now: Dat
     return Decision(t, event, then, now, reasons)
 
 
-def _chosen(past: Past, deliberation: Data) -> Fact | None:
-    plan = past.plan(str(deliberation["agent"]), deliberation.get("chosen"))
+def _chosen(past: Past, deliberation: Deliberation) -> Fact | None:
+    plan = past.plan(deliberation.agent, deliberation.chosen)
     return Fact("plan", plan_name(plan), None, "", *place_of(plan)) if plan else None
 
 
@@ -153,10 +154,10 @@ class _Identity:
         return self._then.get(then) == self._now.get(now)
 
 
-def _names(plans: dict[Any, Data], ordered: set[str]) -> Iterator[tuple[Any, tuple[str, str]]]:
+def _names(plans: dict[Any, Plan], ordered: set[str]) -> Iterator[tuple[Any, tuple[str, str]]]:
     seen: Counter[str] = Counter()
     for number, plan in plans.items():
-        trigger, label = _trigger(plan), str(plan.get("label") or "")
+        trigger, label = _trigger(plan), plan.label or ""
         seen[trigger] += 1
         if is_written(label):
             yield number, ("label", label)
@@ -166,9 +167,9 @@ def _names(plans: dict[Any, Data], ordered: set[str]) -> Iterator[tuple[Any, tup
             yield number, ("text", plan_text(plan))
 
 
-def _trigger(plan: Data) -> str:
+def _trigger(plan: Plan) -> str:
     """Return the kind of event that a plan is for: name and arguments without values."""
-    return shown(plan.get("trigger", "")).partition("(")[0]
+    return shown(plan.trigger).partition("(")[0]
 
 
 def _told(plan: Fact | None) -> str:

@@ -1,7 +1,7 @@
 """What a recording says of an agent: its inputs, and how its external actions ended."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 from jacaros.agents.body.body import keys
@@ -13,8 +13,9 @@ from jacaros.agents.mind.state.act import Act, Completion
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import String, Term, Var, deref, functor
 from jacaros.mas.history.chains import shown
-from jacaros.mas.history.past import Data, Past, Record
+from jacaros.mas.history.past import Past
 from jacaros.mas.history.patterns import name_of
+from jacaros.mas.history.records import Data, Operation, Record
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,14 +132,14 @@ class RecordedAct:
         written: with its arguments; empty if they were not recorded.
         began: seconds since the run began.
         ended: seconds since the run began; None if its end is unknown.
-        end: the record of its end; empty for an action that succeeded without one.
+        end: the record of its end; None for an action that succeeded without one.
     """
 
     key: str
     written: str
     began: float
     ended: float | None
-    end: Data = field(default_factory=dict)
+    end: Operation | None = None
 
 
 class RecordedActs:
@@ -150,22 +151,22 @@ class RecordedActs:
 
     def __init__(self, records: Iterable[Record], agent: str) -> None:
         past = Past.of(records)
-        operations = [each for each in past.operations.values() if each.data.get("agent") == agent]
+        operations = [each for each in past.operations.values() if each.data.agent == agent]
         self._left = [
             RecordedAct(
-                _operation_key(str(each.data["operation"])),
-                shown(each.data["operation"]),
+                _operation_key(each.data.operation),
+                shown(each.data.operation),
                 each.began,
                 None if each.reason == CANCELLED else each.ended,
                 each.last,
             )
             for each in operations
         ]
-        known = {each.data.get("cause") for each in operations}
+        known = {each.data.cause for each in operations}
         self._left += [
-            RecordedAct(str(link.get("what", "")).rpartition(" ")[2], "", t, t)
-            for number, (t, link) in past.links.items()
-            if link.get("kind") == "act" and link.get("agent") == agent and number not in known
+            RecordedAct(link.what.rpartition(" ")[2], "", t, t)
+            for number, (t, link, _) in past.links.items()
+            if link.sort == "act" and link.agent == agent and number not in known
         ]
         self._left.sort(key=lambda each: each.began)
 
@@ -188,17 +189,19 @@ class RecordedActs:
 
 def completion(recorded: RecordedAct, act: Act) -> Completion:
     """Return how an action ended, for its agent."""
-    if recorded.end.get("state") != "failed":
+    end = recorded.end
+    if end is None or end.state != "failed":
         return Completion(True, tuple(_outputs(recorded, act)))
-    message: Term = (_ERROR_MSG, String(str(recorded.end.get("reason") or "")))
-    term = _term(recorded.end.get("term"))
+    message: Term = (_ERROR_MSG, String(end.reason or ""))
+    term = _term(end.term)
     return Completion(False, (), (message,) if term is None else (message, (_REASON, term)))
 
 
 def _outputs(recorded: RecordedAct, act: Act) -> Iterator[tuple[Term, Term]]:
     """Return the output variables of an action with the recorded values."""
     variables = [each for each in act.arguments if deref(each).__class__ is Var]
-    for variable, written in zip(variables, recorded.end.get("outputs") or (), strict=False):
+    outputs = (recorded.end.outputs if recorded.end is not None else None) or ()
+    for variable, written in zip(variables, outputs, strict=False):
         value = _term(written)
         if value is not None:
             yield variable, value

@@ -17,8 +17,8 @@ from jacaros.mas.agents.host import AgentHost
 from jacaros.mas.embedding.mas import Mas
 from jacaros.mas.embedding.running_agent import RunningAgent
 from jacaros.mas.history.chains import shown
-from jacaros.mas.history.past import Data, Past, Record
-from jacaros.mas.history.well_formed import is_well_formed
+from jacaros.mas.history.past import Past
+from jacaros.mas.history.records import Data, Record, is_well_formed
 from jacaros.mas.replaying.differences import Comparison, compare
 from jacaros.mas.replaying.recording import Input, RecordedAct, RecordedActs, completion, inputs_of
 from jacaros.runtime.clock import VirtualClock, run
@@ -50,7 +50,7 @@ def replay_against(records: Sequence[Record], program: Path, agent: str = "") ->
 
 
 def _agent_of(past: Past, agent: str) -> str:
-    names = list(dict.fromkeys(str(data["agent"]) for _, data in past.deliberations))
+    names = list(dict.fromkeys(data.agent for _, data in past.deliberations))
     if not names:
         raise UsageError("error: no decisions in the recording\n  = help: record the run again with --record")
     if not agent and len(names) == 1:
@@ -132,11 +132,12 @@ class _Rerun:
             (each.t, each.order, each) for each in self._inputs
         ]
         ends = {
-            id(data): order for order, (_, event, data) in enumerate(self._records) if event == "operation"
+            data["id"]: order for order, (_, event, data) in enumerate(self._records) if event == "operation"
         }
         for act in self._acts.ends():
             assert act.ended is not None, "its end is known"
-            inputs.append((act.ended, ends[id(act.end)], act))
+            assert act.end is not None
+            inputs.append((act.ended, ends[act.end.id], act))
         return sorted(inputs, key=lambda each: each[:2])
 
     def _activity(self) -> list[int]:

@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.agents.terms.values import number
 from jacaros.cli.main import call
-from jacaros.mas.history.values import json_value
+from jacaros.mas.history.words import json_value
 
 BIG = 2**53 + 1
 

@@ -39,7 +39,7 @@ def test_an_observer_is_notified_of_every_change_of_a_goal() -> None:
 def goals_at_the_end(program):
     """The last text and state of each goal of a program, by number."""
     host, last = mind(program), {}
-    news = GoalRecords(lambda goal: last.update({goal["id"]: f"{goal['state']} {goal['goal']}"}))
+    news = GoalRecords(lambda goal: last.update({goal.id: f"{goal.state} {goal.goal}"}))
     observe_goals(host.agent, lambda *change: news("bob", *change))
     host.run()
     return list(last.values())
@@ -112,7 +112,7 @@ class Watched:
         observe_goals(self.host.agent, lambda *change: self._news("bob", *change))
 
     def _hear(self, goal):
-        number, state = goal["id"], goal["state"]
+        number, state = goal.id, goal.state
         assert not self._ends[number], goal
         self._last[number] = state
         self._ends[number] += state not in (*BEGUN, "failed")

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.mas.history.past import Record
+from jacaros.mas.history.records import Record
 
 SOURCE = """battery(100).
 limit(20).

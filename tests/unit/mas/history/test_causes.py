@@ -14,7 +14,7 @@ from jacaros.runtime.clock import VirtualClock
 def recorder() -> tuple[CauseRecords, list[dict[str, Any]], VirtualClock]:
     """Records of causes, the list that they are written to, and their clock."""
     clock, told = VirtualClock(), []
-    return CauseRecords(clock, clock.now(), lambda _, data: told.append(dict(data))), told, clock
+    return CauseRecords(clock, clock.now(), lambda record: told.append(record.plain())), told, clock
 
 
 def twist(x: float) -> Any:

@@ -8,8 +8,7 @@ import pytest
 from guard_story import RECORDS
 
 from jacaros.errors import UsageError
-from jacaros.mas.history.past import Record
-from jacaros.mas.history.well_formed import is_well_formed
+from jacaros.mas.history.records import Record, is_well_formed
 from jacaros.mas.history.why import explain
 
 QUESTIONS = (

@@ -11,9 +11,7 @@ from jacaros.mas.history.goals import GoalRecords
 def told():
     """The records, as ``id state goal``. Called with the reports of a mind."""
     lines = []
-    news = GoalRecords(
-        lambda goal: lines.append(f"{goal['id']} {goal['agent']} {goal['state']} {goal['goal']}")
-    )
+    news = GoalRecords(lambda goal: lines.append(f"{goal.id} {goal.agent} {goal.state} {goal.goal}"))
 
     def hear(*states, agent="bob", goal="!patrol", number=139_867):
         for state in states:
@@ -51,7 +49,7 @@ def test_events_and_waits_are_not_recorded_as_goals(told):
     news("bob", "executing", (trigger("+", "", functor("bump", 0)),), 1, 1)
     assert heard == []
     news("bob", "executing", (trigger("+", "!", functor("bump", 0)),), 2, 1)
-    assert [goal["goal"] for goal in heard] == ["!bump"]
+    assert [goal.goal for goal in heard] == ["!bump"]
 
 
 def test_a_goal_whose_failure_was_handled_has_ended(told):
@@ -75,8 +73,8 @@ def test_the_reason_of_a_failed_goal_is_recorded():
     news = GoalRecords(told.append)
     news.take("bob", "executing", "!patrol", 1, 1)
     news.take("bob", "failed", "!patrol", 1, 1, "no way")
-    assert ["why" in each for each in told] == [False, True]
-    assert told[1]["why"] == "no way"
+    assert ["why" in each.plain() for each in told] == [False, True]
+    assert told[1].why == "no way"
 
 
 def test_a_goal_ends_with_its_intention(told):

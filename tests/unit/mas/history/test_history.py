@@ -5,6 +5,7 @@ from observed_runs import of, records_of
 
 import jacaros
 from jacaros import Mas
+from jacaros.mas.history import records
 from jacaros.mas.history.history import History
 
 
@@ -41,19 +42,40 @@ def observed(act):
 
 def test_old_records_are_dropped_except_those_that_describe_present_agents():
     def act(history):
-        history.record("agent", {"agent": "ann", "state": "began"})
-        history.record("agent", {"agent": "bob", "state": "began"})
+        history.record(records.Agent("ann", "began"))
+        history.record(records.Agent("bob", "began"))
         for number in range(3):
-            history.record("tick", {"number": number})
+            history.record(records.Log("info", str(number)))
         assert [data for _, _, data in history.all()][:2] == [
             {"agent": "ann", "state": "began"},
             {"agent": "bob", "state": "began"},
         ]
-        assert [data.get("number") for _, _, data in history.events] == [0, 1, 2]
-        history.record("agent", {"agent": "ann", "state": "ended"})
+        assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
+        history.record(records.Agent("ann", "ended"))
         for number in range(3):
-            history.record("tick", {"number": number})
+            history.record(records.Log("info", str(number)))
         assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
+
+    observed(act)
+
+
+def test_nothing_of_an_ended_agent_lasts():
+    def act(history):
+        for name in ("ann", "bob"):
+            history.record(records.Agent(name, "began"))
+            history.record(records.Belief(name, "+", "kind"))
+            history.record(records.Goal(name, "!go", "pursued", 1))
+            history.record(records.Goal(name, "!go", "suspended", 1))
+        history.record(records.Agent("ann", "ended"))
+        for number in range(3):
+            history.record(records.Log("info", str(number)))
+        assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
+            ("agent", "began"),
+            ("belief", None),
+            ("goal", "pursued"),
+            ("goal", "suspended"),
+        ]
+        assert all(data["agent"] == "bob" for _, _, data in history.all()[:-3])
 
     observed(act)
 
@@ -61,11 +83,11 @@ def test_old_records_are_dropped_except_those_that_describe_present_agents():
 def test_a_listener_hears_until_it_ends():
     def act(history):
         heard = []
-        end = history.listen(lambda t, event, data: heard.append(event))
-        history.record("one", {})
+        end = history.listen(lambda t, event, data: heard.append(data["text"]))
+        history.record(records.Log("info", "one"))
         end()
         end()
-        history.record("two", {})
+        history.record(records.Log("info", "two"))
         assert heard == ["one"]
 
     observed(act)
@@ -91,10 +113,10 @@ def test_the_last_stop_ends_the_observation(starts):
 def test_an_artifact_that_was_disposed_is_not_kept():
     def act(history):
         for state in ("made", "disposed"):
-            history.record("artifact", {"artifact": "/main/lamp", "state": state})
-        history.record("artifact", {"artifact": "/main/door", "state": "made"})
+            history.record(records.Artifact("/main/lamp", state=state))
+        history.record(records.Artifact("/main/door", state="made"))
         for number in range(3):
-            history.record("tick", {"number": number})
+            history.record(records.Log("info", str(number)))
         assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
 
     observed(act)

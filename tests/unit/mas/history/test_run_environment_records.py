@@ -6,7 +6,7 @@ from typing import Any
 
 import jacaros
 from jacaros import Mas
-from jacaros.mas.history.robots import RobotRecords
+from jacaros.mas.history.run_environment import RobotRecords
 from jacaros.runtime.clock import VirtualClock
 
 LAMPS = """
@@ -189,7 +189,7 @@ def test_the_path_of_embedded_navigation_is_recorded_until_the_robot_arrives() -
     robots = Robots()
     records = RobotRecords(
         VirtualClock(),
-        lambda event, data: told.append((event, dict(data))),
+        lambda record: told.append((record.kind, record.plain())),
         str,
         lambda: robots,
         lambda: {"rob": (0.0, 0.0, 0.0)},
