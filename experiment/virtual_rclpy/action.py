@@ -48,7 +48,7 @@ class ActionClient:
         self._feedback: dict[str, Callable[[Any], object] | None] = {}
         self._sent: dict[str, tuple[Any, Future]] = {}
         self._handles: dict[str, ClientGoalHandle] = {}
-        self.graph.graph.connect(self)  # type: ignore[arg-type]  # it answers as a GoalSender does
+        self.graph.graph.connect(self)  # type: ignore[arg-type]  # it answers as an ActionClient does
 
     def server_is_ready(self) -> bool:
         """Return whether a server offers the action."""

@@ -15,7 +15,7 @@ from jacaros.cli.variables import VariableOption
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
-    from jacaros.ros.orphans import OrphanPolicy
+    from jacaros.ros.action_client import OrphanPolicy
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -11,7 +11,7 @@ from jacaros.ros.address import GraphAddress
 from jacaros.ros.middleware import MIDDLEWARES, middleware
 
 if TYPE_CHECKING:
-    from jacaros.ros.orphans import OrphanPolicy
+    from jacaros.ros.action_client import OrphanPolicy
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,11 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Protocol
 
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import text_of
+from jacaros.ros.action import text_of
+from jacaros.ros.action_client import ActionClient, Orphans
 from jacaros.ros.backend import Publisher, Sample, Subscription
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import result_type
-from jacaros.ros.orphans import Orphans
 from jacaros.ros.protocols.actionlib import (
     COMMANDS,
     ID_TYPE,
@@ -71,7 +70,7 @@ class ActionlibWire:
         sender: the client.
     """
 
-    def __init__(self, node: ActionTopicsNode, sender: GoalSender) -> None:
+    def __init__(self, node: ActionTopicsNode, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         name, kind = sender.name, sender.type_name

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
-from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals
 from jacaros.ros.actionlib_client import ActionTopicsNode
 from jacaros.ros.backend import Sample
 from jacaros.ros.names import result_type

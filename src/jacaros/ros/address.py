@@ -10,8 +10,8 @@ from jacaros.ros.middleware import MIDDLEWARES, Middleware, middleware
 
 # Code that only programs with robots need is imported in functions: every run has an address among its options.
 if TYPE_CHECKING:
+    from jacaros.ros.action_client import OrphanPolicy
     from jacaros.ros.backend import Backend
-    from jacaros.ros.orphans import OrphanPolicy
     from jacaros.ros.parameter import ParameterValue
     from jacaros.runtime.clock import Clock
 

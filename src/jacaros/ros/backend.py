@@ -9,7 +9,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Protocol
 
-from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
+from jacaros.ros.action import ActionPolicy, ActionServer, Execute
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import GivenParameters, Parameters

@@ -9,8 +9,7 @@ from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
 from jacaros.ros.names import request_type
 from jacaros.ros.node import Node
-from jacaros.ros.serving import checked_message
-from jacaros.ros.waiting import RETRY, Absence, Waiting, settle
+from jacaros.ros.waiting import RETRY, Absence, Deadline, Waiting, settle
 from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
@@ -43,7 +42,7 @@ class AttemptingClient:
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
         """Call the service and return its response."""
         node = self._node
-        message = checked_message(node.factory, request_type(self._type_name), request)
+        message = node.factory.checked(request_type(self._type_name), request)
         what = f"service {self.name} ({self._type_name})"
 
         async def attempt(rest: float | None) -> Any:
@@ -88,7 +87,7 @@ async def call_when_offered(
         ServiceUnavailable: no node offered the service in time.
         CallTimedOut: it was called but did not answer in time.
     """
-    deadline = None if timeout is None else clock.elapsed + timeout
+    deadline = Deadline(clock, timeout)
     waiting: Waiting | None = None
 
     def nobody() -> ServiceUnavailable:
@@ -97,13 +96,13 @@ async def call_when_offered(
     try:
         while True:
             try:
-                response = await attempt(None if deadline is None else deadline - clock.elapsed)
+                response = await attempt(deadline.left)
             except TimeoutError:
                 if waiting is not None and not may_be_called():
                     raise nobody() from None
                 raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
             except ServiceUnavailable:
-                if deadline is not None and clock.elapsed + RETRY > deadline:
+                if deadline.comes_within(RETRY):
                     raise nobody() from None
             else:
                 if waiting is None and absence is not None:

@@ -95,6 +95,18 @@ class MessageFactory:
             return self._time(type_name, values or {})
         return self._make(type_name, values or {}, "")
 
+    def checked(self, type_name: str, given: Any) -> Any:
+        """Return *given* as a message of a type: unchanged, made from a mapping, or with all defaults for None.
+
+        Raises:
+            MessageMismatch: it does not match the type definition.
+        """
+        if given is None or isinstance(given, Mapping):
+            return self.make(type_name, given)
+        if not isinstance(given, self.message_class(type_name)):
+            raise MessageMismatch(f"expected a {type_name}, found {given!r}", type_name)
+        return given
+
     def _make(self, type_name: str, values: Mapping[str, Any], path: str) -> Any:
         message = self.schema.new(type_name)
         for set_default in self._default_setters(type_name):

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, ClassVar, NoReturn, TypeVar
 from weakref import WeakKeyDictionary
 
-from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer, Execute
-from jacaros.ros.action_calling import LeavingGoals
+from jacaros.ros.action import ActionPolicy, ActionServer, Execute
+from jacaros.ros.action_client import ActionClient, LeavingGoals, OrphanPolicy, Orphans
 from jacaros.ros.backend import (
     DEADLINES,
     DEFAULT_POLICY,
@@ -30,7 +30,6 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import MessageFactory, Schema
 from jacaros.ros.names import NodeNames, action_type, message_type, service_type
-from jacaros.ros.orphans import OrphanPolicy, Orphans
 from jacaros.ros.parameter import GivenParameters, Parameters, ParameterValue
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import DEFAULT_QOS, QoS

@@ -11,19 +11,6 @@ from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import response_type
 
 
-def checked_message(factory: MessageFactory, type_name: str, given: Any) -> Any:
-    """Return *given* as a message of a type: unchanged, made from a mapping, or with all defaults for None.
-
-    Raises:
-        MessageMismatch: it does not match the type definition.
-    """
-    if given is None or isinstance(given, Mapping):
-        return factory.make(type_name, given)
-    if not isinstance(given, factory.message_class(type_name)):
-        raise MessageMismatch(f"expected a {type_name}, found {given!r}", type_name)
-    return given
-
-
 def published_message(factory: MessageFactory, topic: str, type_name: str, given: Any) -> Any:
     """Make the message for a publisher from a mapping.
 
@@ -72,7 +59,7 @@ class Responder:
             result = self._handler(request)
             if inspect.isawaitable(result):
                 result = await result
-            response = checked_message(self._factory, self._response_type, result)
+            response = self._factory.checked(self._response_type, result)
         except asyncio.CancelledError:
             done(None, CallFailed(f"service {self._name} was closed during the call"))
             raise

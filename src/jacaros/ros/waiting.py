@@ -1,6 +1,7 @@
 """Logged waiting: the start, a message with help after a few seconds, and the end."""
 
 import asyncio
+import math
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TypeVar
@@ -92,6 +93,33 @@ class Waiting:
 
     def _missing(self) -> None:
         self._log(f"the {self._what} is missing; still trying; {self._help}")
+
+
+class Deadline:
+    """The end of a wait.
+
+    Args:
+        clock: measures the time.
+        timeout: seconds from now; None: no limit.
+    """
+
+    def __init__(self, clock: Clock, timeout: float | None) -> None:
+        self.timeout = timeout
+        self._clock = clock
+        self._end = math.inf if timeout is None else clock.elapsed + timeout
+
+    @property
+    def left(self) -> float | None:
+        """The remaining seconds; None: no limit."""
+        return None if self.timeout is None else self._end - self._clock.elapsed
+
+    def comes_within(self, seconds: float) -> bool:
+        """Return whether the wait ends in less than *seconds*."""
+        return self._clock.elapsed + seconds > self._end
+
+    def postpone(self, seconds: float) -> None:
+        """Do not count *seconds* of the wait."""
+        self._end += seconds
 
 
 async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None) -> T:

@@ -8,7 +8,7 @@ from jacaros.ros.protocols.actionlib import ENOUGH_NEWS, OVERTAKEN, SentGoal, Se
 
 
 class Client:
-    """Notes what `SentGoals` tells and asks; takes the place of a `GoalSender`."""
+    """Notes what `SentGoals` tells and asks; takes the place of an `ActionClient`."""
 
     name = "act"
 

@@ -22,7 +22,8 @@ from jacaros.artifacts.kit.faults import Faults, Listener
 from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, text, watching
 from jacaros.artifacts.kit.other_publishers import OtherPublishers
 from jacaros.artifacts.kit.services import ServedOperation
-from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
+from jacaros.ros.action import ActionPolicy, ActionServer
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.backend import (
     DEFAULT_POLICY,
     DISCOVERY,

@@ -26,7 +26,7 @@ from jacaros.artifacts.mapping.publishing import Publishing
 from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_updater
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.files.yaml import Problem
-from jacaros.ros.action import ActionClient
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.backend import Client
 from jacaros.ros.errors import CapabilityMissing, NameInvalid, ParameterRefused, ParameterUnknown, RosError
 from jacaros.ros.fields import FieldType

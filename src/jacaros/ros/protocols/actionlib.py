@@ -11,7 +11,7 @@ from enum import IntEnum
 from typing import Any
 
 from jacaros.ros.action import GoalStatus, Outcome
-from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.errors import ServerLost
 from jacaros.ros.qos import QoS
 
@@ -121,7 +121,7 @@ class SentGoals(dict[str, SentGoal]):
 
     def __init__(
         self,
-        sender: GoalSender,
+        sender: ActionClient,
         make_result: Callable[[], Any],
         send: Callable[[Any], None],
         cancel: Callable[[str], None],

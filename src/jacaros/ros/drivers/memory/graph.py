@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Protocol
 
-from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.lifetime import Lifetime
@@ -51,7 +51,7 @@ class GoalLine(Protocol):
     """An action client's connection to the servers."""
 
     name: str
-    sender: GoalSender
+    sender: ActionClient
 
     @property
     def offered(self) -> bool:

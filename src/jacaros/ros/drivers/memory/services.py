@@ -5,9 +5,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, ServedGoals
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.backend import Handler
 from jacaros.ros.calling import PendingCalls, server_gone
 from jacaros.ros.drivers.memory.graph import GoalLine, GraphActionServer, GraphService, MemoryNode
@@ -15,7 +14,7 @@ from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, Serv
 from jacaros.ros.names import request_type
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
-from jacaros.ros.serving import Responder, checked_message
+from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import Absence, Waiting, settle, within
 
 
@@ -87,7 +86,7 @@ class MemoryClient:
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
         """Call the service and return its response."""
         clock = self._node.clock
-        message = checked_message(self._node.factory, request_type(self._type_name), request)
+        message = self._node.factory.checked(request_type(self._type_name), request)
         deadline = None if timeout is None else clock.elapsed + timeout
         server = await self._server(timeout)
         if server.type_name != self._type_name:
@@ -190,13 +189,13 @@ class MemoryActionServer:
 
 
 class MemoryGoalWire:
-    """Transfers goals from a `GoalSender` to the servers of the graph."""
+    """Transfers goals from a `ActionClient` to the servers of the graph."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         node.schema.action(type_name)
         self.name = name
         self.graph = node.graph
-        self.sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
+        self.sender = ActionClient(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
         self.sender.wire = self
         self._node = node
         self._type_name = type_name
@@ -205,7 +204,7 @@ class MemoryGoalWire:
         self._forget_hook = node.add_exit_hook(self._cancel_all)
 
     @classmethod
-    def client(cls, node: MemoryNode, name: str, type_name: str) -> GoalSender:
+    def client(cls, node: MemoryNode, name: str, type_name: str) -> ActionClient:
         """Make an action client for the port, and register its wire at the node."""
         return node.keep(cls(node, name, type_name)).sender
 

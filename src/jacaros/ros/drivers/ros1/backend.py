@@ -13,7 +13,7 @@ from typing import Any
 
 import rosgraph.network  # type: ignore[import-not-found]
 
-from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import (
@@ -41,8 +41,10 @@ from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.waiting import within
 
 
-def _action_client(node: Ros1Node, name: str, type_name: str) -> GoalSender:
-    sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans)
+def _action_client(node: Ros1Node, name: str, type_name: str) -> ActionClient:
+    sender = ActionClient(
+        node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
+    )
     sender.wire = ActionlibWire(node, sender)
     return sender
 

@@ -12,8 +12,7 @@ from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray  # type: ignor
 from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
 from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 
-from jacaros.ros.action import ActionPolicy, Execute, Outcome
-from jacaros.ros.action_serving import ServedGoals
+from jacaros.ros.action import ActionPolicy, Execute, Outcome, ServedGoals
 from jacaros.ros.drivers.ros2.graph import profile
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.services import LateService

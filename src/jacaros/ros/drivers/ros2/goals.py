@@ -10,9 +10,8 @@ from action_msgs.srv import CancelGoal  # type: ignore[import-not-found]
 from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[import-not-found]
 from rclpy.qos import QoSProfile  # type: ignore[import-not-found]
 
-from jacaros.ros.action import Outcome
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import text_of
+from jacaros.ros.action import Outcome, text_of
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.drivers.ros2.actions import goal_id, id_message
 from jacaros.ros.drivers.ros2.graph import action_mismatch, action_servers, action_servers_in, profile
 from jacaros.ros.drivers.ros2.node import STOPPING_ROBOTS, Ros2Node
@@ -60,7 +59,7 @@ class _SentGoal:
 
 
 class Ros2GoalWire:
-    """Transfers goals from a `GoalSender` to the servers of the graph.
+    """Transfers goals from a `ActionClient` to the servers of the graph.
 
     A lost answer (a server answers before it has discovered the client, or a network fails) leaves no caller waiting:
     acceptance and end are also visible in the status topic, and then the request is repeated.
@@ -68,7 +67,7 @@ class Ros2GoalWire:
 
     def __init__(self, node: Ros2Node, name: str, type_name: str) -> None:
         self.name = name
-        self.sender = GoalSender(
+        self.sender = ActionClient(
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
         self.sender.wire = self  # pyright: ignore[reportAttributeAccessIssue]
@@ -114,7 +113,7 @@ class Ros2GoalWire:
         node.unsent[self._cancelled] = STOPPING_ROBOTS
 
     @classmethod
-    def client(cls, node: Ros2Node, name: str, type_name: str) -> GoalSender:
+    def client(cls, node: Ros2Node, name: str, type_name: str) -> ActionClient:
         """Make an action client for the port, and register its wire at the node."""
         return node.keep(cls(node, name, type_name)).sender
 

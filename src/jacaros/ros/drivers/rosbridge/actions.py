@@ -11,9 +11,8 @@ import uuid
 from functools import partial
 from typing import Any
 
-from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
-from jacaros.ros.action_calling import GoalSender, GoalWire
-from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, text_of
+from jacaros.ros.action import TEXT_FIELDS, ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals, text_of
+from jacaros.ros.action_client import ActionClient, GoalWire
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Sample
@@ -53,7 +52,7 @@ class PresenceWatch:
         sender: informed when the server comes and goes.
     """
 
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
+    def __init__(self, node: BridgeNode, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         # rosapi does not report publishers of the hidden topics of actions, nor servers of their services.
@@ -98,7 +97,7 @@ class PresenceWatch:
 class Ros2Goals:
     """The `GoalWire` of an action client on a ROS 2 robot."""
 
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
+    def __init__(self, node: BridgeNode, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         self._goals: dict[str, _Sent] = {}
@@ -327,7 +326,7 @@ LOST_LINK = (
 )
 
 
-class BridgeActionClient(GoalSender):
+class BridgeActionClient(ActionClient):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
@@ -360,7 +359,7 @@ class BridgeActionClient(GoalSender):
 class _Wire:
     """The `GoalWire` for the robot's version of ROS."""
 
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
+    def __init__(self, node: BridgeNode, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         self._version = 0
