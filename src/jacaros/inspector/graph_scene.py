@@ -11,10 +11,11 @@ from jacaros.artifacts.robots.charge import Charge
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.scene import UNKNOWN, RobotView
-from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import constant
+from jacaros.ros.node import TRANSFORMS, Sample, Subscription
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Clock

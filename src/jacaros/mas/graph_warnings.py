@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
-from jacaros.ros.backend import Backend, Subscription
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import GraphContents
+from jacaros.ros.node import Subscription
 from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
@@ -40,7 +41,7 @@ class GraphTime:
 
     def watch(self) -> None:
         """Begin to watch."""
-        from jacaros.ros.backend import PARAMETERS
+        from jacaros.ros.node import PARAMETERS
         from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 
         backend = self._backend

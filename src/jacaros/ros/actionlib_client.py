@@ -7,9 +7,9 @@ from typing import Any, Protocol
 
 from jacaros.ros.action import text_of
 from jacaros.ros.action_client import ActionClient, Orphans
-from jacaros.ros.backend import Publisher, Sample, Subscription
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import result_type
+from jacaros.ros.node import Publisher, Sample, Subscription
 from jacaros.ros.protocols.actionlib import (
     COMMANDS,
     ID_TYPE,

@@ -8,8 +8,8 @@ from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals
 from jacaros.ros.actionlib_client import ActionTopicsNode
-from jacaros.ros.backend import Sample
 from jacaros.ros.names import result_type
+from jacaros.ros.node import Sample
 from jacaros.ros.protocols.actionlib import (
     COMMANDS,
     GOAL_STATUS_TYPE,

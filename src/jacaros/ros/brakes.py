@@ -9,9 +9,11 @@ from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import Any
 
-from jacaros.ros.backend import Backend, Client, Publisher
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError, ServiceError
 from jacaros.ros.guarded import Named, velocity
+from jacaros.ros.node import Publisher
+from jacaros.ros.services import Client
 
 CANCELLING = 0.25
 """Seconds between two requests to cancel all goals, and the maximum wait for an answer."""

@@ -15,9 +15,10 @@ import json
 import secrets
 from collections.abc import Callable
 
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.guarded import guarded_by
 from jacaros.ros.heartbeat import description
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import QoS
 
 PERIOD = 0.1

@@ -17,12 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.brakes import CANCELLING, Brakes
 from jacaros.ros.graph_heartbeat import NEWEST, TEXT, topics_of
 from jacaros.ros.guarded import Named
 from jacaros.ros.guarding import Watch
 from jacaros.ros.heartbeat import NO_GUARD, line
+from jacaros.ros.node import Sample
 
 PERIOD = 0.05
 """Seconds between two zero velocities while the robot is being stopped."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.qos import QoS
 

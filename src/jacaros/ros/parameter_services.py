@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.ros.backend import Client
+from jacaros.ros.services import Client
 
 
 class ParameterServices:

@@ -1,7 +1,7 @@
 """The graph's own log: each line is a message on ``/rosout``."""
 
-from jacaros.ros.backend import Backend, Publisher
 from jacaros.ros.errors import RosError
+from jacaros.ros.node import Node, Publisher
 from jacaros.ros.qos import QoS
 
 TOPIC = "/rosout"
@@ -20,7 +20,7 @@ class RosoutWriter:
         node: the backend; the publisher is made for the first line.
     """
 
-    def __init__(self, node: Backend) -> None:
+    def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher: Publisher | None = None
 

@@ -1,6 +1,7 @@
 """Doors in the ROS graph: a service that moves each door, and a topic with its state."""
 
-from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Publisher
 from jacaros.ros.qos import QoS
 from jacaros.sim.switch_service import SwitchService
 from jacaros.sim.world_time import WorldTime

@@ -3,10 +3,12 @@
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from jacaros.ros.backend import Backend, Publisher, Service
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import stamp
+from jacaros.ros.node import Publisher
 from jacaros.ros.qos import QoS
+from jacaros.ros.services import Service
 from jacaros.sim.navigation.frames import MAP
 from jacaros.sim.navigation.grid import Grid
 

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from jacaros.ros.backend import Backend, Service
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.services import Service
 from jacaros.sim.world_time import WorldTime
 
 _TYPE = "std_srvs/srv/SetBool"

@@ -10,12 +10,12 @@ from typing import Any
 
 import aiomqtt
 
-from jacaros.ros.backend import DISCOVERY, TOPICS, TRANSFORMS
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import ServiceUnavailable
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings, Parts
+from jacaros.ros.node import DISCOVERY, TOPICS, TRANSFORMS, NodeSettings, Parts
 from jacaros.ros.typestore import DefinitionSchema
 from mqtt_driver.topics import MqttMultiplexer, MqttPublisher, MqttSubscription, parts_of
 
@@ -27,7 +27,7 @@ SENDING = 0.5
 """Seconds that closing waits for the messages published last to leave."""
 
 
-class MqttBackend(Node):
+class MqttBackend(Backend):
     """A node in a graph that consists of a broker's clients.
 
     Args:

@@ -10,8 +10,8 @@ from jacaros.artifacts import Structure
 from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
-from jacaros.ros.backend import DISCOVERY, Publisher, Sample
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.node import DISCOVERY, Publisher, Sample
 
 
 def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:

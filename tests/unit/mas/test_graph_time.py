@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from jacaros.mas.graph_warnings import GraphTime
-from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+from jacaros.ros.node import PARAMETERS
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -4,11 +4,11 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import CallTimedOut, ServerUnavailable, ServiceUnavailable
 from jacaros.ros.message import stamp
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.ros.services import call_when_offered
 from jacaros.runtime.clock import VirtualClock, run
 
 

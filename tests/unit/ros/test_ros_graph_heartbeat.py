@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from jacaros.ros import graph_heartbeat
-from jacaros.ros.backend import Publisher
 from jacaros.ros.graph_heartbeat import TEXT, GraphHeartbeat, topics_of
 from jacaros.ros.guard import NETWORK_TIMEOUT, Guard
 from jacaros.ros.guarded import Guarded, guarded_by
 from jacaros.ros.guarding import Watch
 from jacaros.ros.heartbeat import Heartbeat
+from jacaros.ros.node import Publisher
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import WallClock, run
 

@@ -5,8 +5,8 @@ import asyncio
 import pytest
 
 from jacaros.ros.action import SERVER_LOST_AFTER
-from jacaros.ros.calling import LOOK, ServerWatch
 from jacaros.ros.errors import ServerGone
+from jacaros.ros.services import LOOK, ServerWatch
 from jacaros.ros.waiting import Absence
 from jacaros.runtime.clock import VirtualClock, run
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
+from jacaros.ros.services import call_when_offered
 from jacaros.ros.waiting import Absence
 from jacaros.runtime.clock import VirtualClock, run
 

@@ -24,23 +24,14 @@ from jacaros.artifacts.kit.other_publishers import OtherPublishers
 from jacaros.artifacts.kit.services import ServedOperation
 from jacaros.ros.action import ActionPolicy, ActionServer
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.backend import (
-    DEFAULT_POLICY,
-    DISCOVERY,
-    Backend,
-    Client,
-    Closable,
-    Publisher,
-    Sample,
-    Service,
-    Subscription,
-    TopicEvent,
-)
+from jacaros.ros.backend import DEFAULT_POLICY, Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.names import message_type
+from jacaros.ros.node import DISCOVERY, Closable, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.services import Client, Service
 
 C = TypeVar("C", bound=Closable)
 

@@ -17,9 +17,9 @@ from jacaros.artifacts.kit.acting import (
 from jacaros.artifacts.kit.sensing_artifact import SensingArtifact
 from jacaros.artifacts.kit.services import CallFailure, call
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.backend import Client
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.services import Client
 
 
 class RosArtifact(SensingArtifact):

@@ -38,10 +38,11 @@ from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import DeclaredOperation
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.ros.action import Abort, ServerGoal
-from jacaros.ros.backend import Backend, Client, Handler
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import CallTimedOut, RosError, ServerGone, ServiceError, ServiceUnavailable
 from jacaros.ros.message import field_names
 from jacaros.ros.names import response_type, result_type
+from jacaros.ros.services import Client, Handler
 
 ABORTED = "aborted"
 """Functor of the failure reason whose first argument is the result's ``error_code``."""

@@ -8,8 +8,8 @@ from jacaros.artifacts.kit.reading import Reading, ReadingPolicy, Values
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.mapping.declared import ArtifactPart, MappingFile, Place
 from jacaros.files.yaml import Problem, shown
-from jacaros.ros.backend import TopicEvent, TopicTrouble
 from jacaros.ros.names import frame_name
+from jacaros.ros.node import TopicEvent, TopicTrouble
 from jacaros.runtime.trace import Cause
 
 Tap = Callable[[float, Values | None, Cause | None], None]

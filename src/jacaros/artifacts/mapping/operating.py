@@ -27,9 +27,9 @@ from jacaros.artifacts.mapping.topic_multiplexer import Updater, feedback_update
 from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.files.yaml import Problem
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.backend import Client
 from jacaros.ros.errors import CapabilityMissing, NameInvalid, ParameterRefused, ParameterUnknown, RosError
 from jacaros.ros.fields import FieldType
+from jacaros.ros.services import Client
 
 
 class Operations:

@@ -15,7 +15,7 @@ from jacaros.artifacts.mapping.declared import AS_IT_IS, Conversion, ParameterPa
 from jacaros.artifacts.mapping.decoding import Convert, Unshowable, converted
 from jacaros.artifacts.mapping.host import Host
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION, Backend
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import (
     CapabilityMissing,
     ParameterRefused,
@@ -23,6 +23,7 @@ from jacaros.ros.errors import (
     RosError,
     ServiceUnavailable,
 )
+from jacaros.ros.node import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION
 from jacaros.ros.parameter import Declaration, ParameterValue, fault_of
 
 PATIENCE = 2.0

@@ -16,9 +16,9 @@ from jacaros.artifacts.mapping.type_search import ask_type
 from jacaros.artifacts.resources.arbiter import WHEELS
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import Publisher
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.guarded import VELOCITIES, guarded_by
+from jacaros.ros.node import Publisher
 from jacaros.ros.qos import DEFAULT_QOS
 
 

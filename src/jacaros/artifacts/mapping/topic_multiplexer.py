@@ -18,9 +18,9 @@ from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.rows import Extract, Row, extractor
 from jacaros.artifacts.mapping.type_search import TypeSearch
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import Sample, Subscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample, Subscription
 from jacaros.ros.qos import SENSOR_DATA, STATE, QoS
 from jacaros.runtime.clock import Timer
 from jacaros.runtime.trace import Cause

@@ -6,8 +6,9 @@ from weakref import WeakSet
 
 from jacaros.artifacts.robots.odometry import Odometer
 from jacaros.plane.pose import Pose, normalised
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample
 
 LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
 TOLERANCE = (0.05, math.radians(3.0))

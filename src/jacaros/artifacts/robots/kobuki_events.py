@@ -6,7 +6,7 @@ from jacaros.artifacts.env.artifact import internal_operation, operation
 from jacaros.artifacts.env.values import Atom
 from jacaros.artifacts.kit.options import text
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 
 SIDES: tuple[str, ...] = ("left", "center", "right")
 """Sides by their numbers in ``kobuki_msgs/msg/BumperEvent`` and ``CliffEvent``."""

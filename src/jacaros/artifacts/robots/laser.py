@@ -10,7 +10,7 @@ from jacaros.artifacts.kit.faults import Header
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy, not_finite
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)

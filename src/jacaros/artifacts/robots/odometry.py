@@ -12,7 +12,7 @@ from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolic
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.control import Velocity
 from jacaros.plane.pose import Pose, yaw_of
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import SENSOR_DATA
 from jacaros.runtime.clock import Clock
 

@@ -6,7 +6,7 @@ from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kit.connection import MATCH_OPTIONS
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Publisher
+from jacaros.ros.node import Publisher
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
 """The rooms by number, in the thesis's words: programs compare and print them."""

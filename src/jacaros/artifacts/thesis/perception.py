@@ -6,7 +6,7 @@ from typing import ClassVar
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.options import text, yes_or_no
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 
 
 class ArtPerception(RosArtifact):

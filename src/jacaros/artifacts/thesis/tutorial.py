@@ -6,7 +6,8 @@ from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.kit.options import positive, text
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading, ReadingPolicy
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Client, Sample
+from jacaros.ros.node import Sample
+from jacaros.ros.services import Client
 
 
 class ArtTutorial(RosArtifact):

@@ -12,7 +12,8 @@ from typing import Any, cast
 from jacaros.errors import UsageError
 from jacaros.files.texts import suggestion
 from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
-from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Publisher, Sample, Subscription
 from jacaros.runtime.clock import Clock
 from jacaros.sim.faults.schedule import Faults
 

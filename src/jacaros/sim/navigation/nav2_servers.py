@@ -10,7 +10,8 @@ from typing import Any
 
 from jacaros.plane.pose import Placement
 from jacaros.ros.action import GoalStatus
-from jacaros.ros.backend import Backend, Sample, Subscription
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Sample, Subscription
 from jacaros.sim.navigation.failure import NO_POSES, TF_ERROR, NavigationFailure, through_poses
 from jacaros.sim.navigation.frames import MAP, Frames, FrameUnknown, fault_of, fill_in
 from jacaros.sim.navigation.navigator import Navigator

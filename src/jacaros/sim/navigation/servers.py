@@ -7,9 +7,11 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, NoReturn
 
 from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, GoalStatus, ServerGoal
-from jacaros.ros.backend import ACTIONS, Backend, Handler, Service
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.names import result_type
+from jacaros.ros.node import ACTIONS
+from jacaros.ros.services import Handler, Service
 from jacaros.sim.description import RobotDescription
 from jacaros.sim.navigation.wheels import OVERTAKEN, Overtaken
 

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Publisher
 from jacaros.runtime.clock import Clock
 from jacaros.sim.navigation.driver import STOP, Command
 

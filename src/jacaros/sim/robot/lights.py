@@ -1,7 +1,7 @@
 """Lights and loudspeaker of a robot, as on a Create 3 (TurtleBot 4); their commands are recorded in the ground truth."""
 
-from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample
 from jacaros.sim.robot.on_graph import RobotOnGraph
 
 

@@ -7,7 +7,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Sample
 from jacaros.sim.navigation.frames import MAP, pose_fault, pose_of
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot.gripper import Gripper

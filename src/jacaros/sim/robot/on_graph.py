@@ -9,9 +9,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar, cast
 
-from jacaros.ros.backend import Backend, Closable, Publisher, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.message import stamp
+from jacaros.ros.node import Closable, Publisher, Sample
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.sim.navigation.localisation import Localisation
 from jacaros.sim.robot.robot import Robot

@@ -1,10 +1,10 @@
 """Topics and services that a world file adds to a robot: constant messages, received ones, constant responses."""
 
 from jacaros.errors import UsageError
-from jacaros.ros.backend import Publisher, Sample
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.message import plain
 from jacaros.ros.names import response_type
+from jacaros.ros.node import Publisher, Sample
 from jacaros.sim.interface import OwnService, OwnTopic, absolute
 from jacaros.sim.robot.on_graph import TICKS_PER_SECOND, RobotOnGraph
 

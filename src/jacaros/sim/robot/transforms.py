@@ -8,9 +8,9 @@ import math
 from typing import Any
 
 from jacaros.plane.pose import Placement, distance
-from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
+from jacaros.ros.node import TRANSFORMS, Publisher
 from jacaros.ros.qos import QoS
 from jacaros.sim.navigation.frames import BASE, CAMERA, FOOTPRINT, MAP, ODOMETRY, SCAN
 from jacaros.sim.navigation.localisation import FOUND

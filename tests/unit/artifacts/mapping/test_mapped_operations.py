@@ -11,8 +11,8 @@ from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.mapping.declared import MappingError
 from jacaros.artifacts.mapping.file import read_mapping
 from jacaros.artifacts.robots.motion_claim import motions_of
-from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.node import DISCOVERY
 from jacaros.ros.parameter import Declaration
 
 DRIVE = """

@@ -5,7 +5,18 @@ definitions. A published message is passed by reference, one turn of the loop pe
 order of publishing; therefore messages are read-only from `publish` on.
 """
 
-from jacaros.ros.backend import (
+from jacaros.ros.backend import Backend
+from jacaros.ros.drivers.memory.graph import MemoryGraph, MemoryNode, MemoryPublisher, MemorySubscription
+from jacaros.ros.drivers.memory.services import (
+    MemoryActionServer,
+    MemoryClient,
+    MemoryGoalWire,
+    MemoryParameters,
+    MemoryService,
+)
+from jacaros.ros.errors import ServiceUnavailable
+from jacaros.ros.graph import GraphContents
+from jacaros.ros.node import (
     ACTIONS,
     DEADLINES,
     DECLARED_PARAMETERS,
@@ -17,19 +28,8 @@ from jacaros.ros.backend import (
     SERVICES,
     TOPICS,
     TRANSFORMS,
-    Backend,
+    Parts,
 )
-from jacaros.ros.drivers.memory.graph import MemoryGraph, MemoryNode, MemoryPublisher, MemorySubscription
-from jacaros.ros.drivers.memory.services import (
-    MemoryActionServer,
-    MemoryClient,
-    MemoryGoalWire,
-    MemoryParameters,
-    MemoryService,
-)
-from jacaros.ros.errors import ServiceUnavailable
-from jacaros.ros.graph import GraphContents
-from jacaros.ros.node import Parts
 
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph", "MemoryPublisher", "MemorySubscription"]
 

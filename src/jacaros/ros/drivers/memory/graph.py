@@ -16,14 +16,14 @@ from functools import partial
 from typing import Any, Protocol
 
 from jacaros.ros.action_client import ActionClient
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import M, Node, NodeSettings, Wanted
+from jacaros.ros.node import M, NodeSettings, TopicPublisher, TopicSubscription, Wanted
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.qos import QoS, incompatibility
-from jacaros.ros.topics import TopicPublisher, TopicSubscription
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import Timer
 
@@ -364,7 +364,7 @@ class MemoryGraph:
         return [wire for wires in self._wires.values() for wire in wires]
 
 
-class MemoryNode(Node):
+class MemoryNode(Backend):
     """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its entities use.
 
     Args:

@@ -7,29 +7,23 @@ from typing import Any
 
 from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, ServedGoals
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import PendingCalls, server_gone
 from jacaros.ros.drivers.memory.graph import GoalLine, GraphActionServer, GraphService, MemoryNode
 from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
 from jacaros.ros.names import request_type
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
-from jacaros.ros.serving import Responder
-from jacaros.ros.waiting import Absence, Waiting, settle, within
+from jacaros.ros.services import Handler, ServiceClient, ServiceServer, server_gone
+from jacaros.ros.waiting import Absence, Deadline, Waiting, settle, within
 
 
-class MemoryService:
+class MemoryService(ServiceServer[MemoryNode]):
     """Service of `MemoryBackend`."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str, handler: Handler) -> None:
         node.schema.offered(type_name)
-        self.name = name
-        self.type_name = type_name
-        self._node = node
+        super().__init__(node, name, type_name, handler)
         self._graph = node.graph
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._vanished = False
-        self._clock = node.clock
         self._answers: set[asyncio.Future[Any]] = set()
         self._graph.offer(self)
 
@@ -46,72 +40,57 @@ class MemoryService:
                 self._graph.tell(settle, answer, response, problem)
 
         self._answers.add(answer)
-        self._responder.answer(request, done)
+        self.answer(request, done)
 
-    def close(self) -> None:
-        """Stop offering the service."""
+    def _leave(self) -> None:
         self._graph.withdraw(self)
-        self._responder.close()
-        self._node.forget(self)
 
     def vanish(self) -> None:
         """Disappear without notice: its clients detect that after a while."""
         self._vanished = True
         for answer in self._answers:
-            self._clock.call_later(SERVER_LOST_AFTER, partial(settle, answer, None, server_gone(self.name)))
+            self._node.clock.call_later(
+                SERVER_LOST_AFTER, partial(settle, answer, None, server_gone(self.name))
+            )
         self._answers.clear()
         self.close()
 
 
-class MemoryClient:
+class MemoryClient(ServiceClient[MemoryNode]):
     """Client of `MemoryBackend`."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
         node.schema.service(type_name)
-        self.name = name
-        self._node = node
-        self._type_name = type_name
-        self._pending = PendingCalls(name)
-        self._absence = Absence()
+        super().__init__(node, name, type_name)
 
     @property
     def ready(self) -> bool:
         """Whether a node offers the service."""
         return self._node.graph.server(self.name) is not None
 
-    def request(self, **fields: Any) -> Any:
-        """Make a request message."""
-        return self._node.factory.make(request_type(self._type_name), fields)
-
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
         """Call the service and return its response."""
         clock = self._node.clock
-        message = self._node.factory.checked(request_type(self._type_name), request)
-        deadline = None if timeout is None else clock.elapsed + timeout
+        message = self._node.factory.checked(request_type(self.type_name), request)
+        deadline = Deadline(clock, timeout)
         server = await self._server(timeout)
-        if server.type_name != self._type_name:
-            raise CallFailed(f"service {self.name} is of type {server.type_name}, not {self._type_name}")
-        answer = self._pending.new()
+        if server.type_name != self.type_name:
+            raise CallFailed(f"service {self.name} is of type {server.type_name}, not {self.type_name}")
+        answer = self._new_answer()
         server.handle(message, answer)
         try:
-            return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
+            return await within(clock, answer, deadline.left)
         except TimeoutError:
             raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
 
     async def _server(self, timeout: float | None) -> GraphService:
         graph = self._node.graph
-        what = f"service {self.name} ({self._type_name})"
         server = graph.server(self.name)
         while server is None:
-            await come(self._node, f"service {self.name}", what, timeout, self._absence)
+            await come(self._node, f"service {self.name}", self._described, timeout, self._absence)
             server = graph.server(self.name)
-        self._absence.end(self._node.log, what)
+        self._absence.end(self._node.log, self._described)
         return server
-
-    def close(self) -> None:
-        """Close the client."""
-        self._pending.close()
-        self._node.forget(self)
 
 
 async def come(node: MemoryNode, thing: str, what: str, timeout: float | None, absence: Absence) -> None:

@@ -16,18 +16,7 @@ import rosgraph.network  # type: ignore[import-not-found]
 from jacaros.ros.action_client import ActionClient
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.backend import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    REGISTRATION,
-    SERVICE_ERRORS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.ros1.master import PATIENCE, Master
 from jacaros.ros.drivers.ros1.node import Ros1Node
 from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
@@ -37,7 +26,19 @@ from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.names import message_type
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import (
+    ACTIONS,
+    DISCOVERY,
+    PARAMETER_EVENTS,
+    PARAMETERS,
+    REGISTRATION,
+    SERVICE_ERRORS,
+    SERVICES,
+    TOPICS,
+    TRANSFORMS,
+    NodeSettings,
+    Parts,
+)
 from jacaros.ros.waiting import within
 
 

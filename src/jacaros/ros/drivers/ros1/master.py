@@ -18,8 +18,8 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from jacaros.ros.calling import server_gone
 from jacaros.ros.errors import CallFailed, MessageMismatch, RosError, ServiceError, ServiceUnavailable
+from jacaros.ros.services import server_gone
 
 PUBLICATION, SUBSCRIPTION, SERVICE = range(3)
 

@@ -9,6 +9,7 @@ from typing import Any
 import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.ros1.connections import (
     MessageHandlers,
     connect_streams,
@@ -23,14 +24,14 @@ from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import RosError
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.node import NodeSettings
 from jacaros.ros.topics import TopicMultiplexer
 
 SENDING = 0.5
 """Seconds that closing waits for the last messages to be sent."""
 
 
-class Ros1Node(Node):
+class Ros1Node(Backend):
     """The base of topics, services, actions and parameters of ROS 1.
 
     Args:

@@ -3,20 +3,7 @@
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from jacaros.ros.backend import (
-    ACTIONS,
-    DEADLINES,
-    DECLARED_PARAMETERS,
-    DISCOVERY,
-    GRAPH_QOS,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    QOS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
 from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
 from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
@@ -28,7 +15,21 @@ from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import (
+    ACTIONS,
+    DEADLINES,
+    DECLARED_PARAMETERS,
+    DISCOVERY,
+    GRAPH_QOS,
+    PARAMETER_EVENTS,
+    PARAMETERS,
+    QOS,
+    SERVICES,
+    TOPICS,
+    TRANSFORMS,
+    NodeSettings,
+    Parts,
+)
 from jacaros.ros.parameter import Parameters
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE

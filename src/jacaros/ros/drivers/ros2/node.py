@@ -23,13 +23,14 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck
 from jacaros.ros.drivers.ros2.receiving import Receiver
 from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.node import NodeSettings
 from jacaros.ros.ros_clock import RosClock
 
 SENDING, STOPPING_ROBOTS = 0.5, 1.5
@@ -47,7 +48,7 @@ Until version 2.14.5 of Fast DDS, receivers learn only every 3 s that a message 
 """
 
 
-class Ros2Node(Node):
+class Ros2Node(Backend):
     """The base of publishers, services and actions of the ROS 2 backend.
 
     Args:

@@ -5,13 +5,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.drivers.ros2.graph import service_mismatch, service_servers, service_servers_in
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
-from jacaros.ros.serving import Responder
+from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
 SETTLING = 0.5
@@ -115,20 +113,15 @@ class LateService:
         post(self._node.loop, self._take, call.request, respond)
 
 
-class Ros2Service:
+class Ros2Service(ServiceServer[Ros2Node]):
     """Service of the ``ros2`` backend."""
 
     def __init__(self, node: Ros2Node, name: str, type_name: str, handler: Handler) -> None:
-        self.name = name
-        self._node = node
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
+        super().__init__(node, name, type_name, handler)
         self._service = LateService(node, node.schema.message_class(type_name), name, self._answer)
 
-    def close(self) -> None:
-        """Stop offering the service."""
-        self._responder.close()
+    def _leave(self) -> None:
         self._service.close()
-        self._node.forget(self)
 
     def _answer(self, request: Any, respond: Callable[[Any], None]) -> None:
         def done(response: Any, problem: CallFailed | None) -> None:
@@ -136,7 +129,7 @@ class Ros2Service:
             if problem is None:
                 respond(response)
 
-        self._responder.answer(request, done)
+        self.answer(request, done)
 
 
 class _Requests:
@@ -167,7 +160,7 @@ class _Requests:
             self._client.remove_pending_request(future)
 
 
-class Ros2Client(AttemptingClient):
+class Ros2Client(ServiceClient[Ros2Node]):
     """Client of the ``ros2`` backend.
 
     Args:
@@ -177,8 +170,6 @@ class Ros2Client(AttemptingClient):
         repeatable: whether the server may receive a request twice.
     """
 
-    _node: Ros2Node  # pyright: ignore[reportIncompatibleVariableOverride]
-
     def __init__(self, node: Ros2Node, name: str, type_name: str, repeatable: bool = False) -> None:
         super().__init__(node, name, type_name)
         self._again_after = REPEATED if repeatable else None
@@ -186,7 +177,6 @@ class Ros2Client(AttemptingClient):
         self._servers: frozenset[bytes] = frozenset()
         self._compared = 0.0
         self._acquainted = False
-        self._closed = False
 
     @property
     def ready(self) -> bool:
@@ -199,17 +189,17 @@ class Ros2Client(AttemptingClient):
         if not self.ready:
             self._acquainted = False
             # A server of another type is never ready for us.
-            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
+            if (mismatch := service_mismatch(node, self.name, self.type_name)) is not None:
                 raise CallFailed(mismatch)
             raise ServiceUnavailable(f"no node offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
             if self._closed:
                 raise CallFailed(f"the client of service {self.name} was closed during the call")
-            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
+            if (mismatch := service_mismatch(node, self.name, self.type_name)) is not None:
                 raise CallFailed(mismatch)
             self._acquainted = True
-        answer = self._pending.new()
+        answer = self._new_answer()
 
         def finished(future: Any) -> None:
             problem = future.exception()
@@ -244,10 +234,5 @@ class Ros2Client(AttemptingClient):
         self._servers |= servers
         return fresh
 
-    def close(self) -> None:
-        """Close the client."""
-        self._pending.close()
-        if not self._closed:
-            self._closed = True
-            self._node.destroy_entity_later(self._node.rcl.destroy_client, self._client)
-            self._node.forget(self)
+    def _leave(self) -> None:
+        self._node.destroy_entity_later(self._node.rcl.destroy_client, self._client)

@@ -18,9 +18,8 @@ from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.handoff import Handoff, post
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import TopicPublisher, TopicSubscription, Wanted
 from jacaros.ros.qos import QoS, available, incompatibility
-from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 NO_TIME = Duration()
 REPETITIONS = 4

@@ -15,12 +15,11 @@ from jacaros.ros.action import TEXT_FIELDS, ActionPolicy, Execute, GoalStatus, O
 from jacaros.ros.action_client import ActionClient, GoalWire
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import Sample, Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
 from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
 from jacaros.ros.qos import QoS

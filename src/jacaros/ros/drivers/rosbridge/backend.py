@@ -10,16 +10,7 @@ Everything happens on the loop; only exit hooks may send from another thread (se
 import os
 from typing import Any
 
-from jacaros.ros.backend import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
 from jacaros.ros.drivers.rosbridge.link import checked_url
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
@@ -34,7 +25,17 @@ from jacaros.ros.drivers.rosbridge.services import (
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import (
+    ACTIONS,
+    DISCOVERY,
+    PARAMETER_EVENTS,
+    PARAMETERS,
+    SERVICES,
+    TOPICS,
+    TRANSFORMS,
+    NodeSettings,
+    Parts,
+)
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE
 

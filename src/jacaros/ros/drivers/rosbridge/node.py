@@ -11,12 +11,13 @@ from functools import partial
 from typing import Any, Protocol
 from weakref import WeakValueDictionary
 
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
-from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.node import NodeSettings
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
@@ -76,7 +77,7 @@ class GoalReceiver(Protocol):
         """Handle a request to cancel."""
 
 
-class BridgeNode(Node):
+class BridgeNode(Backend):
     """A client of a rosbridge server, as seen by its parts.
 
     Args:

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NoReturn
 
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.errors import (
     CallFailed,
@@ -23,7 +21,7 @@ from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import ParameterServices
 from jacaros.ros.protocols.rosbridge_requests import Polled
-from jacaros.ros.serving import Responder
+from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
@@ -33,14 +31,12 @@ FOR_EVER = 86400.0
 """Time-out of a call without one, for servers that would otherwise use five seconds."""
 
 
-class BridgeClient(AttemptingClient):
+class BridgeClient(ServiceClient[BridgeNode]):
     """Client of `RosbridgeBackend`."""
-
-    _node: BridgeNode  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
         node.schema.service(type_name)
-        super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
+        super().__init__(node, name, type_name)
         self._offered = Polled(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
         )
@@ -56,8 +52,8 @@ class BridgeClient(AttemptingClient):
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         node = self._node
         node.require_connection(self.name)
-        answer = self._pending.new()
-        arguments = node.translator.encode(request_type(self._type_name), message)
+        answer = self._new_answer()
+        arguments = node.translator.encode(request_type(self.type_name), message)
         patience = FOR_EVER if rest is None else rest
         number = node.requests.begin(self.name, arguments, partial(settle, answer), patience)
         try:
@@ -67,68 +63,54 @@ class BridgeClient(AttemptingClient):
             if "Timeout exceeded" in str(problem) and rest is not None:
                 raise TimeoutError from None
             if any(words in str(problem) for words in _NOT_OUR_DEFINITION):
-                raise MessageMismatch(str(problem), self._type_name) from None
+                raise MessageMismatch(str(problem), self.type_name) from None
             raise
         finally:
             node.requests.forget(number)
         try:
-            return node.translator.decode(response_type(self._type_name), values)
+            return node.translator.decode(response_type(self.type_name), values)
         except ValueError as problem:
             raise CallFailed(
-                f"service {self.name}: the response is not a {self._type_name}: {problem}"
+                f"service {self.name}: the response is not a {self.type_name}: {problem}"
             ) from None
 
-    def close(self) -> None:
-        """Close the client."""
-        self._node.forget(self)
-        self._pending.close()
 
-
-class BridgeService:
+class BridgeService(ServiceServer[BridgeNode]):
     """Service of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
         node.schema.service(type_name)
+        super().__init__(node, name, type_name, handler)
         node.services[name] = self
-        self.name = name
-        self._node = node
-        self._type_name = type_name
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
-        self._closed = False
         if node.attached:
             self.join()
 
     def join(self) -> None:
         """Offer the service at a server that does not know us yet."""
-        kind = self._node.written_type(self._type_name)
+        kind = self._node.written_type(self.type_name)
         self._node.send({"op": "advertise_service", "type": kind, "service": self.name})
 
-    def close(self) -> None:
-        """Stop offering the service."""
-        self._responder.close()
-        if not self._closed:
-            self._closed = True
-            self._node.forget(self)
-            self._node.send({"op": "unadvertise_service", "service": self.name})
+    def _leave(self) -> None:
+        self._node.send({"op": "unadvertise_service", "service": self.name})
 
     def called(self, message: dict[str, Any]) -> None:
         """Handle a request of the server; on the loop."""
         node, number = self._node, message.get("id")
         try:
-            request = node.translator.decode(request_type(self._type_name), message.get("args") or {})
+            request = node.translator.decode(request_type(self.type_name), message.get("args") or {})
         except ValueError as problem:
-            node.log(f"service {self.name}: the request is not a {self._type_name}: {problem}")
+            node.log(f"service {self.name}: the request is not a {self.type_name}: {problem}")
             return
 
         def done(response: Any, problem: ServiceError | None) -> None:
             answer = {"op": "service_response", "id": number, "service": self.name}
             if problem is None:
-                answer["values"] = node.translator.encode(response_type(self._type_name), response)
+                answer["values"] = node.translator.encode(response_type(self.type_name), response)
                 node.send(answer | {"result": True})
             # The server cannot pass on a failure (it would send a response of zeros): as on ROS 2, the call gets no
             # answer.
 
-        self._responder.answer(request, done)
+        self.answer(request, done)
 
 
 _ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")

@@ -14,7 +14,7 @@ Nothing is rendered without subscribers.
 from collections.abc import Iterator
 from typing import Any, Final
 
-from jacaros.ros.backend import Publisher
+from jacaros.ros.node import Publisher
 from jacaros.sim.description import Segment
 from jacaros.sim.navigation.frames import CAMERA
 from jacaros.sim.robot.on_graph import RobotOnGraph

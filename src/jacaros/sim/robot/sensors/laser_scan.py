@@ -1,6 +1,6 @@
 """The laser scan of a robot on its topic."""
 
-from jacaros.ros.backend import Publisher
+from jacaros.ros.node import Publisher
 from jacaros.sim.robot.on_graph import TICKS_PER_SECOND, RobotOnGraph
 
 _TICKS_PER_SCAN = 4

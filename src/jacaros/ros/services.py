@@ -1,24 +1,70 @@
-"""Service calls independent of the middleware: how long they are tried, and how they end."""
+"""Services independent of the middleware: how a handler answers, how long a call is tried, and how it ends."""
 
 import asyncio
+import inspect
 import sys
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
-from jacaros.ros.names import request_type
-from jacaros.ros.node import Node
+from jacaros.ros.names import request_type, response_type
+from jacaros.ros.node import Entity, N
 from jacaros.ros.waiting import RETRY, Absence, Deadline, Waiting, settle
 from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
 """Seconds between two checks whether the server of a call is still there."""
+Handler = Callable[[Any], Any | Awaitable[Any]]
+"""Takes a request; returns a response message, a mapping of its fields or None for the defaults."""
 
 
-class AttemptingClient:
-    """Client of a service on a graph that does not report new services: a call is attempted until the service is
-    offered.
+class ServiceServer(Entity[N]):
+    """Answers the calls of a service on the loop, any number at a time; a driver passes them to `answer`.
+
+    Args:
+        node: its node.
+        name: absolute name of the service.
+        type_name: service type in full form.
+        handler: the user's function or coroutine function.
+    """
+
+    def __init__(self, node: N, name: str, type_name: str, handler: Handler) -> None:
+        super().__init__(node, name, type_name)
+        self._handler = handler
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def answer(self, request: Any, done: Callable[[Any, CallFailed | None], None]) -> None:
+        """Handle one request; *done* is called with the response or the failure."""
+        task = asyncio.get_running_loop().create_task(self._handle(request, done))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def close(self) -> None:
+        """Stop offering the service; the clients of active calls are informed."""
+        super().close()
+        for task in list(self._tasks):
+            task.cancel()
+
+    async def _handle(self, request: Any, done: Callable[[Any, CallFailed | None], None]) -> None:
+        try:
+            result = self._handler(request)
+            if inspect.isawaitable(result):
+                result = await result
+            response = self._node.factory.checked(response_type(self.type_name), result)
+        except asyncio.CancelledError:
+            done(None, CallFailed(f"service {self.name} was closed during the call"))
+            raise
+        except Exception as problem:  # the server keeps running, and the client receives the reason
+            reason = f"{type(problem).__name__}: {problem}"
+            self._node.log(f"the handler of service {self.name} failed: {reason}")
+            done(None, CallFailed(f"service {self.name} failed: {reason}"))
+        else:
+            done(response, None)
+
+
+class ServiceClient(Entity[N]):
+    """Calls a service. If the graph does not report new services, a call is attempted until the service is offered.
 
     Args:
         node: the node.
@@ -26,31 +72,56 @@ class AttemptingClient:
         type_name: service type in full form.
     """
 
-    _node: Node
-
-    def __init__(self, node: Node, name: str, type_name: str) -> None:
-        self.name = name
-        self._node = node
-        self._type_name = type_name
-        self._pending = PendingCalls(name)
+    def __init__(self, node: N, name: str, type_name: str) -> None:
+        super().__init__(node, name, type_name)
+        self._described = f"service {name} ({type_name})"
+        self._answers: set[asyncio.Future[Any]] = set()
         self._absence = Absence()
 
+    @property
+    def ready(self) -> bool:
+        """Whether a node offers the service, as far as is known."""
+        raise NotImplementedError
+
     def request(self, **fields: Any) -> Any:
-        """Make a request message."""
-        return self._node.factory.make(request_type(self._type_name), fields)
+        """Make a request message; see `Backend.message`."""
+        return self._node.factory.make(request_type(self.type_name), fields)
 
     async def call(self, request: Any = None, timeout: float | None = None) -> Any:
-        """Call the service and return its response."""
+        """Call the service and return its response.
+
+        Args:
+            request: a request message, a mapping of its fields, or None for the defaults.
+            timeout: seconds to wait for the server and for the response, in total; None: no limit.
+
+        Raises:
+            MessageMismatch: the request does not match the type definition.
+            ServiceUnavailable: no node offered the service in time.
+            CallTimedOut: the server did not answer in time.
+            CallFailed: the server's handler failed (only with `SERVICE_ERRORS`), or the connection broke.
+        """
         node = self._node
-        message = node.factory.checked(request_type(self._type_name), request)
-        what = f"service {self.name} ({self._type_name})"
+        message = node.factory.checked(request_type(self.type_name), request)
 
         async def attempt(rest: float | None) -> Any:
             return await self._attempt(message, rest)
 
         return await call_when_offered(
-            node.clock, node.log, what, attempt, timeout, self._may_be_called, self._absence
+            node.clock, node.log, self._described, attempt, timeout, self._may_be_called, self._absence
         )
+
+    def close(self) -> None:
+        """Close the client; pending calls fail with `CallFailed`."""
+        super().close()
+        for answer in list(self._answers):
+            settle(answer, None, CallFailed(f"the client of service {self.name} was closed during the call"))
+
+    def _new_answer(self) -> asyncio.Future[Any]:
+        """Return the future of a call."""
+        answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
+        self._answers.add(answer)
+        answer.add_done_callback(self._answers.discard)
+        return answer
 
     def _may_be_called(self) -> bool:
         """Whether an unanswered attempt may have reached a server, see `call_when_offered`."""
@@ -59,6 +130,10 @@ class AttemptingClient:
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         """Call the service once, see `call_when_offered`."""
         raise NotImplementedError
+
+
+Service = ServiceServer[Any]
+Client = ServiceClient[Any]
 
 
 async def call_when_offered(
@@ -115,30 +190,6 @@ async def call_when_offered(
     finally:
         if waiting is not None:
             waiting.__exit__(*sys.exc_info())
-
-
-class PendingCalls:
-    """The futures of a client's pending calls, so that closing the client ends them.
-
-    Args:
-        name: absolute name of the service.
-    """
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._futures: set[asyncio.Future[Any]] = set()
-
-    def new(self) -> asyncio.Future[Any]:
-        """Return the future of a new call."""
-        future: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        self._futures.add(future)
-        future.add_done_callback(self._futures.discard)
-        return future
-
-    def close(self) -> None:
-        """Fail the pending calls."""
-        for future in list(self._futures):
-            settle(future, None, CallFailed(f"the client of service {self._name} was closed during the call"))
 
 
 class ServerWatch:
