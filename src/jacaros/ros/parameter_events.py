@@ -12,7 +12,24 @@ EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/Par
 Listener = Callable[[Mapping[str, ParameterValue]], None]
 
 
-class ParameterEvents:
+class ParameterListeners:
+    """The callbacks for changed parameters, by node."""
+
+    def __init__(self) -> None:
+        self._listeners: dict[str, list[Listener]] = {}
+
+    def listen(self, node: str, callback: Listener) -> Callable[[], None]:
+        """Call *callback* with changed parameters of a node. Return a function that removes it."""
+        listeners = self._listeners.setdefault(node, [])
+        listeners.append(callback)
+        return lambda: listeners.remove(callback) if callback in listeners else None
+
+    def of(self, node: str) -> list[Listener]:
+        """Return the callbacks for a node."""
+        return list(self._listeners.get(node, ()))
+
+
+class ParameterEvents(ParameterListeners):
     """Reports changed parameters of all nodes from one subscription, which is made on first use.
 
     Args:
@@ -25,34 +42,26 @@ class ParameterEvents:
         subscribe: Callable[[str, str, Callable[[Sample], None], QoS], object],
         read: Callable[[Any], ParameterValue | None],
     ) -> None:
+        super().__init__()
         self._subscribe = subscribe
         self._read = read
         self._joined = False
-        self._listeners: dict[str, list[Listener]] = {}
 
-    def listen(self, node_name: str, callback: Listener) -> Callable[[], None]:
+    def listen(self, node: str, callback: Listener) -> Callable[[], None]:
         """Call *callback* with changed parameters of a node. Return a function that removes it."""
         if not self._joined:
             self._joined = True
             self._subscribe(EVENTS, EVENT_TYPE, self._take, EVENT_QUALITY)
-        listeners = self._listeners.setdefault(node_name, [])
-        listeners.append(callback)
-
-        def end() -> None:
-            if callback in listeners:
-                listeners.remove(callback)
-
-        return end
+        return super().listen(node, callback)
 
     def _take(self, sample: Sample) -> None:
         event = sample.message
-        listeners = self._listeners.get(event.node)
-        if not listeners:
+        if not (listeners := self.of(event.node)):
             return
         told = {
             each.name: self._read(each.value) for each in (*event.new_parameters, *event.changed_parameters)
         }
         known = {name: value for name, value in told.items() if value is not None}
         if known:
-            for callback in list(listeners):
+            for callback in listeners:
                 callback(known)

@@ -11,7 +11,8 @@ from jacaros.ros.action import ActionPolicy, GoalStatus, ServerGoal
 from jacaros.ros.action_client import ActionClient, OrphanPolicy
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryBackend
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 from jacaros.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
