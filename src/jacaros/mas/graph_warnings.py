@@ -41,12 +41,12 @@ class GraphTime:
 
     def watch(self) -> None:
         """Begin to watch."""
-        from jacaros.ros.node import PARAMETERS
+        from jacaros.ros.node import Capability
         from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 
         backend = self._backend
         self._listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
-        if backend.ros_version == 1 and PARAMETERS in backend.capabilities:
+        if backend.ros_version == 1 and Capability.PARAMETERS in backend.capabilities:
             backend.on_connection(self._connected)
             self._connected(backend.connected)
 

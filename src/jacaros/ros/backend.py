@@ -71,7 +71,7 @@ class Backend(Node):
     def service(self, name: str, type_name: str, handler: Handler) -> Service:
         """Offer a service. Raises `NameInvalid` or `UnknownInterface`.
 
-        An exception of *handler* becomes `CallFailed` at the client (or its time-out, see `SERVICE_ERRORS`).
+        An exception of *handler* becomes `CallFailed` at the client (or its time-out, see `Capability.SERVICE_ERRORS`).
         """
         make = self.parts.service or self._unable("services")
         return self.keep(make(self, self.resolve(name), service_type(type_name), handler))
@@ -86,7 +86,7 @@ class Backend(Node):
 
         Raises:
             NameInvalid, UnknownInterface: as `client`.
-            CapabilityMissing: the backend has no actions (`ACTIONS`).
+            CapabilityMissing: the backend has no actions (`Capability.ACTIONS`).
         """
         make = self.parts.action_client or self._unable("action clients")
         made: ActionClient = make(self, self.resolve(name), action_type(type_name))
@@ -119,7 +119,7 @@ class Backend(Node):
 
         Raises:
             NameInvalid: the name is invalid.
-            CapabilityMissing: the backend has no parameters (`PARAMETERS`).
+            CapabilityMissing: the backend has no parameters (`Capability.PARAMETERS`).
         """
         self._unable("parameters")
 

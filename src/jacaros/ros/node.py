@@ -27,30 +27,34 @@ from jacaros.ros.waiting import Waiting
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause, Tracer
 
-TOPICS = "topics"
-SERVICES = "services"
-SERVICE_ERRORS = "service errors"
-"""A client is informed when the server's handler fails; elsewhere such a call times out."""
-TRANSFORMS = "transforms"
-"""`Backend.tf_broadcast` works."""
-QOS = "qos"
-"""Reliability and durability are negotiated as on ROS 2."""
-DISCOVERY = "discovery"
-"""Nodes need time to discover each other: messages sent before a subscription is matched are lost."""
-REGISTRATION = "registration"
-"""There is a master that can disappear and come back."""
-ACTIONS = "actions"
-"""Action clients and servers."""
-PARAMETERS = "parameters"
-"""Parameters can be read and written."""
-DECLARED_PARAMETERS = "declared parameters"
-"""A node declares its parameters with type and range; elsewhere any name can be set."""
-PARAMETER_EVENTS = "parameter events"
-"""Changes of parameters are reported."""
-DEADLINES = "deadlines"
-"""`QoS.deadline` is supported, and missed deadlines are reported."""
-GRAPH_QOS = "qos in the graph"
-"""`Backend.contents` includes the quality of service of other nodes' endpoints."""
+
+class Capability(StrEnum):
+    """What a backend can do."""
+
+    TOPICS = "topics"
+    SERVICES = "services"
+    SERVICE_ERRORS = "service errors"
+    """A client is informed when the server's handler fails; elsewhere such a call times out."""
+    TRANSFORMS = "transforms"
+    """`jacaros.ros.backend.Backend.tf_broadcast` works."""
+    QOS = "qos"
+    """Reliability and durability are negotiated as on ROS 2."""
+    DISCOVERY = "discovery"
+    """Nodes need time to discover each other: messages sent before a subscription is matched are lost."""
+    REGISTRATION = "registration"
+    """There is a master that can disappear and come back."""
+    ACTIONS = "actions"
+    """Action clients and servers."""
+    PARAMETERS = "parameters"
+    """Parameters can be read and written."""
+    DECLARED_PARAMETERS = "declared parameters"
+    """A node declares its parameters with type and range; elsewhere any name can be set."""
+    PARAMETER_EVENTS = "parameter events"
+    """Changes of parameters are reported."""
+    DEADLINES = "deadlines"
+    """`QoS.deadline` is supported, and missed deadlines are reported."""
+    GRAPH_QOS = "qos in the graph"
+    """`jacaros.ros.backend.Backend.contents` includes the quality of service of other nodes' endpoints."""
 
 
 class TopicTrouble(StrEnum):
@@ -179,7 +183,7 @@ class Node:
     Attributes:
         name: ``memory``, ``ros1``, ``ros2`` or ``rosbridge``.
         ros_version: 1 or 2: the version whose names and types are usual in this graph (``memory``: 2).
-        capabilities: the capabilities of the backend; the constants of this file.
+        capabilities: the capabilities of the backend; see `Capability`.
         parts: the classes of the driver.
         connected: whether the graph (on ROS 1: the master) can be reached.
         members: the node's entities in the graph, in the order of creation.
@@ -191,7 +195,7 @@ class Node:
 
     name = "none"
     ros_version = 2
-    capabilities: frozenset[str] = frozenset()
+    capabilities: frozenset[Capability] = frozenset()
     parts: ClassVar[Parts]
 
     def __init__(self, settings: NodeSettings, schema: Schema, lifetime: Lifetime) -> None:
@@ -381,7 +385,7 @@ class Node:
 
     def _check_deadline(self, qos: QoS) -> None:
         """Reject a deadline if the backend does not support them."""
-        if qos.deadline is not None and DEADLINES not in self.capabilities:
+        if qos.deadline is not None and Capability.DEADLINES not in self.capabilities:
             raise CapabilityMissing(
                 f"the {self.name} backend does not support deadlines (a deadline of {qos.deadline:g} s was requested); "
                 "leave it out, or use --ros ros2 or --ros memory"

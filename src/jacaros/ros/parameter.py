@@ -117,7 +117,7 @@ class Parameters(Protocol):
         """Declare a parameter of our own node and return its value (that of the launch file, if given).
 
         Raises:
-            CapabilityMissing: the backend does not declare parameters (`DECLARED_PARAMETERS`), or the node is
+            CapabilityMissing: the backend does not declare parameters (`Capability.DECLARED_PARAMETERS`), or the node is
                 another.
             ParameterRefused: it is already declared, or the default violates the declaration.
         """
@@ -158,7 +158,7 @@ class Parameters(Protocol):
             A function that removes the callback.
 
         Raises:
-            CapabilityMissing: the middleware does not report changes (`PARAMETER_EVENTS`).
+            CapabilityMissing: the middleware does not report changes (`Capability.PARAMETER_EVENTS`).
         """
 
 

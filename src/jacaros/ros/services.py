@@ -98,7 +98,7 @@ class ServiceClient(Entity[N]):
             MessageMismatch: the request does not match the type definition.
             ServiceUnavailable: no node offered the service in time.
             CallTimedOut: the server did not answer in time.
-            CallFailed: the server's handler failed (only with `SERVICE_ERRORS`), or the connection broke.
+            CallFailed: the server's handler failed (only with `Capability.SERVICE_ERRORS`), or the connection broke.
         """
         node = self._node
         message = node.factory.checked(request_type(self.type_name), request)

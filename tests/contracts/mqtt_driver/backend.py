@@ -15,7 +15,7 @@ from jacaros.ros.errors import ServiceUnavailable
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import DISCOVERY, TOPICS, TRANSFORMS, NodeSettings, Parts
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.typestore import DefinitionSchema
 from mqtt_driver.topics import MqttMultiplexer, MqttPublisher, MqttSubscription, parts_of
 
@@ -36,7 +36,7 @@ class MqttBackend(Backend):
     """
 
     name = "mqtt"
-    capabilities = frozenset({TOPICS, TRANSFORMS, DISCOVERY})
+    capabilities = frozenset({Capability.TOPICS, Capability.TRANSFORMS, Capability.DISCOVERY})
     parts = Parts(publisher=MqttPublisher, subscription=MqttSubscription)
 
     def __init__(self, settings: NodeSettings, broker: str | None = None) -> None:

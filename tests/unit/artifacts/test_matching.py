@@ -11,14 +11,14 @@ from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matc
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.artifacts.thesis.cleaning import ArtCleaning
 from jacaros.ros.guarded import guarded_by
-from jacaros.ros.node import DISCOVERY, Publisher, Sample
+from jacaros.ros.node import Capability, Publisher, Sample
 
 
 def on_a_graph(body: Callable[[Lab], Awaitable[Any]]) -> Lab:
     """Run *body* where a subscription that a test makes later is like one that is matched late."""
 
     async def with_discovery(lab: Lab) -> None:
-        lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+        lab.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
         await body(lab)
 
     return in_lab(with_discovery, world=None)

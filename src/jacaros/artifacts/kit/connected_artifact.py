@@ -28,7 +28,7 @@ from jacaros.ros.backend import DEFAULT_POLICY, Backend
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.names import message_type
-from jacaros.ros.node import DISCOVERY, Closable, Publisher, Sample, Subscription, TopicEvent
+from jacaros.ros.node import Capability, Closable, Publisher, Sample, Subscription, TopicEvent
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.services import Client, Service
@@ -184,7 +184,7 @@ class ConnectedArtifact(Artifact):
 
         return Matching(
             publisher,
-            found if DISCOVERY in self.ros.capabilities else 0.0,
+            found if Capability.DISCOVERY in self.ros.capabilities else 0.0,
             missed,
             lambda count: guarded.covered(publisher.topic, count),
         )

@@ -23,7 +23,7 @@ from jacaros.ros.errors import (
     RosError,
     ServiceUnavailable,
 )
-from jacaros.ros.node import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION
+from jacaros.ros.node import Capability
 from jacaros.ros.parameter import Declaration, ParameterValue, fault_of
 
 PATIENCE = 2.0
@@ -43,7 +43,9 @@ def own_name(host: Host, name: str) -> str:
 
 def kept_by_master(ros: Backend) -> bool:
     """Return whether parameters are not declared because a master stores those of all nodes, as on ROS 1."""
-    return DECLARED_PARAMETERS not in ros.capabilities and REGISTRATION in ros.capabilities
+    return (
+        Capability.DECLARED_PARAMETERS not in ros.capabilities and Capability.REGISTRATION in ros.capabilities
+    )
 
 
 class OwnParameter:
@@ -215,7 +217,7 @@ class NodeParameter:
         self._vain = 0
         try:
             self._parameters = host.ros.parameters(self._node)
-            self._events = PARAMETER_EVENTS in host.ros.capabilities
+            self._events = Capability.PARAMETER_EVENTS in host.ros.capabilities
             if self._events:
                 host.at_dispose(self._parameters.on_change(self._changed))
         except CapabilityMissing as error:

@@ -15,7 +15,7 @@ from jacaros.cli.graph.values import Leaf, is_time, leaves, messages, parts, val
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
-from jacaros.ros.node import PARAMETERS
+from jacaros.ros.node import Capability
 
 FEW = 6
 """Number of list elements shown."""
@@ -79,7 +79,7 @@ async def _node(joined: Joined, name: str) -> dict[str, Any]:
         "publishes": [topic for topic, info in topics if any(e.node == name for e in info.publishers)],
         "subscribes": [topic for topic, info in topics if any(e.node == name for e in info.subscriptions)],
     }
-    if PARAMETERS in joined.backend.capabilities:
+    if Capability.PARAMETERS in joined.backend.capabilities:
         parameters = joined.backend.parameters(name)
         # Not every node replies: some ROS 2 nodes have no parameter services.
         with suppress(RosError):

@@ -21,7 +21,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import frame_name, near_names
-from jacaros.ros.node import PARAMETERS
+from jacaros.ros.node import Capability
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
 
 MOST_NAMES = 8
@@ -257,7 +257,7 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
 
 async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> list[Problem]:
     joined = names.joined
-    if PARAMETERS not in joined.backend.capabilities:
+    if Capability.PARAMETERS not in joined.backend.capabilities:
         return [place.problem("this graph has no parameters", "remove the entry")]
     name = names.resolve(node)
     known = joined.contents.nodes

@@ -10,7 +10,7 @@ from jacaros.ros.action import Abort, Accept, ActionPolicy, ActionServer, GoalSt
 from jacaros.ros.backend import Backend
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.names import result_type
-from jacaros.ros.node import ACTIONS
+from jacaros.ros.node import Capability
 from jacaros.ros.services import Handler, Service
 from jacaros.sim.description import RobotDescription
 from jacaros.sim.navigation.wheels import OVERTAKEN, Overtaken
@@ -71,7 +71,7 @@ class Servers:
         If the type of the action is unknown, log a warning instead.
         """
         offered = self.name(name)
-        if offered is None or ACTIONS not in self.backend.capabilities:
+        if offered is None or Capability.ACTIONS not in self.backend.capabilities:
             return
 
         async def carry_out(served: ServerGoal) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 from jacaros.plane.pose import Placement, distance
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
-from jacaros.ros.node import TRANSFORMS, Publisher
+from jacaros.ros.node import Capability, Publisher
 from jacaros.ros.qos import QoS
 from jacaros.sim.navigation.frames import BASE, CAMERA, FOOTPRINT, MAP, ODOMETRY, SCAN
 from jacaros.sim.navigation.localisation import FOUND
@@ -40,7 +40,7 @@ class RobotTransforms:
             self._publish_static()
 
     def _join(self, at: RobotOnGraph) -> Publisher | None:
-        if TRANSFORMS not in self._backend.capabilities:
+        if Capability.TRANSFORMS not in self._backend.capabilities:
             return None
         # Not `tf_broadcast`, which does not report subscriptions.
         try:

@@ -23,20 +23,7 @@ from jacaros.ros.drivers.memory.graph import (
 from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import request_type
-from jacaros.ros.node import (
-    ACTIONS,
-    DEADLINES,
-    DECLARED_PARAMETERS,
-    GRAPH_QOS,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    QOS,
-    SERVICE_ERRORS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Parts,
-)
+from jacaros.ros.node import Capability, Parts
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.services import Handler, ServiceClient, ServiceServer, server_gone
@@ -317,21 +304,7 @@ class MemoryBackend(MemoryNode):
     """
 
     name = "memory"
-    capabilities = frozenset(
-        {
-            TOPICS,
-            SERVICES,
-            SERVICE_ERRORS,
-            TRANSFORMS,
-            QOS,
-            ACTIONS,
-            PARAMETERS,
-            DECLARED_PARAMETERS,
-            PARAMETER_EVENTS,
-            DEADLINES,
-            GRAPH_QOS,
-        }
-    )
+    capabilities = frozenset(Capability) - {Capability.DISCOVERY, Capability.REGISTRATION}
 
     parts = Parts(
         publisher=MemoryPublisher,

@@ -26,19 +26,7 @@ from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.names import message_type
-from jacaros.ros.node import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    REGISTRATION,
-    SERVICE_ERRORS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    NodeSettings,
-    Parts,
-)
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.waiting import within
 
 
@@ -57,19 +45,12 @@ class Ros1Backend(Ros1Node):
         settings: names, clock and log; the default namespace is ``ROS_NAMESPACE``.
     """
 
-    capabilities = frozenset(
-        {
-            TOPICS,
-            SERVICES,
-            SERVICE_ERRORS,
-            TRANSFORMS,
-            ACTIONS,
-            DISCOVERY,
-            REGISTRATION,
-            PARAMETERS,
-            PARAMETER_EVENTS,
-        }
-    )
+    capabilities = frozenset(Capability) - {
+        Capability.QOS,
+        Capability.GRAPH_QOS,
+        Capability.DEADLINES,
+        Capability.DECLARED_PARAMETERS,
+    }
 
     parts = Parts(
         publisher=Ros1Publisher,

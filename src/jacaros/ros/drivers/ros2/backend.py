@@ -15,41 +15,14 @@ from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
-from jacaros.ros.node import (
-    ACTIONS,
-    DEADLINES,
-    DECLARED_PARAMETERS,
-    DISCOVERY,
-    GRAPH_QOS,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    QOS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    NodeSettings,
-    Parts,
-)
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter import Parameters
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
 T = TypeVar("T")
-CAPABILITIES = frozenset(
-    {
-        TOPICS,
-        SERVICES,
-        QOS,
-        ACTIONS,
-        DISCOVERY,
-        PARAMETERS,
-        DECLARED_PARAMETERS,
-        PARAMETER_EVENTS,
-        DEADLINES,
-        GRAPH_QOS,
-    }
-)
+CAPABILITIES = frozenset(Capability) - {Capability.SERVICE_ERRORS, Capability.REGISTRATION}
 
 
 def _joining(what: str, make: Callable[..., T]) -> Callable[..., T]:
@@ -89,13 +62,13 @@ class Ros2Backend(Ros2Node):
         self._parameters: dict[str, Parameters] = {}
 
     @property
-    def capabilities(self) -> frozenset[str]:  # type: ignore[override]
+    def capabilities(self) -> frozenset[Capability]:  # type: ignore[override]
         """The capabilities; transforms only if ``tf2_msgs`` is installed."""
         try:
             self.schema.message_class(TRANSFORM_MESSAGE)
         except UnknownInterface:
-            return CAPABILITIES
-        return CAPABILITIES | {TRANSFORMS}
+            return CAPABILITIES - {Capability.TRANSFORMS}
+        return CAPABILITIES
 
     async def start(self) -> None:
         """Join the graph."""

@@ -25,17 +25,7 @@ from jacaros.ros.drivers.rosbridge.services import (
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
-from jacaros.ros.node import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    NodeSettings,
-    Parts,
-)
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE
 
@@ -70,11 +60,21 @@ class RosbridgeBackend(BridgeNode):
         self._parameter_events = ParameterEvents(self.subscription, read)
 
     @property
-    def capabilities(self) -> frozenset[str]:  # type: ignore[override]
+    def capabilities(self) -> frozenset[Capability]:  # type: ignore[override]
         """The capabilities with the robot's version of ROS."""
         # Only services of ROS 1 that are not served over a bridge report failed handlers.
-        events = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
-        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *events})
+        events = {Capability.PARAMETER_EVENTS} if self.ros_version == 2 else set()
+        return frozenset(
+            {
+                Capability.TOPICS,
+                Capability.SERVICES,
+                Capability.TRANSFORMS,
+                Capability.ACTIONS,
+                Capability.DISCOVERY,
+                Capability.PARAMETERS,
+                *events,
+            }
+        )
 
     def parameters(self, node: str | None = None) -> BridgeParameters:
         """Return the parameters of a node; our own exist on ROS 1 only, where the master stores them."""
