@@ -1,7 +1,7 @@
 """ROS 1 through rospy: one node per process, callbacks on the loop, registrations kept up to date.
 
 Nothing here waits on the loop: joining, registering and calling services happen in threads, see
-`jacaros.ros.drivers.ros1.master`. The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``, ``ROS_HOSTNAME``; if
+`jacaros.ros.drivers.ros1.node`. The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``, ``ROS_HOSTNAME``; if
 none is given and the master runs on this machine, all traffic stays on the loopback interface.
 """
 
@@ -17,15 +17,13 @@ from jacaros.ros.action_client import ActionClient
 from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.ros1.master import PATIENCE, Master
-from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.drivers.ros1.node import PATIENCE, Master, Ros1Node
 from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
 from jacaros.ros.drivers.ros1.topics import Ros1Publisher, Ros1Subscription
 from jacaros.ros.drivers.ros1.types import ROS1_PACKAGES
 from jacaros.ros.errors import CallTimedOut, ServiceError
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread
-from jacaros.ros.names import message_type
 from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.waiting import within
 
@@ -64,21 +62,6 @@ class Ros1Backend(Ros1Node):
     def __init__(self, settings: NodeSettings) -> None:
         super().__init__(settings)
         give(self)
-
-    def types_changed(self, types: Mapping[str, str]) -> None:
-        """Report to subscriptions that their topic has another type."""
-        self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
-        for topic, multiplexer in self.multiplexers.items():
-            multiplexer.see_type(self.types.get(topic))
-
-    def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
-        """Report to subscriptions that a publisher has another definition of the type: another md5 sum."""
-        if topic in self.multiplexers:
-            package, _, name = kind.partition("/")
-            self.multiplexers[topic].report(
-                f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
-                f"{ours}): nothing will be received from it; install its version of {package} here"
-            )
 
     def parameters(self, node: str | None = None) -> Ros1Parameters:
         """Return the parameters below a node's name."""

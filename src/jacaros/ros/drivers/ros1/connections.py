@@ -173,7 +173,7 @@ def log_to_standard_error() -> None:
             handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def report_parameter_changes(listener: Callable[[str, Any], None]) -> None:
+def report_parameter_changes(listener: Callable[[str, Any], object]) -> None:
     """Call *listener*, on a thread of rospy's, with changed parameters that the master reports.
 
     rospy itself stores such changes in a cache without callbacks, and ignores parameters that are not in it.

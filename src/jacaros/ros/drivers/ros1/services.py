@@ -8,8 +8,7 @@ from typing import Any, NoReturn
 
 import rospy  # type: ignore[import-not-found]
 
-from jacaros.ros.drivers.ros1.master import Master, call_failure
-from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.drivers.ros1.node import Master, Ros1Node, call_failure
 from jacaros.ros.errors import (
     CallFailed,
     CapabilityMissing,
