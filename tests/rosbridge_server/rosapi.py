@@ -161,7 +161,7 @@ class RosApi:
         return {"typedefs": list(seen.values())}
 
     def _typedef(self, type_name: str, fields: Any) -> dict[str, Any]:
-        kind = type(self._node.factory.schema.new(type_name))
+        kind = type(self._node.factory.new(type_name))
         constants = [name for name in vars(kind) if name.isupper()]
         return {
             "type": short(type_name),

@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import Any, Protocol
 
 from jacaros.ros.errors import MessageMismatch
-from jacaros.ros.message import MessageFactory, field_names
+from jacaros.ros.message import Schema, field_names
 from jacaros.ros.names import feedback_type, result_type
 from jacaros.runtime.clock import Clock, Timer
 
@@ -178,7 +178,7 @@ class ServedGoals:
     def __init__(
         self,
         clock: Clock,
-        factory: MessageFactory,
+        factory: Schema,
         name: str,
         type_name: str,
         execute: Execute,

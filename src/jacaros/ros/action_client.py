@@ -21,7 +21,7 @@ from jacaros.ros.errors import (
     ServerUnavailable,
     ServiceError,
 )
-from jacaros.ros.message import MessageFactory
+from jacaros.ros.message import Schema
 from jacaros.ros.names import goal_type
 from jacaros.ros.waiting import RETRY, Absence, Deadline, Waiting, settle, within
 from jacaros.runtime.clock import Clock, Timer
@@ -273,7 +273,7 @@ class ActionClient:
         self,
         clock: Clock,
         log: Callable[[str], None],
-        factory: MessageFactory,
+        factory: Schema,
         name: str,
         type_name: str,
         leaving: LeavingGoals | None = None,

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from jacaros.ros.action import text_of
 from jacaros.ros.action_client import ActionClient, Orphans
-from jacaros.ros.message import MessageFactory
+from jacaros.ros.message import Schema
 from jacaros.ros.names import result_type
 from jacaros.ros.node import Publisher, Sample, Subscription
 from jacaros.ros.protocols.actionlib import (
@@ -40,7 +40,7 @@ class ActionTopicsNode(Protocol):
 
     clock: Clock
     log: Callable[[str], None]
-    factory: MessageFactory
+    factory: Schema
 
     @property
     def node_name(self) -> str:

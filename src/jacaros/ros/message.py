@@ -6,9 +6,9 @@ on the client library). The differences are handled here: stamps, defaults and c
 """
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.files.texts import aside
 from jacaros.ros.errors import MessageMismatch, NameInvalid
@@ -33,51 +33,59 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
 zero rotations."""
 
 
-class Schema(Protocol):
-    """The interface of a family of message classes (of rospy, rclpy or our own)."""
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a message type in full form, in order. Raises `UnknownInterface`."""
-
-    def look_in(self, folder: Path) -> None:
-        """Search *folder* for definitions, too, if the family uses definition files."""
-
-    def new(self, type_name: str) -> Any:
-        """Make a message with the library's own defaults. Raises `UnknownInterface`."""
-
-    def numbers(self, field: FieldType, values: Any) -> Any:
-        """Convert the result of `array_of_numbers` to the form that the library stores in *field*."""
-
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Convert a checked number, bool or text to the form that the library stores in *field*."""
-
-
-class MessageFactory:
-    """Makes messages of one family of classes from keywords.
+class Schema:
+    """A family of message classes (of rospy, rclpy or our own), and the messages made of them.
 
     Args:
-        schema: the family.
+        roots: folders with further definitions, if the family uses definition files; see `jacaros.ros.interfaces`.
     """
 
-    def __init__(self, schema: Schema) -> None:
-        self.schema = schema
+    def __init__(self, roots: Sequence[Path] = ()) -> None:
+        self._roots = tuple(roots)
+        self._fields: dict[str, Mapping[str, FieldType]] = {}
         self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
-        self._classes: dict[str, type] = {}
+        self._classes: dict[str, Any] = {}
+
+    def look_in(self, folder: Path) -> None:
+        """Search *folder* for definitions, too, from now on."""
+        if folder not in self._roots:
+            self._roots = (*self._roots, folder)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type in full form, in the order of its definition.
+        """Return the fields of a message type in full form, in the order of its definition.
 
         Raises:
             UnknownInterface: the type is unknown.
         """
-        return self.schema.fields(type_name)
+        fields = self._fields.get(type_name)
+        if fields is None:
+            fields = self._fields[type_name] = self._read_fields(type_name)
+        return fields
 
-    def message_class(self, type_name: str) -> type:
-        """Return the client library's class of a type in full form. Raises `UnknownInterface`."""
-        kind = self._classes.get(type_name)
-        if kind is None:
-            kind = self._classes[type_name] = type(self.schema.new(type_name))
-        return kind
+    def message_class(self, type_name: str) -> Any:
+        """Return the class of a message type in full form. Raises `UnknownInterface`."""
+        found = self._classes.get(type_name)
+        if found is None:
+            found = self._classes[type_name] = self._find_class(type_name)
+        return found
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with the family's own defaults. Raises `UnknownInterface`."""
+        return self.message_class(type_name)()
+
+    def numbers(self, field: FieldType, values: Any) -> Any:
+        """Convert the result of `array_of_numbers` to the form that the family stores in *field*."""
+        return values
+
+    def single(self, field: FieldType, value: Any) -> Any:
+        """Convert a checked number, bool or text to the form that the family stores in *field*."""
+        return value
+
+    def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        raise NotImplementedError
+
+    def _find_class(self, type_name: str) -> Any:
+        raise NotImplementedError
 
     def make(self, type_name: str, values: Mapping[str, Any] | None = None) -> Any:
         """Make a message; missing fields get their defaults.
@@ -108,10 +116,10 @@ class MessageFactory:
         return given
 
     def _make(self, type_name: str, values: Mapping[str, Any], path: str) -> Any:
-        message = self.schema.new(type_name)
+        message = self.new(type_name)
         for set_default in self._default_setters(type_name):
             set_default(message)
-        fields = self.schema.fields(type_name)
+        fields = self.fields(type_name)
         for name, value in values.items():
             field = fields.get(name)
             where = f"{path}.{name}" if path else name
@@ -129,16 +137,16 @@ class MessageFactory:
             if not field.array:
                 return self._single(field, value, where)
             if field.is_numeric:
-                return self.schema.numbers(field, array_of_numbers(field, value))
+                return self.numbers(field, array_of_numbers(field, value))
             return self._list(field, value, where)
         except (TypeError, ValueError, OverflowError) as problem:
-            known = tuple(self.schema.fields(owner))
+            known = tuple(self.fields(owner))
             text = f"{owner}: field {where} is {field}, but {problem}"
             raise MessageMismatch(text, owner, where, known) from None
 
     def _single(self, field: FieldType, value: Any, where: str) -> Any:
         if not field.is_message:
-            return self.schema.single(field, single_value(field, value))
+            return self.single(field, single_value(field, value))
         if field.base in TIMES:
             return self._time(field.base, value)
         if isinstance(value, Mapping):
@@ -156,7 +164,7 @@ class MessageFactory:
         return elements
 
     def _time(self, base: str, value: Any) -> Any:
-        made = self.schema.new(base)
+        made = self.new(base)
         if isinstance(value, int | float) and not isinstance(value, bool):
             stamp(made, value)
         elif isinstance(value, Mapping):
@@ -180,9 +188,9 @@ class MessageFactory:
 
     def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterable[Callable[[Any], None]]:
         for name, value in DEFAULTS.get(type_name, {}).items():
-            if getattr(self.schema.new(type_name), name) != value:
+            if getattr(self.new(type_name), name) != value:
                 yield _setter(path, name, value)
-        for name, field in self.schema.fields(type_name).items():
+        for name, field in self.fields(type_name).items():
             if field.is_message and not field.array and field.base not in TIMES:
                 yield from self._find_defaults(field.base, (*path, name))
 

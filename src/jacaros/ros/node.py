@@ -19,7 +19,7 @@ from jacaros.ros.action_client import LeavingGoals, OrphanPolicy, Orphans
 from jacaros.ros.errors import CapabilityMissing, MessageMismatch, RosError
 from jacaros.ros.fields import FieldType
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.message import MessageFactory, Schema
+from jacaros.ros.message import Schema
 from jacaros.ros.names import NodeNames, message_type
 from jacaros.ros.parameter import GivenParameters, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
@@ -202,7 +202,7 @@ class Node:
         self.clock = settings.clock
         self.log = settings.log
         self.names = NodeNames(settings.node_name, settings.namespace, settings.remap)
-        self.factory = MessageFactory(schema)
+        self.factory = schema
         self.lifetime = lifetime
         self.connected = False
         self.delivered: Callable[[], None] = lambda: None
@@ -335,7 +335,7 @@ class Node:
 
         No effect on ``ros2``, where packages are installed.
         """
-        self.factory.schema.look_in(folder)
+        self.factory.look_in(folder)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Return the fields of a message type in the order of its definition. Raises `UnknownInterface`."""

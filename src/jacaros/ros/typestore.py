@@ -15,7 +15,7 @@ from jacaros.ros.definition_format import Definition, parse_definition
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
 from jacaros.ros.interfaces import BUILT_IN, definition, split_action, split_service
-from jacaros.ros.message import DEFAULTS
+from jacaros.ros.message import DEFAULTS, Schema
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.ros.values import zeros
 
@@ -83,7 +83,7 @@ def is_stored(type_name: str) -> bool:
     return type_name in _store()
 
 
-class DefinitionSchema:
+class DefinitionSchema(Schema):
     """Message classes of ROS 2 Jazzy, plus those defined in folders.
 
     Args:
@@ -91,22 +91,8 @@ class DefinitionSchema:
     """
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
-        self._roots = tuple(roots)
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
+        super().__init__(roots)
         self._makers: dict[str, Callable[[], Any]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """From now on, also look for definitions in *folder*."""
-        if folder not in self._roots:
-            self._roots = (*self._roots, folder)
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of the type with this full name; raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            self._require(type_name)
-            fields = self._fields[type_name] = _store().definition(type_name).fields
-        return fields
 
     def new(self, type_name: str) -> Any:
         """Create a message with zeros, empty strings and empty sequences; raises `UnknownInterface`."""
@@ -114,14 +100,6 @@ class DefinitionSchema:
         if maker is None:
             maker = self._makers[type_name] = self._compile(type_name)
         return maker()
-
-    def numbers(self, field: FieldType, values: Any) -> Any:
-        """Keep arrays as they are."""
-        return values
-
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Keep plain values as they are."""
-        return value
 
     def service(self, type_name: str) -> None:
         """Load the request and response types of a service; raises `UnknownInterface`."""
@@ -140,6 +118,14 @@ class DefinitionSchema:
         part = request_type(type_name) if kind == "srv" else goal_type(type_name)
         if part not in _store():
             self._definition(type_name, "service" if kind == "srv" else "action", kind)
+
+    def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        self._require(type_name)
+        return _store().definition(type_name).fields
+
+    def _find_class(self, type_name: str) -> Any:
+        self._require(type_name)
+        return _store().message_class(type_name)
 
     def _require(self, type_name: str) -> None:
         if type_name in _store():
@@ -204,20 +190,20 @@ class DefinitionSchema:
         """Return an expression that creates a message; add the objects it refers to to *names*."""
         defaults = DEFAULTS.get(type_name, {})
         values = [
-            repr(defaults[name]) if name in defaults else self._value(field, names)
+            repr(defaults[name]) if name in defaults else self._default(field, names)
             for name, field in self.fields(type_name).items()
         ]
         return f"{_named(_store().message_class(type_name), names)}({', '.join(values)})"
 
-    def _value(self, field: FieldType, names: dict[str, Any]) -> str:
+    def _default(self, field: FieldType, names: dict[str, Any]) -> str:
         if not field.array:
-            return self._single(field, names)
+            return self._single_default(field, names)
         length = field.length if field.fixed else 0
         if field.is_numeric:
             return f"{_named(zeros(field, length), names)}[:]"
-        return f"[{self._single(field, names)} for _ in range({length})]" if length else "[]"
+        return f"[{self._single_default(field, names)} for _ in range({length})]" if length else "[]"
 
-    def _single(self, field: FieldType, names: dict[str, Any]) -> str:
+    def _single_default(self, field: FieldType, names: dict[str, Any]) -> str:
         return self._message(field.base, names) if field.is_message else repr(_ZEROS.get(field.base, 0))
 
 

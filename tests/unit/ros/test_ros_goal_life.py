@@ -22,12 +22,11 @@ from jacaros.ros.action import (
 )
 from jacaros.ros.action_client import ENDING, ActionClient, GoalHandle
 from jacaros.ros.errors import CallTimedOut, ServiceError
-from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 COUNT = "jacaros_interfaces/action/Count"
-FACTORY = MessageFactory(DefinitionSchema())
+FACTORY = DefinitionSchema()
 
 
 class Loop:

@@ -6,7 +6,7 @@ import pytest
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.interfaces import split_action, split_service
-from jacaros.ros.message import MessageFactory, constant, plain
+from jacaros.ros.message import constant, plain
 from jacaros.ros.typestore import DefinitionSchema
 
 
@@ -25,7 +25,7 @@ def test_an_action_has_three_parts_with_constants_and_other_types_of_ours(tmp_pa
         "wstring error_msg\n---\nfloat32 done 0.5\ngeometry_msgs/Pose pose\n",
     )
     schema = DefinitionSchema([tmp_path])
-    factory = MessageFactory(schema)
+    factory = schema
     schema.action("kitchen_msgs/action/Cook")
     fields = schema.fields("kitchen_msgs/action/Cook_Goal")
     assert {name: str(kind) for name, kind in fields.items()} == {

@@ -8,7 +8,6 @@ from typing import Any, Protocol
 
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import BUILT_IN, installed
-from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import DefinitionSchema, stored_types
 
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
@@ -28,7 +27,7 @@ class StoredInterfaces:
     """The definitions of the package and of this machine, for checks without a middleware."""
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
-        self._factory = MessageFactory(DefinitionSchema((*folders, *installed())))
+        self._factory = DefinitionSchema((*folders, *installed()))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type."""

@@ -4,7 +4,7 @@ import hashlib
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -15,6 +15,7 @@ from jacaros.files.texts import kept_files
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
 from jacaros.ros.interfaces import definition, split_action
+from jacaros.ros.message import Schema
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 """Types that are in another package on ROS 1 than on ROS 2."""
@@ -22,19 +23,11 @@ ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 ACTION_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
 """Suffixes of the messages of an action, longer ones first."""
 
-_ON_DEBIAN = (
-    *(
-        "actionlib_msgs",
-        "diagnostic_msgs",
-        "geometry_msgs",
-        "map_msgs",
-        "move_base_msgs",
-        "nav_msgs",
-        "pcl_msgs",
-    ),
-    *("rosgraph_msgs", "sensor_msgs", "shape_msgs", "std_msgs", "stereo_msgs", "tf2_msgs", "trajectory_msgs"),
-    "visualization_msgs",
-)
+_ON_DEBIAN = {
+    *("actionlib_msgs", "diagnostic_msgs", "geometry_msgs", "map_msgs", "move_base_msgs", "nav_msgs"),
+    *("pcl_msgs", "rosgraph_msgs", "sensor_msgs", "shape_msgs", "std_msgs", "stereo_msgs", "tf2_msgs"),
+    *("trajectory_msgs", "visualization_msgs"),
+}
 """Packages of messages that Debian has, as ``python3-NAME``."""
 
 _TIME_FIELDS = {
@@ -43,56 +36,22 @@ _TIME_FIELDS = {
 }
 
 
-class GenpySchema:
+class GenpySchema(Schema):
     """Classes of the installed ROS 1 packages, and of definitions.
 
     Args:
         roots: folders with further definitions; see `jacaros.ros.interfaces`.
     """
 
-    def __init__(self, roots: Sequence[Path] = ()) -> None:
-        self._roots = tuple(roots)
-        self._classes: dict[str, Any] = {}
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """Search *folder* for definitions, too, from now on."""
-        if folder not in self._roots:
-            self._roots = (*self._roots, folder)
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type in full form. Raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            fields = self._fields[type_name] = _TIME_FIELDS.get(type_name) or self._read_fields(type_name)
-        return fields
-
-    def new(self, type_name: str) -> Any:
-        """Make a message with genpy's defaults. Raises `UnknownInterface`."""
-        return self.message_class(type_name)()
-
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert an array to ``bytes`` for octets, otherwise to a list, which genpy serialises."""
         return values.tobytes() if field.base == "uint8" else list(values)
 
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Return plain values unchanged."""
-        return value
-
-    def message_class(self, type_name: str) -> Any:
-        """Return the class of a message, or of a part of a service or action, in full form. Raises
-        `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find_message(type_name)
-        return found
-
     def service_class(self, type_name: str) -> Any:
         """Return the class of a service type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find_service(type_name)
-        return found
+        if type_name not in self._classes:
+            self._classes[type_name] = self._find_service(type_name)
+        return self._classes[type_name]
 
     def action_class(self, type_name: str, part: str) -> Any:
         """Return the class of one of actionlib's messages of an action.
@@ -106,16 +65,17 @@ class GenpySchema:
             UnknownInterface: the action is neither installed nor defined.
         """
         key = f"{type_name}_{part}"
-        found = self._classes.get(key)
-        if found is None:
-            found = self._classes[key] = self._find_action(type_name, part)
-        return found
+        if key not in self._classes:
+            self._classes[key] = self._find_action(type_name, part)
+        return self._classes[key]
 
     def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        if type_name in _TIME_FIELDS:
+            return _TIME_FIELDS[type_name]
         kind = self.message_class(type_name)
         return {name: from_ros1(text) for name, text in zip(kind.__slots__, kind._slot_types, strict=True)}
 
-    def _find_message(self, type_name: str) -> Any:
+    def _find_class(self, type_name: str) -> Any:
         if type_name in (TIME, DURATION):
             return getattr(import_module("genpy"), type_name.rsplit("/", 1)[1])
         package, kind, name = type_name.split("/")

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy  # rclpy needs it, too
@@ -13,32 +12,18 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 from jacaros.ros.errors import ParameterRefused, UnknownInterface
 from jacaros.ros.fields import FieldType, from_ros2
 from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
+from jacaros.ros.message import Schema
 
 _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 """The messages of services and actions."""
 
 
-class RosidlSchema:
+class RosidlSchema(Schema):
     """Classes of the installed ROS 2 packages."""
 
-    def __init__(self) -> None:
-        self._classes: dict[str, Any] = {}
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """Do nothing: ROS 2 needs installed packages."""
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type in full form. Raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            told = self.message_class(type_name).get_fields_and_field_types()
-            fields = self._fields[type_name] = {name: from_ros2(text) for name, text in told.items()}
-        return fields
-
-    def new(self, type_name: str) -> Any:
-        """Make a message with the definition's defaults. Raises `UnknownInterface`."""
-        return self.message_class(type_name)()
+    def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        told = self.message_class(type_name).get_fields_and_field_types()
+        return {name: from_ros2(text) for name, text in told.items()}
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert an array to the form that rclpy checks fastest: numpy for fixed lengths."""
@@ -49,13 +34,6 @@ class RosidlSchema:
     def single(self, field: FieldType, value: Any) -> Any:
         """Convert an octet to ``bytes``; return other plain values unchanged."""
         return bytes([value]) if field.base == "byte" else value
-
-    def message_class(self, type_name: str) -> Any:
-        """Return the class of a message, request or response type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find(type_name)
-        return found
 
     def graph_type(self, type_name: str) -> str:
         """Return the name of a type in the graph: a substitute has its own package. Raises `UnknownInterface`."""
@@ -73,7 +51,7 @@ class RosidlSchema:
         # If the original package is installed, the two differ, so the substitute must be recognised.
         return told if looks_like is None or _is_installed(looks_like) else f"{looks_like}/{kind}/{name}"
 
-    def _find(self, type_name: str) -> Any:
+    def _find_class(self, type_name: str) -> Any:
         package, kind, name = type_name.split("/")
         whole, _, part = name.rpartition("_")
         if whole and part in _PARTS.get(kind, ()):
