@@ -11,7 +11,7 @@ from jacaros.cli.graph_options import faults_option, noise_option, read_remaps, 
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file
-from jacaros.ros.address import GraphAddress
+from jacaros.ros.open import GraphAddress
 from jacaros.runtime.clock import Clock, VirtualClock, WallClock, run
 from jacaros.sim.description import BatterySettings, WorldDescription
 

@@ -11,9 +11,8 @@ from jacaros.artifacts.robots.charge import Charge
 from jacaros.artifacts.robots.odometry import not_finite
 from jacaros.inspector.map_drawing import can_be_drawn, map_drawing
 from jacaros.inspector.scene import UNKNOWN, RobotView
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError, TransformUnavailable
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import constant
 from jacaros.ros.node import Capability, Sample, Subscription
 from jacaros.ros.protocols.transform import Transform

@@ -9,9 +9,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import Subscription
 from jacaros.ros.parameter import GivenParameters
 from jacaros.ros.waiting import MISSING_AFTER

@@ -4,23 +4,118 @@ Everything here happens on the loop of the backend's clock: calls must come from
 """
 
 from collections import Counter
-from typing import Any
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
 from weakref import WeakKeyDictionary
 
 from jacaros.ros.action import ActionPolicy, ActionServer, Execute
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.graph import GraphContents
+from jacaros.ros.errors import RosError
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.message import Schema
-from jacaros.ros.names import action_type, service_type
-from jacaros.ros.node import Node, NodeSettings, TopicPublisher, TopicSubscription
+from jacaros.ros.names import action_type, near_names, service_type
+from jacaros.ros.node import Node, NodeSettings, Publisher, Sample, TopicPublisher, TopicSubscription
 from jacaros.ros.parameter import Parameters
 from jacaros.ros.protocols.transform import Transform
-from jacaros.ros.rosout import RosoutWriter
+from jacaros.ros.qos import QoS
 from jacaros.ros.services import Client, Handler, Service
 from jacaros.ros.tf import TransformBroadcaster, TransformListener
 
+__all__ = ["Backend", "Endpoint", "GraphContents", "Sample", "TopicInfo", "alike", "latching"]
+
 DEFAULT_POLICY = ActionPolicy()
+ROSOUT = "/rosout"
+ROS2_LOG = ("rcl_interfaces/msg/Log", QoS(durability="transient_local", depth=1000))
+"""Type and quality of service of the graph's log, as in ROS 2's own profile."""
+ROS1_LOG = ("rosgraph_msgs/msg/Log", QoS(depth=100))
+ROS1_LEVELS = {"debug": 1, "info": 2, "warn": 4, "error": 8, "fatal": 16}
+ROS2_LEVELS = {"debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """A publisher or subscription of any node.
+
+    Attributes:
+        node: absolute name of its node; empty if the middleware does not report it.
+        qos: its offer or request; None if the middleware does not report it.
+    """
+
+    node: str = ""
+    qos: QoS | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TopicInfo:
+    """A topic.
+
+    Attributes:
+        name: absolute name.
+        types: types of its messages in full form, sorted; more than one is a mistake of some node.
+        publishers, subscriptions: its endpoints.
+    """
+
+    name: str
+    types: tuple[str, ...]
+    publishers: tuple[Endpoint, ...] = ()
+    subscriptions: tuple[Endpoint, ...] = ()
+
+
+def latching(topic: TopicInfo | None) -> str:
+    """Return the nodes whose publishers store messages for late subscriptions; empty if none is known."""
+    ends = () if topic is None else topic.publishers
+    names = {
+        each.node or "an unknown node"
+        for each in ends
+        if each.qos is not None and each.qos.durability == "transient_local"
+    }
+    return ", ".join(sorted(names))
+
+
+@dataclass(frozen=True, slots=True)
+class GraphContents:
+    """A snapshot of the graph.
+
+    The topics and services behind actions, parameters and logging are not included in `topics` and `services`: those
+    below ``…/_action/``, actionlib's five, parameter services, ``/rosout``, ``/parameter_events``.
+
+    Attributes:
+        topics: by absolute name.
+        services: absolute name → type in full form ("" if unknown).
+        actions: absolute name → type in full form, such as ``nav2_msgs/action/NavigateToPose``.
+        nodes: absolute names, sorted.
+    """
+
+    topics: dict[str, TopicInfo] = field(default_factory=dict)
+    services: dict[str, str] = field(default_factory=dict)
+    actions: dict[str, str] = field(default_factory=dict)
+    nodes: tuple[str, ...] = ()
+
+    def near_topics(
+        self, name: str, type_name: str, end: Literal["publishers", "subscriptions"]
+    ) -> list[str]:
+        """Return up to three topics that *name* may mean: of the same type, otherwise of a similar name.
+
+        Args:
+            name: absolute name of the missing topic.
+            type_name: its type in full form; empty if unknown.
+            end: the endpoints that a suggested topic must have.
+        """
+        used = {each: info.types for each, info in self.topics.items() if getattr(info, end)}
+        return near_names(name, used, alike(type_name, used))
+
+
+def alike(type_name: str, types: Mapping[str, Collection[str]]) -> list[str]:
+    """Return the names with a type, sorted; none if the type says nothing about the meaning, such as a string.
+
+    Args:
+        type_name: full form; empty if unknown.
+        types: the types of each name.
+    """
+    if type_name.startswith(("std_msgs/", "std_srvs/")):
+        return []
+    return sorted(name for name, theirs in types.items() if type_name in theirs)
 
 
 class Backend(Node):
@@ -40,7 +135,7 @@ class Backend(Node):
         self.actions: WeakKeyDictionary[ActionClient | ActionServer, None] = WeakKeyDictionary()
         self._transforms = TransformBroadcaster(self)
         self._frames = TransformListener(self)
-        self._rosout = RosoutWriter(self)
+        self._rosout: Publisher | None = None
 
     def receivers(self, topic: str) -> int:
         """Return the number of subscriptions of this node that receive the messages of a topic (absolute name)."""
@@ -166,4 +261,19 @@ class Backend(Node):
             level: ``debug``, ``info``, ``warn``, ``error`` or ``fatal``.
             text: the line.
         """
-        self._rosout.write(level, text)
+        ros1 = self.ros_version == 1
+        numbers = ROS1_LEVELS if ros1 else ROS2_LEVELS
+        if level not in numbers:
+            raise RosError(f"unknown log level {level!r}: expected one of {', '.join(numbers)}")
+        if self._rosout is None:
+            self._rosout = self.publisher(ROSOUT, *(ROS1_LOG if ros1 else ROS2_LOG))
+        now, writer = self.clock.now(), self._rosout
+        if ros1:
+            message = writer.message(
+                header={"stamp": now}, level=numbers[level], name=self.node_name, msg=text
+            )
+        else:
+            # ROS 2 names loggers as Python does.
+            logger = self.node_name.strip("/").replace("/", ".")
+            message = writer.message(stamp=now, level=numbers[level], name=logger, msg=text)
+        writer.publish(message)

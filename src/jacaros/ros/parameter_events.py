@@ -1,4 +1,4 @@
-"""Changed parameters of ROS 2's nodes, from ``/parameter_events`` (``rcl_interfaces/msg/ParameterEvent``)."""
+"""Parameters of the nodes of other processes: reports of changes, and the services of ROS 2 that read and set them."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 from jacaros.ros.node import Sample
 from jacaros.ros.parameter import ParameterValue
 from jacaros.ros.qos import QoS
+from jacaros.ros.services import Client
 
 EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
 
@@ -65,3 +66,30 @@ class ParameterEvents(ParameterListeners):
         if known:
             for callback in listeners:
                 callback(known)
+
+
+class ParameterServices:
+    """The parameter services of one node; a client is made on first use.
+
+    Args:
+        node: absolute name of the node that has the parameters.
+        make_client: makes the client of a service, by name and type, and closes it with our node.
+    """
+
+    def __init__(self, node: str, make_client: Callable[[str, str], Client]) -> None:
+        self._node = node
+        self._make_client = make_client
+        self._clients: dict[str, Client] = {}
+
+    def client(self, service: str) -> Client:
+        """Return the client of a service, such as ``GetParameters`` of ``rcl_interfaces``."""
+        client = self._clients.get(service)
+        if client is None:
+            name = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in service)
+            client = self._make_client(f"{self._node}/{name[1:]}", f"rcl_interfaces/srv/{service}")
+            self._clients[service] = client
+        return client
+
+    async def call(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
+        """Call a service and return its response; *timeout* in seconds."""
+        return await self.client(service).call(request, timeout)

@@ -11,9 +11,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from jacaros.ros.definition_format import Definition, parse_definition
 from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.fields import FieldType
+from jacaros.ros.fields import Definition, FieldType, parse_definition
 from jacaros.ros.interfaces import BUILT_IN, definition, split_action, split_service
 from jacaros.ros.message import DEFAULTS, Schema
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type

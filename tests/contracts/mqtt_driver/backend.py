@@ -10,9 +10,8 @@ from typing import Any
 
 import aiomqtt
 
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import ServiceUnavailable
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import Capability, NodeSettings, Parts

@@ -9,8 +9,7 @@ import pytest
 
 from jacaros.ros.action import ActionPolicy, GoalStatus, ServerGoal
 from jacaros.ros.action_client import ActionClient, OrphanPolicy
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
 from jacaros.ros.drivers.memory.backend import MemoryBackend
 from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from jacaros.ros.definition_format import parse_definition
+from jacaros.ros.fields import parse_definition
 from jacaros.ros.typestore import DefinitionSchema, stored_types
 
 ROOT = Path(__file__).parents[3]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from jacaros.artifacts.mapping.declared import Written
 from jacaros.artifacts.mapping.host import Host
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.errors import CapabilityMissing, RosError
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.waiting import MISSING_AFTER
 
 LOOK = 0.5

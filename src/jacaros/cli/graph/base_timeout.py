@@ -7,7 +7,7 @@ from functools import partial
 from jacaros.cli.graph.joining import Joined, NothingThere
 from jacaros.cli.graph.listening import hearing
 from jacaros.cli.usage import usage_error
-from jacaros.ros.graph import TopicInfo
+from jacaros.ros.backend import TopicInfo
 from jacaros.ros.guarded import VELOCITIES, velocity
 from jacaros.ros.names import near_names
 from jacaros.ros.node import Publisher, Sample

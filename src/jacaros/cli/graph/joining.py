@@ -9,9 +9,8 @@ from jacaros.cli.usage import usage_error
 from jacaros.errors import JacarosError
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import CapabilityMissing, RosError
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.middleware import middleware
 from jacaros.runtime.clock import Clock, VirtualClock, WallClock
 

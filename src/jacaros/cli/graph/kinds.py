@@ -7,8 +7,8 @@ from jacaros.cli.graph.joining import Joined
 from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
 from jacaros.files.texts import did_you_mean
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.errors import NameInvalid
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import near_names
 
 

@@ -6,8 +6,8 @@ from contextlib import suppress
 from typing import Any
 
 from jacaros.cli.graph.joining import Joined
+from jacaros.ros.backend import TopicInfo
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import TopicInfo
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import within
 

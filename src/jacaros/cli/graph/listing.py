@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.ros.graph import GraphContents, TopicInfo
+from jacaros.ros.backend import GraphContents, TopicInfo
 from jacaros.runtime.output import beneath
 
 UNKNOWN = "(unknown)"

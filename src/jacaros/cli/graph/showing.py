@@ -12,8 +12,8 @@ from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.kinds import Kind, Thing
 from jacaros.cli.graph.listening import one_message
 from jacaros.cli.graph.values import Leaf, is_time, leaves, messages, parts, value_at
+from jacaros.ros.backend import Endpoint
 from jacaros.ros.errors import RosError, UnknownInterface
-from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
 from jacaros.ros.node import Capability
 

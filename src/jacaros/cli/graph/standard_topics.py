@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from jacaros.cli.graph.kinds import Kind, Thing, all_things
-from jacaros.ros.graph import GraphContents
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.guarded import VELOCITIES
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")

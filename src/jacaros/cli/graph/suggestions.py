@@ -8,8 +8,8 @@ from jacaros.artifacts.mapping.interfaces import Interfaces, constants
 from jacaros.artifacts.mapping.read_fields import RESERVED
 from jacaros.cli.graph.known_topics import KNOWN, Body
 from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
+from jacaros.ros.backend import TopicInfo
 from jacaros.ros.fields import FieldType
-from jacaros.ros.graph import TopicInfo
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import feedback_type, goal_type, request_type, result_type
 

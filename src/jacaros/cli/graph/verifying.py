@@ -17,8 +17,8 @@ from jacaros.cli.graph.joining import Joined
 from jacaros.cli.graph.listening import root
 from jacaros.files.texts import did_you_mean
 from jacaros.files.yaml import Problem
+from jacaros.ros.backend import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import frame_name, near_names
 from jacaros.ros.node import Capability

@@ -4,9 +4,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.mas.history.causes import CauseRecords
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import GraphContents
 
 PERIOD = 3.0
 """Seconds between two checks of a changing graph."""

@@ -12,7 +12,7 @@ from typing import Any
 
 from jacaros.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, ServedGoals
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.memory.graph import (
     Kind,
     MemoryGraph,
@@ -21,11 +21,9 @@ from jacaros.ros.drivers.memory.graph import (
     MemorySubscription,
 )
 from jacaros.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import request_type
 from jacaros.ros.node import Capability, Parts
-from jacaros.ros.parameter import Declaration, ParameterValue
-from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.parameter import Declaration, DeclaredParameters, ParameterValue
 from jacaros.ros.services import Handler, ServiceClient, ServiceServer, server_gone
 from jacaros.ros.waiting import Absence, Deadline, Waiting, settle, within
 

@@ -15,14 +15,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal
 
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import M, NodeSettings, TopicPublisher, TopicSubscription, Wanted
-from jacaros.ros.parameter import ParameterValue
+from jacaros.ros.parameter import DeclaredParameters, ParameterValue
 from jacaros.ros.parameter_events import ParameterListeners
-from jacaros.ros.parameter_store import DeclaredParameters
 from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.ros.waiting import settle

@@ -14,15 +14,13 @@ from typing import Any
 import rosgraph.network  # type: ignore[import-not-found]
 
 from jacaros.ros.action_client import ActionClient
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.backend import Backend
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.ros1.node import PATIENCE, Master, Ros1Node
 from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
 from jacaros.ros.drivers.ros1.topics import Ros1Publisher, Ros1Subscription
 from jacaros.ros.drivers.ros1.types import ROS1_PACKAGES
 from jacaros.ros.errors import CallTimedOut, ServiceError
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.waiting import within

@@ -37,9 +37,8 @@ from jacaros.ros.errors import CallFailed, MessageMismatch, RosError, ServiceErr
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
-from jacaros.ros.node import NodeSettings
+from jacaros.ros.node import NodeSettings, TopicMultiplexer
 from jacaros.ros.services import server_gone
-from jacaros.ros.topics import TopicMultiplexer
 
 SENDING = 0.5
 """Seconds that closing waits for the last messages to be sent."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
 from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
 from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
@@ -13,7 +13,6 @@ from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
 from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter import Parameters

@@ -5,8 +5,8 @@ from typing import Any
 import rclpy.duration  # type: ignore[import-not-found]
 import rclpy.qos  # type: ignore[import-not-found]
 
+from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.protocols.ros2_actions import ACTION, FEEDBACK, SEND_GOAL
 from jacaros.ros.qos import QoS
 

@@ -28,8 +28,7 @@ from jacaros.ros.drivers.ros2.types import parameter, plain_value
 from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import ParameterServices
+from jacaros.ros.parameter_events import ParameterEvents, ParameterServices
 
 _LARGEST = 2**63 - 1
 

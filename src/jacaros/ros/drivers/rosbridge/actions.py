@@ -13,8 +13,7 @@ from typing import Any
 
 from jacaros.ros.action import TEXT_FIELDS, ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals, text_of
 from jacaros.ros.action_client import ActionClient, GoalWire
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable

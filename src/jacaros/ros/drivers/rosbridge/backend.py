@@ -10,7 +10,7 @@ Everything happens on the loop; only exit hooks may send from another thread (se
 import os
 from typing import Any
 
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
 from jacaros.ros.drivers.rosbridge.link import checked_url
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
@@ -24,7 +24,6 @@ from jacaros.ros.drivers.rosbridge.services import (
 )
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE

@@ -17,11 +17,10 @@ from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUn
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
-from jacaros.ros.node import NodeSettings
+from jacaros.ros.node import NodeSettings, TopicMultiplexer
 from jacaros.ros.protocols.rosbridge_messages import Translator
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
 from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.topics import TopicMultiplexer
 from jacaros.ros.waiting import settle, within
 from jacaros.runtime.clock import Timer
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NoReturn
 
+from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.errors import (
     CallFailed,
@@ -15,11 +16,9 @@ from jacaros.ros.errors import (
     ParameterUnknown,
     ServiceError,
 )
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import ParameterServices
+from jacaros.ros.parameter_events import ParameterEvents, ParameterServices
 from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within

@@ -7,10 +7,16 @@ from typing import Any
 
 from jacaros.ros.action_client import Orphans
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.ros.node import Sample, TopicPublisher, TopicTrouble, Wanted
+from jacaros.ros.node import (
+    Sample,
+    SharedSubscription,
+    TopicMultiplexer,
+    TopicPublisher,
+    TopicTrouble,
+    Wanted,
+)
 from jacaros.ros.protocols.rosbridge_requests import LOOK_STEADILY, Polled
 from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.topics import SharedSubscription, TopicMultiplexer
 from jacaros.runtime.clock import Timer
 
 WAITING = 300
