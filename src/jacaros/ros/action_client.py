@@ -23,7 +23,7 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.message import Schema
 from jacaros.ros.names import goal_type
-from jacaros.ros.waiting import RETRY, Absence, Deadline, Waiting, settle, within
+from jacaros.ros.waiting import RETRY, Deadline, Waiting, settle, within
 from jacaros.runtime.clock import Clock, Timer
 
 T = TypeVar("T")
@@ -282,7 +282,6 @@ class ActionClient:
         self.clock = clock
         self.name = name
         self.type_name = type_name
-        self._described = f"action {name} ({type_name})"
         self._log = log
         self._factory = factory
         self._goal_type = goal_type(type_name)
@@ -293,7 +292,7 @@ class ActionClient:
         self._abandoning: set[asyncio.Task[None]] = set()
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
-        self._absence = Absence()
+        self._waiting = Waiting(clock, log, f"action {name} ({type_name})")
         self._closed = False
 
     @property
@@ -518,17 +517,16 @@ class ActionClient:
         return pending
 
     def _nobody(self, deadline: Deadline) -> ServerUnavailable:
-        return ServerUnavailable(f"no server offered {self._described} within {deadline.timeout:g} s")
+        return ServerUnavailable(f"no server offered {self._waiting.what} within {deadline.timeout:g} s")
 
     async def _server(self, deadline: Deadline) -> None:
         """Wait for the server."""
         if self._closed:
             raise CallFailed(f"the client of action {self.name} was closed")
         if self.wire.offered:
-            self._absence.end(self._log, self._described)
+            self._waiting.found()
             return
-        help = "is the node that offers it running?"
-        with Waiting(self.clock, self._log, self._described, help, absence=self._absence):
+        with self._waiting.during():
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)

@@ -214,7 +214,7 @@ class Node:
         self.members: dict[Closable, None] = {}
         self._loop: asyncio.AbstractEventLoop | None = None
         self._first_look: asyncio.Future[None] | None = None
-        self._waiting: Waiting | None = None
+        self._end_waiting: Callable[[bool], None] | None = None
         self._on_connection: list[Callable[[bool], None]] = []
 
     @property
@@ -264,9 +264,7 @@ class Node:
 
     def found(self) -> None:
         """Note, on the loop, that the graph was found."""
-        if self._waiting is not None:
-            self._waiting.__exit__(None, None, None)
-            self._waiting = None
+        self._stop_waiting(True)
         self.set_connected(True)
         self.looked()
 
@@ -277,8 +275,8 @@ class Node:
             what: its name for the log.
             help: what the user can do about it.
         """
-        if self._waiting is None and not self.lifetime.leaving:
-            self._waiting = Waiting(self.clock, self.log, what, help).__enter__()
+        if self._end_waiting is None and not self.lifetime.leaving:
+            self._end_waiting = Waiting(self.clock, self.log, what, help).begin()
         self.set_connected(False)
         self.looked()
 
@@ -289,10 +287,13 @@ class Node:
 
     def left(self) -> None:
         """Note, on the loop, that the node has left, and stop waiting."""
-        if self._waiting is not None:
-            self._waiting.__exit__(RosError, None, None)
-            self._waiting = None
+        self._stop_waiting(False)
         self.set_connected(False)
+
+    def _stop_waiting(self, found: bool) -> None:
+        if self._end_waiting is not None:
+            self._end_waiting(found)
+            self._end_waiting = None
 
     def keep(self, member: M) -> M:
         """Close *member* with the node, which must be started. Raises `RosError` otherwise."""

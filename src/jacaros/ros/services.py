@@ -2,7 +2,6 @@
 
 import asyncio
 import inspect
-import sys
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -10,7 +9,7 @@ from jacaros.ros.action import SERVER_LOST_AFTER
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
 from jacaros.ros.names import request_type, response_type
 from jacaros.ros.node import Entity, N
-from jacaros.ros.waiting import RETRY, Absence, Deadline, Waiting, settle
+from jacaros.ros.waiting import RETRY, Deadline, Waiting, settle
 from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
@@ -74,9 +73,8 @@ class ServiceClient(Entity[N]):
 
     def __init__(self, node: N, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)
-        self._described = f"service {name} ({type_name})"
+        self._waiting = Waiting(node.clock, node.log, f"service {name} ({type_name})")
         self._answers: set[asyncio.Future[Any]] = set()
-        self._absence = Absence()
 
     @property
     def ready(self) -> bool:
@@ -100,15 +98,12 @@ class ServiceClient(Entity[N]):
             CallTimedOut: the server did not answer in time.
             CallFailed: the server's handler failed (only with `Capability.SERVICE_ERRORS`), or the connection broke.
         """
-        node = self._node
-        message = node.factory.checked(request_type(self.type_name), request)
+        message = self._node.factory.checked(request_type(self.type_name), request)
 
         async def attempt(rest: float | None) -> Any:
             return await self._attempt(message, rest)
 
-        return await call_when_offered(
-            node.clock, node.log, self._described, attempt, timeout, self._may_be_called, self._absence
-        )
+        return await call_when_offered(self._waiting, attempt, timeout, self._may_be_called)
 
     def close(self) -> None:
         """Close the client; pending calls fail with `CallFailed`."""
@@ -137,59 +132,50 @@ Client = ServiceClient[Any]
 
 
 async def call_when_offered(
-    clock: Clock,
-    log: Callable[[str], None],
-    what: str,
+    waiting: Waiting,
     attempt: Callable[[float | None], Awaitable[Any]],
     timeout: float | None,
     may_be_called: Callable[[], bool] = lambda: True,
-    absence: Absence | None = None,
 ) -> Any:
     """Call a service whose appearance is not reported: retry until it is offered.
 
     Args:
-        clock: measures the time-out.
-        log: called when it waits.
-        what: the service with its type.
+        waiting: has the clock and the name of the service with its type, and logs the waits for it.
         attempt: calls the service once; takes the remaining seconds, raises `ServiceUnavailable` if no node offers it
             and `TimeoutError` if there is no answer.
         timeout: seconds in total; None: no limit.
         may_be_called: whether an unanswered attempt may have reached a server. If another process has to be asked for
             the server, the last attempt may time out before it reports that none exists.
-        absence: number of earlier calls without a server, see `Waiting`.
 
     Raises:
         ServiceUnavailable: no node offered the service in time.
         CallTimedOut: it was called but did not answer in time.
     """
-    deadline = Deadline(clock, timeout)
-    waiting: Waiting | None = None
-
-    def nobody() -> ServiceUnavailable:
-        return ServiceUnavailable(f"no node offered {what} within {timeout:g} s")
-
+    deadline = Deadline(waiting.clock, timeout)
+    end: Callable[[bool], None] | None = None
+    found = False
     try:
         while True:
             try:
                 response = await attempt(deadline.left)
             except TimeoutError:
-                if waiting is not None and not may_be_called():
-                    raise nobody() from None
-                raise CallTimedOut(f"{what} did not answer within {timeout:g} s") from None
+                if end is None or may_be_called():
+                    raise CallTimedOut(f"{waiting.what} did not answer within {timeout:g} s") from None
+                missing = True
             except ServiceUnavailable:
-                if deadline.comes_within(RETRY):
-                    raise nobody() from None
+                missing = deadline.comes_within(RETRY)
             else:
-                if waiting is None and absence is not None:
-                    absence.end(log, what)
+                found = True
                 return response
-            if waiting is None:
-                help = "is the node that offers it running?"
-                waiting = Waiting(clock, log, what, help, absence=absence).__enter__()
-            await clock.sleep(RETRY)
+            if missing:
+                raise ServiceUnavailable(f"no node offered {waiting.what} within {timeout:g} s") from None
+            end = end or waiting.begin()
+            await waiting.clock.sleep(RETRY)
     finally:
-        if waiting is not None:
-            waiting.__exit__(*sys.exc_info())
+        if end is not None:
+            end(found)
+        elif found:
+            waiting.found()
 
 
 class ServerWatch:

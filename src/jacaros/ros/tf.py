@@ -92,7 +92,7 @@ class TransformListener:
                 raise
         what = f"transform from {source} to {target}"
         help = "is the node that publishes it running?"
-        with Waiting(self._node.clock, self._node.log, what, help, quiet=QUIET):
+        with Waiting(self._node.clock, self._node.log, what, help, QUIET).during():
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(

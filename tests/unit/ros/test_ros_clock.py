@@ -9,6 +9,7 @@ from jacaros.ros.message import stamp
 from jacaros.ros.open import open_backend
 from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.ros.services import call_when_offered
+from jacaros.ros.waiting import Waiting
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -232,7 +233,9 @@ def test_attempts_to_call_end_in_time_when_the_clock_jumps_back() -> None:
             raise ServiceUnavailable("no node is there")
 
         clock.move_to(100.0)
-        call = asyncio.ensure_future(call_when_offered(clock, lines.append, "service /x", nobody, 1.0))
+        call = asyncio.ensure_future(
+            call_when_offered(Waiting(clock, lines.append, "service /x"), nobody, 1.0)
+        )
         await pass_by(clock, 100.0, 100.5, 5.0, 5.2)
         assert not call.done()
         await pass_by(clock, 5.6)

@@ -25,7 +25,7 @@ from jacaros.ros.names import request_type
 from jacaros.ros.node import Capability, Parts
 from jacaros.ros.parameter import Declaration, DeclaredParameters, ParameterValue
 from jacaros.ros.services import Handler, ServiceClient, ServiceServer, server_gone
-from jacaros.ros.waiting import Absence, Deadline, Waiting, settle, within
+from jacaros.ros.waiting import Deadline, Waiting, settle, within
 
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph"]
 
@@ -87,7 +87,7 @@ class MemoryClient(ServiceClient[MemoryNode]):
         node, clock = self._node, self._node.clock
         message = node.factory.checked(request_type(self.type_name), request)
         deadline = Deadline(clock, timeout)
-        server = await awaited(node, "service", self.name, self._described, timeout, self._absence)
+        server = await awaited(node, "service", self.name, self._waiting, timeout)
         if server.type_name != self.type_name:
             raise CallFailed(f"service {self.name} is of type {server.type_name}, not {self.type_name}")
         answer = self._new_answer()
@@ -98,28 +98,25 @@ class MemoryClient(ServiceClient[MemoryNode]):
             raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
 
 
-async def awaited(
-    node: MemoryNode, kind: Kind, name: str, what: str, timeout: float | None, absence: Absence
-) -> Any:
-    """Return a service or node as soon as it is in the graph, and log the wait.
+async def awaited(node: MemoryNode, kind: Kind, name: str, waiting: Waiting, timeout: float | None) -> Any:
+    """Return a service or node as soon as it is in the graph.
 
     Args:
         node: the waiting node.
         kind, name: what it waits for.
-        what: its name for the log.
+        waiting: logs the waits.
         timeout: seconds.
-        absence: number of earlier waits, see `Waiting`.
 
     Raises:
         ServiceUnavailable: it has not appeared in time.
     """
     while (found := node.graph.find(kind, name)) is None:
-        with Waiting(node.clock, node.log, what, "is the node that offers it running?", absence=absence):
+        with waiting.during():
             try:
                 await within(node.clock, node.graph.arrival(kind, name), timeout)
             except TimeoutError:
-                raise ServiceUnavailable(f"no node offered {what} within {timeout:g} s") from None
-    absence.end(node.log, what)
+                raise ServiceUnavailable(f"no node offered {waiting.what} within {timeout:g} s") from None
+    waiting.found()
     return found
 
 
@@ -250,7 +247,7 @@ class MemoryParameters:
     def __init__(self, asker: MemoryNode, node: str) -> None:
         self.node = node
         self._asker = asker
-        self._absence = Absence()
+        self._waiting = Waiting(asker.clock, asker.log, f"parameters of node {node}")
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Declare a parameter of our own node."""
@@ -288,8 +285,7 @@ class MemoryParameters:
     async def _store(self, timeout: float | None) -> DeclaredParameters:
         if self.node == self._asker.node_name:
             return self._asker.declared
-        what = f"parameters of node {self.node}"
-        node: MemoryNode = await awaited(self._asker, "node", self.node, what, timeout, self._absence)
+        node: MemoryNode = await awaited(self._asker, "node", self.node, self._waiting, timeout)
         return node.declared
 
 

@@ -20,7 +20,7 @@ from jacaros.ros.errors import (
 from jacaros.ros.handoff import LoopEnded, ask, in_thread, post
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.services import Handler, ServiceClient, ServiceServer, call_when_offered
-from jacaros.ros.waiting import settle, within
+from jacaros.ros.waiting import Waiting, settle, within
 
 
 class Ros1Service(ServiceServer[Ros1Node]):
@@ -201,11 +201,11 @@ class Ros1Parameters:
             answer = in_thread(backend.loop, lambda: self._master.ask(method, *arguments), method)
             return await within(backend.clock, answer, rest)
 
-        what = f"ROS master at {self._master.uri}"
+        waiting = Waiting(backend.clock, backend.log, f"ROS master at {self._master.uri}")
         try:
-            return await call_when_offered(backend.clock, backend.log, what, attempt, timeout, lambda: False)
+            return await call_when_offered(waiting, attempt, timeout, lambda: False)
         except ServiceUnavailable:
-            raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
+            raise ServiceUnavailable(f"the {waiting.what} did not answer within {timeout:g} s") from None
 
 
 def give(node: Ros1Node) -> None:
