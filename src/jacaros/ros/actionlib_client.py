@@ -2,13 +2,12 @@
 
 import itertools
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
-from jacaros.ros.action import GoalStatus, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import text_of
 from jacaros.ros.backend import Publisher, Sample, Subscription
-from jacaros.ros.errors import ServerLost
 from jacaros.ros.message import MessageFactory
 from jacaros.ros.names import result_type
 from jacaros.ros.orphans import Orphans
@@ -76,13 +75,13 @@ class ActionlibWire:
         self._node = node
         self._sender = sender
         name, kind = sender.name, sender.type_name
-        self._result_type = result_type(kind)
-        self._goals = SentGoals(self)
         self._complete = self._heard = self._present = self._closed = False
         self._quiet = 0
         self._timer: Timer | None = None
         self._goal = node.publisher(f"{name}/goal", part_type(kind, "ActionGoal"), COMMANDS)
         self._cancel = node.publisher(f"{name}/cancel", ID_TYPE, COMMANDS)
+        empty = partial(node.factory.make, result_type(kind))
+        self._goals = SentGoals(sender, empty, self._goal.publish, self._send_cancel)
         self._status = node.subscription(f"{name}/status", STATUS_TYPE, self._take_status, STATUS)
         self._feedback = node.subscription(
             f"{name}/feedback", part_type(kind, "ActionFeedback"), self._take_feedback, NEWS
@@ -134,7 +133,7 @@ class ActionlibWire:
     def _cancel_all(self) -> None:
         """Exit hook: leave no robot driving towards its goal when the process ends."""
         for goal_id in list(self._goals):
-            self.send_cancel(goal_id)
+            self._send_cancel(goal_id)
 
     # The server's presence: connections report no changes, so they are polled while a caller needs to know.
 
@@ -209,39 +208,5 @@ class ActionlibWire:
             goal_id, state, message.result, message.status.text or text_of(message.result)
         )
 
-    # Events of goals:
-
-    def accepted(self, goal_id: str) -> None:
-        """Note that the server has accepted a goal."""
-        self._sender.accepted(goal_id)
-
-    def rejected(self, goal_id: str, reason: str) -> None:
-        """Note that the server has rejected a goal."""
-        self._sender.rejected(goal_id, reason)
-
-    def ended(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
-        """Note the outcome of a goal."""
-        given = result if result is not None else self._node.factory.make(self._result_type)
-        self._sender.ended(goal_id, Outcome(status, given, text))
-
-    def lost(self, goal_id: str, how: str) -> None:
-        """Note that the server does not know a goal."""
-        self._sender.fail(
-            goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}")
-        )
-
-    def cancel_answered(self, goal_id: str, agreed: bool) -> None:
-        """Pass on the answer to a request to cancel."""
-        self._sender.cancel_answered(goal_id, agreed)
-
-    def wants(self, goal_id: str) -> bool:
-        """Return whether a caller still needs a goal to begin."""
-        return self._sender.wants(goal_id)
-
-    def send_again(self, message: Any) -> None:
-        """Send a goal once more."""
-        self._goal.publish(message)
-
-    def send_cancel(self, goal_id: str) -> None:
-        """Send a request to cancel."""
+    def _send_cancel(self, goal_id: str) -> None:
         self._cancel.publish(self._cancel.message(id=goal_id))

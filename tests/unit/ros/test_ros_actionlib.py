@@ -63,7 +63,7 @@ class Actionlib:
             else:
                 deliver(message)
 
-        goals.publish = publish  # type: ignore[method-assign]
+        goals.publish = sender.wire._goals._send = publish  # type: ignore[method-assign]
         return sender
 
     async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> GoalSender:
