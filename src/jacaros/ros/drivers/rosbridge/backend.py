@@ -29,13 +29,13 @@ from jacaros.ros.drivers.rosbridge.services import (
     BridgeService,
     absolute,
     look,
-    read,
 )
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
+from jacaros.ros.parameter_services import read_value
 from jacaros.ros.protocols.rosbridge_requests import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
@@ -66,7 +66,7 @@ class RosbridgeBackend(BridgeNode):
                 "and so there are no parameters"
             )
         super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
-        self._parameter_events = ParameterEvents(self.subscription, read)
+        self._parameter_events = ParameterEvents(self.subscription, read_value)
 
     @property
     def capabilities(self) -> frozenset[str]:  # type: ignore[override]

@@ -21,7 +21,7 @@ from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import ParameterServices
+from jacaros.ros.parameter_services import NodeParameters
 from jacaros.ros.protocols.rosbridge_requests import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import settle, within
@@ -255,8 +255,7 @@ class BridgeParameters:
     def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
         self.node = node
         self._backend = backend
-        self._parameter_events = events
-        self._of_node = NodeParameters(backend, node)
+        self._of_node = NodeParameters(backend.clock, node, self._client, events)
         self._of_master = MasterParameters(backend, node)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
@@ -284,7 +283,10 @@ class BridgeParameters:
         if self._backend.ros_version == 1:
             self._missing(f"changes of parameters of {self.node} are not reported")
         self._require_other()
-        return self._parameter_events.listen(self.node, callback)
+        return self._of_node.on_change(callback)
+
+    def _client(self, name: str, type_name: str) -> BridgeClient:
+        return self._backend.keep(BridgeClient(self._backend, name, type_name))
 
     @property
     def _parameters(self) -> "NodeParameters | MasterParameters":
@@ -342,116 +344,15 @@ class MasterParameters:
             raise ParameterRefused(
                 f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
             )
-        if self._plain_or_none(value) is None:
-            raise ParameterRefused(f"parameter {name} cannot be {value!r}")
-        arguments = {"name": f"{self._node}/{name}", "value": json.dumps(value)}
+        arguments = {"name": f"{self._node}/{name}", "value": json.dumps(checked_value(value))}
         await self._backend.rosapi("set_param", arguments, timeout)
 
     def _plain(self, name: str, value: Any) -> ParameterValue:
-        plain = self._plain_or_none(value)
-        if plain is not None:
-            return plain
-        if isinstance(value, dict):
-            raise ParameterUnknown(
-                f"parameter {name} of {self._node} is a group; read its parts, {name}/PART"
-            )
-        raise CallFailed(f"parameter {name} of node {self._node} has an unsupported value: {value!r}")
-
-    def _plain_or_none(self, value: Any) -> ParameterValue | None:
-        if isinstance(value, bool | int | float | str):
-            return value
-        if isinstance(value, list):
-            for kinds in ((bool,), (int,), (int, float), (str,)):
-                # bool is a subclass of int, and a list of both is not supported
-                if all(
-                    isinstance(each, kinds) and (bool in kinds or not isinstance(each, bool))
-                    for each in value
-                ):
-                    return value
-        return None
-
-
-_FIELDS = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    5: "byte_array_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
-"""The field of ``rcl_interfaces/msg/ParameterValue`` for each number of ``ParameterType``."""
-_NUMBERS: Mapping[type, int] = {bool: 1, int: 2, float: 3, str: 4, bytes: 5}
-_LIST_NUMBERS: Mapping[type, int] = {bool: 6, int: 7, float: 8, str: 9}
-_TEXTS, _NOT_SET = 9, 0
-
-
-class NodeParameters:
-    """The parameters of one node.
-
-    Args:
-        node: sends the calls.
-        name: absolute name of the node that has them.
-    """
-
-    def __init__(self, node: BridgeNode, name: str) -> None:
-        self.node = name
-        self._node = node
-        self._services = ParameterServices(name, self._client)
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
-        answer = await self._services.call("ListParameters", {"depth": 0}, timeout)
-        return sorted(answer.result.names)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        answer = await self._services.call("GetParameters", {"names": [name]}, timeout)
-        value = read(answer.values[0]) if len(answer.values) == 1 else None
-        if value is None:
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
-        return value
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        wanted = checked_value(value)
-        number = _NUMBERS.get(type(wanted))
-        if isinstance(wanted, list):
-            number = _LIST_NUMBERS[type(wanted[0])] if wanted else await self._type(name, timeout) or _TEXTS
-        assert number is not None, f"checked_value has let {wanted!r} pass"
-        given = list(wanted) if isinstance(wanted, bytes) else wanted
-        told = {"name": name, "value": {"type": number, _FIELDS[number]: given}}
-        answer = await self._services.call("SetParameters", {"parameters": [told]}, timeout)
-        if answer.results and answer.results[0].successful:
-            return
-        if not await self._type(name, timeout):
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
-        reason = answer.results[0].reason if answer.results else "the node gave no reason"
-        raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {reason}")
-
-    async def _type(self, name: str, timeout: float | None) -> int:
-        """Return the number of a parameter's type; 0 if it does not exist."""
-        answer = await self._services.call("GetParameterTypes", {"names": [name]}, timeout)
-        return int(answer.types[0]) if len(answer.types) == 1 else _NOT_SET
-
-    def _client(self, name: str, type_name: str) -> BridgeClient:
-        client = BridgeClient(self._node, name, type_name)
-        self._node.keep(client)
-        return client
-
-
-def read(told: Any) -> ParameterValue | None:
-    """Read a ``rcl_interfaces/msg/ParameterValue``; None for a parameter without a value."""
-    field = _FIELDS.get(int(told.type))
-    if field is None:
-        return None
-    value = getattr(told, field)
-    if field == "byte_array_value":
-        return bytes(int(octet) & 255 for octet in value)
-    if field.endswith("array_value"):
-        plain: list[Any] = value.tolist() if hasattr(value, "tolist") else list(value)
-        return plain
-    single: ParameterValue = value
-    return single
+        if isinstance(value, list) and {type(each) for each in value} == {int, float}:
+            value = [float(each) for each in value]
+        try:
+            return checked_value(value)
+        except ParameterRefused:
+            raise CallFailed(
+                f"parameter {name} of node {self._node} has an unsupported value: {value!r}"
+            ) from None
