@@ -6,10 +6,10 @@ The server forgets its clients when the connection is lost, so everything is ann
 import asyncio
 import contextlib
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
-from weakref import WeakValueDictionary
+from typing import Any
 
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
@@ -42,38 +42,18 @@ MISSES = 3
 """Number of checks without the topic after which it counts as refused."""
 
 
-class Asked(Protocol):
-    """A subscription or a publisher at the server."""
-
-    @property
-    def topic(self) -> str:
-        """Absolute name."""
-
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-
-    def join(self) -> None:
-        """Announce it to a server that does not know us yet."""
-
-    def refused(self, text: str) -> None:
-        """Handle that the server refuses it; *text* is the reason."""
-
-
-class CalledService(Protocol):
-    """A service of ours."""
-
-    def called(self, message: dict[str, Any]) -> None:
-        """Handle a call."""
-
-
-class GoalReceiver(Protocol):
-    """An action server of ours."""
-
-    def goal(self, message: dict[str, Any]) -> None:
-        """Handle a goal."""
-
-    def cancel(self, goal_id: str) -> None:
-        """Handle a request to cancel."""
+OperationHandler = Callable[[dict[str, Any]], None]
+"""Handles an operation of the server."""
+_FIELDS = {
+    "service_response": "id",
+    "call_service": "service",
+    "action_feedback": "id",
+    "action_result": "id",
+    "send_action_goal": "action",
+    "cancel_action_goal": "action",
+    "status": "id",
+}
+"""The field that names the addressee of each operation of the server, apart from ``publish``."""
 
 
 class BridgeNode(Node):
@@ -86,7 +66,7 @@ class BridgeNode(Node):
     Attributes:
         attached: whether there is a connection and the version of ROS is known.
         packs: whether the server can send CBOR.
-        goals: senders by the ids of their goals.
+        handlers: what handles operations of the server, by the operation and the value of its field in `_FIELDS`.
     """
 
     def __init__(self, settings: NodeSettings, url: str) -> None:
@@ -98,10 +78,7 @@ class BridgeNode(Node):
         self.translator = Translator(self.schema)
         self.admission = Admission(self)
         self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
-        self.goals: dict[str, Any] = {}
-        # Weak references: the node holds the entities until they are closed.
-        self.services: WeakValueDictionary[str, CalledService] = WeakValueDictionary()
-        self.action_servers: WeakValueDictionary[str, GoalReceiver] = WeakValueDictionary()
+        self.handlers: dict[tuple[str, str], OperationHandler] = {}
         self.attached = False
         self.packs = False
         self._numbers = itertools.count(1)
@@ -153,9 +130,28 @@ class BridgeNode(Node):
         """Return an id for an operation; the server quotes it in status messages."""
         return f"{operation}:{name}:{next(self._numbers)}"
 
+    def unhandle(self, handler: OperationHandler, operation: str, whose: str) -> None:
+        """Deregister from `handlers`, unless a newer entity of the same name has taken the place."""
+        if self.handlers.get((operation, whose)) == handler:
+            del self.handlers[operation, whose]
+
     def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
         """Send an operation to a server that knows us, from any thread. Return False if it is lost."""
         return self.attached and self._link.send(operation, droppable)
+
+    def request(
+        self, operation: dict[str, Any], repeat: Callable[[], None], refused: Callable[[str], None]
+    ) -> None:
+        """Subscribe or advertise, and check that the server does so.
+
+        Args:
+            operation: the operation.
+            repeat: sends it again, when the server no longer refuses it.
+            refused: takes the reason why the server refuses it.
+        """
+        self.send(operation)
+        request = _Request(operation["topic"], operation["type"], repeat, refused)
+        self.admission.expect(operation["id"], request)
 
     def written_type(self, type_name: str) -> str:
         """Return the server's name of a type."""
@@ -253,8 +249,34 @@ class BridgeNode(Node):
         self.missing(f"rosbridge server at {self.url}", CURE)
 
     def _received(self, message: dict[str, Any]) -> None:
-        """Handle an operation of the server."""
-        raise NotImplementedError
+        if message["op"] == "publish":
+            multiplexer = self.multiplexers.get(str(message.get("topic")))
+            if multiplexer is not None:
+                multiplexer.put(message.get("msg"))
+        else:  # in order, after earlier messages of topics
+            self.loop.call_soon(self._dispatch, message["op"], message)
+
+    def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
+        if operation == "status" and message.get("level") not in ("error", "warning"):
+            return
+        whose = str(message.get(_FIELDS.get(operation, "")))
+        handler = self.handlers.get((operation, whose))
+        try:
+            if handler is not None:
+                handler(message)
+            elif operation == "service_response":
+                self.requests.answered(message)
+            elif operation == "status":
+                self._note_status(whose, str(message.get("msg")))
+        except (TypeError, ValueError, KeyError, AttributeError) as problem:
+            self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
+
+    def _note_status(self, number: str, text: str) -> None:
+        """Handle a status message of the server, mostly that it refuses a request."""
+        # A failed call is answered as well.
+        if not number.startswith(("call_service:", "send_action_goal:")) and text not in self._reported:
+            self._reported.add(text)
+            self.log(f"message of the rosbridge server: {text}")
 
     def _say(self, text: str) -> None:
         post(self.loop, self.log, text)
@@ -306,7 +328,13 @@ class BridgeNode(Node):
 
 
 @dataclass(slots=True)
-class _Case:
+class _Request:
+    """A subscription or an advertisement: how to repeat it, and what to do if the server refuses it."""
+
+    topic: str
+    written_type: str
+    repeat: Callable[[], None]
+    refused: Callable[[str], None]
     misses: int = 0
     conflict: bool = False
 
@@ -324,25 +352,25 @@ class Admission:
 
     def __init__(self, node: BridgeNode) -> None:
         self._node = node
-        self._cases: dict[Asked, _Case] = {}
+        self._open: dict[str, _Request] = {}
         self._timer: Timer | None = None
         self._pause = FIRST_PAUSE
 
-    def expect(self, asked: Asked) -> None:
-        """Note that *asked* was just requested; on the loop."""
-        if any(part.startswith("_") for part in asked.topic.split("/")):
+    def expect(self, number: str, request: _Request) -> None:
+        """Note that a topic was just requested, by the id of the operation; on the loop."""
+        if any(part.startswith("_") for part in request.topic.split("/")):
             return  # hidden: rosapi does not report it
-        self._cases.setdefault(asked, _Case()).misses = 0
+        self._open[number] = request
         self._pause = FIRST_PAUSE
         self._look_later()
 
-    def forget(self, asked: Asked) -> None:
-        """Stop checking an entity."""
-        self._cases.pop(asked, None)
+    def forget(self, number: str) -> None:
+        """Stop checking a request."""
+        self._open.pop(number, None)
 
     def close(self) -> None:
         """Stop checking."""
-        self._cases.clear()
+        self._open.clear()
         if self._timer is not None:
             self._timer.cancel()
 
@@ -353,38 +381,33 @@ class Admission:
 
     def _look(self) -> None:
         self._timer = None
-        if self._cases and self._node.attached:
+        if self._open and self._node.attached:
             self._node.requests.begin("/rosapi/topics", {}, self._judge)
 
     def _judge(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
         if values is not None and isinstance(values.get("topics"), list):
             types = dict(zip(values["topics"], values.get("types") or (), strict=False))
-            for asked, case in list(self._cases.items()):
-                self._compare(asked, case, types.get(asked.topic))
-        if self._cases:
+            for number, request in list(self._open.items()):
+                self._compare(number, request, types.get(request.topic))
+        if self._open:
             self._pause = min(self._pause * 2.0, LONGEST_PAUSE)
             self._look_later()
 
-    def _compare(self, asked: Asked, case: _Case, found: str | None) -> None:
-        wanted = asked.written_type()
+    def _compare(self, number: str, request: _Request, found: str | None) -> None:
+        topic, wanted = request.topic, request.written_type
         if found in (None, "", "*"):
-            self._missed(asked, case, wanted)
+            request.misses += 1
+            # rosapi of ROS 1 reports only published topics.
+            if self._node.ros_version == 2 and request.misses == MISSES:
+                request.conflict = True
+                request.refused(
+                    f"topic {topic}: requested from the rosbridge server, but not in the graph: is {wanted} "
+                    "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
+                )
         elif found != wanted:
-            case.conflict = True
-            asked.refused(
-                f"topic {asked.topic} carries {message_type(str(found))}, not {message_type(wanted)}"
-            )
+            request.conflict = True
+            request.refused(f"topic {topic} carries {message_type(str(found))}, not {message_type(wanted)}")
         else:
-            del self._cases[asked]
-            if case.conflict:  # it was refused, and would be accepted now
-                asked.join()
-
-    def _missed(self, asked: Asked, case: _Case, wanted: str) -> None:
-        case.misses += 1
-        # rosapi of ROS 1 reports only published topics.
-        if self._node.ros_version == 2 and case.misses == MISSES:
-            case.conflict = True
-            asked.refused(
-                f"topic {asked.topic}: requested from the rosbridge server, but not in the graph: is {wanted} "
-                "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
-            )
+            del self._open[number]
+            if request.conflict:  # it was refused, and would be accepted now
+                request.repeat()

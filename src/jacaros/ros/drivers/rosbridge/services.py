@@ -89,7 +89,7 @@ class BridgeService:
 
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
         node.schema.service(type_name)
-        node.services[name] = self
+        node.handlers["call_service", name] = self._called
         self.name = name
         self._node = node
         self._type_name = type_name
@@ -109,10 +109,10 @@ class BridgeService:
         if not self._closed:
             self._closed = True
             self._node.forget(self)
+            self._node.unhandle(self._called, "call_service", self.name)
             self._node.send({"op": "unadvertise_service", "service": self.name})
 
-    def called(self, message: dict[str, Any]) -> None:
-        """Handle a request of the server; on the loop."""
+    def _called(self, message: dict[str, Any]) -> None:
         node, number = self._node, message.get("id")
         try:
             request = node.translator.decode(request_type(self._type_name), message.get("args") or {})

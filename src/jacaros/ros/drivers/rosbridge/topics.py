@@ -50,24 +50,15 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
             "op": "advertise",
             "id": self._number,
             "topic": self.topic,
-            "type": self.written_type(),
+            "type": self._node.written_type(self.type_name),
             "latch": self.latched,
             "queue_size": self.qos.depth,
         }
         if self._node.ros_version == 2:
             operation["qos"] = _quality(self.qos)
-        self._node.send(operation)
-        self._node.admission.expect(self)
+        self._node.request(operation, self.join, lambda text: self.report(f"nothing is published: {text}"))
         for message in self._kept:
             self._pass_on(message)
-
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-        return self._node.written_type(self.type_name)
-
-    def refused(self, text: str) -> None:
-        """Report that the server does not publish for us."""
-        self.report(f"nothing is published: {text}")
 
     def _send(self, message: Any) -> None:
         self._kept.append(message)
@@ -82,7 +73,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
         return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, droppable)
 
     def _leave(self) -> None:
-        self._node.admission.forget(self)
+        self._node.admission.forget(self._number)
         self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
 
 
@@ -97,6 +88,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         super().__init__(topic, type_name)
         self._number = node.number("subscribe", topic)
         self._node = node
+        node.handlers["status", self._number] = self._refused
         self._last: Any = None
         self._late: Timer | None = None
         self._depth = 0
@@ -128,7 +120,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             "op": "subscribe",
             "id": self._number,
             "topic": self.topic,
-            "type": self.written_type(),
+            "type": self._node.written_type(self.type_name),
             "queue_length": self._depth,
         }
         if self._node.packs and self._node.translator.packs(self.type_name):
@@ -143,8 +135,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             reader.qos.durability == "best_available" for reader in self.readers
         ):
             self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
-        self._node.send(operation)
-        self._node.admission.expect(self)
+        self._node.request(operation, self.join, self.report)
 
     def _look_for_late(self, operation: dict[str, Any]) -> None:
         """Subscribe again when the first publisher has appeared: then the server requests its stored message."""
@@ -156,10 +147,6 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
                     LOOK_STEADILY, partial(self._look_for_late, operation)
                 )
 
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-        return self._node.written_type(self.type_name)
-
     def lost(self) -> None:
         """Forget the latched message."""
         self._last = None
@@ -170,9 +157,8 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         self._last = message
         super().put(message)
 
-    def refused(self, text: str) -> None:
-        """Report that the server refuses the topic."""
-        self.report(text)
+    def _refused(self, message: dict[str, Any]) -> None:
+        self.report(f"topic {self.topic}: refused by the rosbridge server: {message.get('msg')}")
 
     def _stop_looking(self) -> None:
         if self._late is not None:
@@ -180,7 +166,8 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
 
     def _leave(self) -> None:
         self._stop_looking()
-        self._node.admission.forget(self)
+        self._node.handlers.pop(("status", self._number), None)
+        self._node.admission.forget(self._number)
         self._node.send({"op": "unsubscribe", "id": self._number, "topic": self.topic})
 
 
