@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from jacaros.cli.graph_options import address_options, ros_option, world_option
+from jacaros.cli.graph_options import address_options, ros_option, together, world_option
 from jacaros.cli.usage import examples, usage_error
 from jacaros.cli.variables import settled
 from jacaros.files.texts import shown_from
@@ -18,10 +18,9 @@ if TYPE_CHECKING:
     from jacaros.artifacts.mapping.declared import MappingFile
     from jacaros.cli.graph.joining import Joined
 
-F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
 
-_OPTIONS = (
+_asking = together(
     ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
     world_option("World file, or the name of a shipped world; with --ros memory only."),
     address_options,
@@ -34,15 +33,7 @@ _OPTIONS = (
         help="Seconds to wait for nodes, replies and messages.",
     ),
 )
-
-
-def _asking(command: F) -> F:
-    """Add the options that select the graph."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
-
-
+"""Adds the options that select the graph."""
 _INTERFACES = click.option(
     "--interfaces",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
