@@ -64,11 +64,11 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 
     Prints tables on a terminal, otherwise one line for each entry.
     """  # fmt: skip
-    from jacaros.cli.graph import listening, listing
+    from jacaros.cli.graph import joining, listing
     from jacaros.cli.graph.joining import Joined
 
     async def look(joined: Joined) -> None:
-        counted = await listening.rates(joined, joined.contents.topics.values()) if rates else {}
+        counted = await joining.rates(joined, joined.contents.topics.values()) if rates else {}
         if as_json:
             click.echo(listing.as_json(joined.contents, counted))
         elif sys.stdout.isatty():
@@ -101,7 +101,7 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     """  # fmt: skip
     from jacaros.cli.graph import showing
     from jacaros.cli.graph.joining import Joined
-    from jacaros.cli.graph.kinds import find
+    from jacaros.cli.graph.listing import find
 
     async def look(joined: Joined) -> None:
         things = find(joined, name)
@@ -144,9 +144,9 @@ def map_command(
     The usual ones are odometry, laser scan, battery, bumpers, map, velocity, the actions to drive and dock, and services
     without arguments. The file works as written; its comments show how agents use it.
     """  # fmt: skip
-    from jacaros.cli.graph import first_mapping, listening
+    from jacaros.cli.graph import first_mapping, joining
     from jacaros.cli.graph.joining import Joined, NothingThere
-    from jacaros.cli.graph.kinds import find_mappable
+    from jacaros.cli.graph.listing import find_mappable
     from jacaros.cli.graph.standard_topics import left_out, usual_things
 
     if output is not None and output.exists() and not force:
@@ -162,7 +162,7 @@ def map_command(
         else:
             things = usual_things(joined.contents)
             left = left_out(joined.contents, things)
-            frames = await listening.frames(joined)
+            frames = await joining.frames(joined)
             if not things:
                 raise NothingThere(
                     "the graph has no odometry, scan, cmd_vel, battery or action to drive\n"
@@ -223,12 +223,12 @@ def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any
 
 async def _check_mapping(joined: "Joined", mapping: "MappingFile", name: str) -> int:
     """Print the problems of a mapping file, and return their number."""
-    from jacaros.cli.graph import listening
+    from jacaros.cli.graph import joining
     from jacaros.cli.graph.verifying import problems_of, warnings_of
     from jacaros.files.yaml import shown
 
     parts = mapping.artifacts.values()
-    frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
+    frames = await joining.frames(joined) if any(part.frames for part in parts) else {}
     problems = [each for part in parts for each in await problems_of(joined, part, frames)]
     warnings = list(dict.fromkeys(each for part in parts for each in warnings_of(joined, part)))
     lines = mapping.text.splitlines()

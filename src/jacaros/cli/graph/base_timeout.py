@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from jacaros.cli.graph.joining import Joined, NothingThere
-from jacaros.cli.graph.listening import hearing
+from jacaros.cli.graph.joining import Joined, NothingThere, hearing
 from jacaros.cli.usage import usage_error
 from jacaros.ros.backend import Publisher, Sample
 from jacaros.ros.graph import TopicInfo

@@ -4,9 +4,8 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from jacaros.cli.graph.joining import Joined, NothingThere
-from jacaros.cli.graph.kinds import Kind, Thing
-from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.joining import Joined, NothingThere, root
+from jacaros.cli.graph.listing import Kind, Thing
 from jacaros.cli.graph.standard_topics import robot_of, robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.ros.guarded import VELOCITIES

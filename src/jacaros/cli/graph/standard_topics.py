@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from jacaros.cli.graph.kinds import Kind, Thing, all_things
+from jacaros.cli.graph.listing import Kind, Thing, all_things
 from jacaros.ros.graph import GraphContents
 from jacaros.ros.guarded import VELOCITIES
 

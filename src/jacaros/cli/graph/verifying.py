@@ -13,8 +13,7 @@ from jacaros.artifacts.mapping.declared import (
     TopicPart,
     Written,
 )
-from jacaros.cli.graph.joining import Joined
-from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.joining import Joined, root
 from jacaros.files.texts import did_you_mean
 from jacaros.files.yaml import Problem
 from jacaros.ros.backend import PARAMETERS
