@@ -1,13 +1,23 @@
 """Entries of a first mapping file: useful fields, rates and parameters, and a comment."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants
 from jacaros.artifacts.mapping.read_fields import RESERVED
 from jacaros.cli.graph.standard_topics import KNOWN, Body
-from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
+from jacaros.cli.graph.values import (
+    HEADER,
+    MANY,
+    Unit,
+    Value,
+    leaves,
+    list_of,
+    lists_of,
+    messages,
+    values_of,
+)
 from jacaros.ros.fields import FieldType
 from jacaros.ros.graph import TopicInfo
 from jacaros.ros.guarded import VELOCITIES
@@ -337,34 +347,19 @@ def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str
     return ", ".join([*headers, *parts])
 
 
+_IN_A_FRAME = {f"geometry_msgs/msg/{name}" for name in ("Point", "Point32", "Pose2D", "Transform")}
+
+
 def _headers(types: Interfaces, type_name: str) -> list[str]:
     """Return lines that stamp headers with the current time, and put poses into the map frame."""
-    has_place = any(each in _IN_A_FRAME for each in _parts(types, type_name))
+    has_place = not _IN_A_FRAME.isdisjoint(messages(types.fields, type_name))
     lines = []
-    for path in _header_paths(types, type_name):
-        lines += [f"  {path}.frame_id: map"] if has_place else []
-        lines.append(f"  {path}.stamp: now")
+    for leaf in leaves(types.fields, type_name):
+        path, _, last = leaf.path.rpartition(".")
+        if leaf.owner == HEADER and last == "frame_id" and path and "[" not in path:
+            lines += [f"  {path}.frame_id: map"] if has_place else []
+            lines.append(f"  {path}.stamp: now")
     return lines
-
-
-_IN_A_FRAME = tuple(f"geometry_msgs/msg/{name}" for name in ("Point", "Point32", "Pose2D", "Transform"))
-
-
-def _parts(types: Interfaces, type_name: str) -> Iterator[str]:
-    """Yield the types of all messages in a message."""
-    for kind in types.fields(type_name).values():
-        if kind.is_message:
-            yield kind.base
-            yield from _parts(types, kind.base)
-
-
-def _header_paths(types: Interfaces, type_name: str, path: str = "") -> Iterator[str]:
-    for name, kind in types.fields(type_name).items():
-        here = f"{path}.{name}" if path else name
-        if kind.base == HEADER and not kind.array:
-            yield here
-        elif kind.is_message and not kind.array:
-            yield from _header_paths(types, kind.base, here)
 
 
 def plain_name(name: str) -> str:
