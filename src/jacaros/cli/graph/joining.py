@@ -16,6 +16,7 @@ from jacaros.ros.errors import CapabilityMissing, RosError
 from jacaros.ros.graph import GraphContents, TopicInfo
 from jacaros.ros.middleware import middleware
 from jacaros.ros.qos import QoS
+from jacaros.ros.tf import ALL_STATIC, MESSAGE
 from jacaros.ros.waiting import within
 from jacaros.runtime.clock import Clock, VirtualClock, WallClock
 
@@ -30,12 +31,8 @@ RATE_OVER = 2.0
 FRAMES_OVER = 2.0
 """Seconds in which each moving frame is published at least once (trees as in REP 105 are published at 10 Hz or more)."""
 
-TF_TYPE = "tf2_msgs/msg/TFMessage"
-_FRAMES = {
-    "/tf": QoS("best_effort", depth=100),
-    "/tf_static": QoS(durability="transient_local", depth=100),
-}
-"""Many nodes publish frames at the same time, each its own; static frames are latched for late joiners."""
+_FRAMES = {"/tf": QoS("best_effort", depth=100), "/tf_static": ALL_STATIC}
+"""Many nodes publish frames at the same time, each its own."""
 
 
 class NothingThere(JacarosError):
@@ -212,7 +209,7 @@ async def frames(joined: Joined) -> dict[str, str]:
         with ExitStack() as received:
             for name, qos in _FRAMES.items():
                 with suppress(RosError):
-                    received.enter_context(_receive(joined, name, TF_TYPE, take, qos))
+                    received.enter_context(_receive(joined, name, MESSAGE, take, qos))
             await joined.clock.sleep(FRAMES_OVER)
     return found
 
