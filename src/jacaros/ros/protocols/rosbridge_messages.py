@@ -232,22 +232,8 @@ def _numbers(field: FieldType) -> Decoder:
     return decode
 
 
-_LITTLE = {
-    64: "B",
-    68: "B",
-    69: "H",
-    70: "I",
-    71: "Q",
-    72: "b",
-    77: "h",
-    78: "i",
-    79: "q",
-    84: "e",
-    85: "f",
-    86: "d",
-}
-_BIG = {65: "H", 66: "I", 67: "Q", 73: "h", 74: "i", 75: "q", 80: "e", 81: "f", 82: "d"}
-"""Tags of typed arrays, and the `struct` codes of their elements."""
+_TYPED_ARRAYS = range(64, 88)
+"""Tags of typed arrays; their bits mean: floats, signed integers, little-endian, and the size of an element."""
 
 
 def unpacked(value: Any) -> "array[Any] | None":
@@ -257,10 +243,12 @@ def unpacked(value: Any) -> "array[Any] | None":
         ValueError: its octets are not a whole number of elements.
     """
     tag = getattr(value, "tag", -1)
-    kind = _LITTLE.get(tag) or _BIG.get(tag)
-    if kind is None or not isinstance(value.value, bytes):
+    if tag not in _TYPED_ARRAYS or not isinstance(value.value, bytes):
         return None
-    order = "big" if tag in _BIG else "little"
+    kind = ("efd" if tag & 16 else "bhiq" if tag & 8 else "BHIQ")[tag & 3 :][:1]
+    order = "little" if tag & 4 else "big"
+    if not kind:  # floats of 128 bits
+        return None
     if kind == "e":  # 16 bits, a type that Python arrays lack
         if len(value.value) % 2:
             raise ValueError(f"{len(value.value)} octets of numbers with 2 are given")
@@ -274,20 +262,15 @@ def unpacked(value: Any) -> "array[Any] | None":
 
 def worth_packing(schema: DefinitionSchema, type_name: str) -> bool:
     """Return whether CBOR is worthwhile for a type, and servers can encode all its fields."""
-    fields = list(_all_fields(schema, type_name, set()))
+    types = [type_name]
+    fields: list[FieldType] = []
+    for each in types:
+        own = schema.fields(each).values()
+        fields += own
+        types += {field.base for field in own if field.is_message}.difference(types)
     return all(_can_be_packed(field) for field in fields) and any(
         field.array and field.is_numeric for field in fields
     )
-
-
-def _all_fields(schema: DefinitionSchema, type_name: str, seen: set[str]) -> list[FieldType]:
-    if type_name in seen:
-        return []
-    seen.add(type_name)
-    fields = list(schema.fields(type_name).values())
-    return fields + [
-        inner for field in fields if field.is_message for inner in _all_fields(schema, field.base, seen)
-    ]
 
 
 def _can_be_packed(field: FieldType) -> bool:
