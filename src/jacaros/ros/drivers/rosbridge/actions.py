@@ -24,7 +24,7 @@ from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
 from jacaros.ros.node import Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
-from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
+from jacaros.ros.protocols.rosbridge_wire import LOOK_AGAIN, Polled
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer
 

@@ -35,7 +35,7 @@ from jacaros.ros.graph import GraphContents
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import read_value
-from jacaros.ros.protocols.rosbridge_requests import PATIENCE
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 

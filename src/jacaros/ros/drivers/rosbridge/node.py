@@ -17,9 +17,8 @@ from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
 from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.protocols.rosbridge_messages import Translator
-from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
-from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema, Translator, written_on_ros1
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE, Requests
 from jacaros.ros.topics import TopicMultiplexer
 from jacaros.ros.waiting import settle, within
 from jacaros.runtime.clock import Timer
@@ -30,6 +29,10 @@ SENDING = 0.5
 """Seconds that closing waits for the last messages to leave."""
 DOING = 1.0
 """Seconds that closing waits until the server has processed the last messages."""
+ATTEMPTS, PAUSE = 6, 0.5
+"""Number of requests for the version of ROS, and seconds between them: rosapi may start after the server."""
+SIGN_OF_2 = "/msg/"
+"""Part of the names of types on ROS 2 only."""
 FETCHING = 3.0
 """Seconds that a request for an unknown type may block the loop."""
 CURE = (
@@ -208,20 +211,31 @@ class BridgeNode(Node):
 
     async def _greet(self) -> None:
         """Find out the version of ROS, and announce everything to the server."""
-        found = await greet(self._rosapi, self.clock, lambda: self._link.up)
-        if found is None:
-            return
-        if not found.told:
+        found = await self._ask_for_version()
+        self._has_rosapi = found is not None
+        if not self._has_rosapi:
             self.log(
                 f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
                 "its launch file starts both. If rosapi has crashed, as it does at types with bounded arrays, restart it "
                 "and name a folder with the definitions of your types (in a mapping file: interfaces)"
             )
-        self.translator.ros_version, self.packs = found.ros_version, found.packs
-        self._has_rosapi = found.told
+        self.translator.ros_version, self.packs = found or (2, False)
         self.attached = True
         self._join()
         self.found()
+
+    async def _ask_for_version(self) -> tuple[int, bool] | None:
+        """Return the version of ROS, and whether the server can send CBOR; None if rosapi does not answer."""
+        for _ in range(ATTEMPTS):
+            # Neither ROS 1 nor early ROS 2 has this service.
+            with contextlib.suppress(ServiceError, KeyError, TypeError, ValueError):
+                return int((await self._rosapi("get_ros_version", {}, PATIENCE))["version"]), True
+            with contextlib.suppress(ServiceError, KeyError, TypeError):
+                types = (await self._rosapi("topics", {}, PATIENCE))["types"]
+                # Early servers of ROS 2 lost messages in CBOR.
+                return (2, False) if any(SIGN_OF_2 in kind for kind in types) else (1, True)
+            await self.clock.sleep(PAUSE)
+        return None
 
     def _join(self) -> None:
         """Announce everything to a server that does not know us yet."""

@@ -22,7 +22,7 @@ from jacaros.ros.names import action_type, message_type, request_type, response_
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import NodeParameters
-from jacaros.ros.protocols.rosbridge_requests import Polled
+from jacaros.ros.protocols.rosbridge_wire import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import settle, within
 
@@ -162,7 +162,10 @@ class _Look:
 
     async def contents(self) -> GraphContents:
         topics, services, nodes, actions = await asyncio.gather(
-            self._ask("topics"), self._ask("services"), self._ask("nodes"), self._action_servers()
+            self._ask("topics"),
+            self._ask("services"),
+            self._ask("nodes"),
+            self._known("action_servers", "action_servers", ()),
         )
         types = dict(zip(topics["topics"], topics["types"], strict=True))
         hidden = {f"{action}/{part}" for action in actions for part in _ACTIONLIB}
@@ -171,7 +174,9 @@ class _Look:
         ]
         infos = await asyncio.gather(*(self._topic(name, types[name]) for name in shown))
         plain = [name for name in services["services"] if not _is_internal(name)]
-        kinds = await asyncio.gather(*(self._type("service_type", "service", name) for name in plain))
+        kinds = await asyncio.gather(
+            *(self._known("service_type", "type", "", service=name) for name in plain)
+        )
         found = await asyncio.gather(*(self._action(name, types) for name in actions))
         return GraphContents(
             {info.name: info for info in infos},
@@ -191,13 +196,6 @@ class _Look:
             tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
         )
 
-    async def _action_servers(self) -> list[str]:
-        try:
-            answer = await self._ask("action_servers")
-        except ServiceError:  # an older server
-            return []
-        return list(answer.get("action_servers", ()))
-
     async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
         """Return an action's name, its type, and whether a server offers it."""
         goal = types.get(f"{name}/goal", "")
@@ -205,14 +203,15 @@ class _Look:
             # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
             servers = await self._ask("publishers", topic=f"{name}/status")
             return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
-        kind = await self._type("action_type", "action", name)
+        kind = await self._known("action_type", "type", "", action=name)
         return name, _full(action_type, kind), True
 
-    async def _type(self, service: str, argument: str, name: str) -> str:
+    async def _known(self, what: str, field: str, unknown: Any, **arguments: str) -> Any:
+        """Return a field of an answer, *unknown* if an older server has none."""
         try:
-            return str((await self._ask(service, **{argument: name})).get("type", ""))
+            return (await self._ask(what, **arguments)).get(field, unknown)
         except ServiceError:
-            return ""
+            return unknown
 
     async def _ask(self, what: str, **arguments: str) -> dict[str, Any]:
         async with self._gate:

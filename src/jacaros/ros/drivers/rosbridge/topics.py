@@ -9,7 +9,7 @@ from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import Wanted
 from jacaros.ros.orphans import Orphans
-from jacaros.ros.protocols.rosbridge_requests import LOOK_STEADILY, Polled
+from jacaros.ros.protocols.rosbridge_wire import LOOK_STEADILY, Polled
 from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 from jacaros.runtime.clock import Timer
