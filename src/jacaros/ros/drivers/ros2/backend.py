@@ -18,8 +18,7 @@ from jacaros.ros.backend import (
     Backend,
 )
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
-from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
-from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+from jacaros.ros.drivers.ros2.actions import Ros2ActionServer, Ros2GoalWire
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.drivers.ros2.parameters import OwnParameters
 from jacaros.ros.drivers.ros2.receiving import RCLError

@@ -13,6 +13,7 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 from jacaros.ros.errors import ParameterRefused, UnknownInterface
 from jacaros.ros.fields import FieldType, from_ros2
 from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
+from jacaros.ros.parameter import checked_value
 
 _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 """The messages of services and actions."""
@@ -105,21 +106,13 @@ def _imported(package: str, kind: str, name: str) -> Any:
         return None
 
 
-_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
-    bytes: Parameter.Type.BYTE_ARRAY,
-}
-_LIST_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
-_ARRAYS = {*_LIST_KINDS.values(), Parameter.Type.BYTE_ARRAY}
-_WIDEST = 2**63
+_ARRAYS = (
+    Parameter.Type.BYTE_ARRAY,
+    Parameter.Type.BOOL_ARRAY,
+    Parameter.Type.INTEGER_ARRAY,
+    Parameter.Type.DOUBLE_ARRAY,
+    Parameter.Type.STRING_ARRAY,
+)
 
 
 def parameter(name: str, value: Any, kind: Any = None) -> Any:
@@ -133,29 +126,15 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     Raises:
         ParameterRefused: a parameter cannot hold this value.
     """
-    if isinstance(value, list | tuple):
-        elements = list(value)
-        if not elements:
-            return Parameter(name, kind if kind in _ARRAYS else Parameter.Type.STRING_ARRAY, [])
-        if any(isinstance(element, int) and not -_WIDEST <= element < _WIDEST for element in elements):
-            raise ParameterRefused(
-                f"parameter {name}: {value!r} is too large for a parameter, which has 64 bits"
-            )
-        kinds = {_LIST_KINDS.get(type(element)) for element in elements}
-        if len(kinds) == 1 and (kind := kinds.pop()) is not None:
-            return Parameter(name, kind, elements)
-    elif isinstance(value, bytes | bytearray):
-        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in value])
-    elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
-        raise ParameterRefused(f"parameter {name}: {value} is too large for a parameter, which has 64 bits")
-    else:
-        for python, kind in _KINDS.items():  # bool is a subclass of int, so it comes first
-            if isinstance(value, python):
-                return Parameter(name, kind, python(value))
-    raise ParameterRefused(
-        f"parameter {name}: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or "
-        f"texts, found {value!r}"
-    )
+    try:
+        plain = checked_value(value)
+    except ParameterRefused as problem:
+        raise ParameterRefused(f"parameter {name}: {problem}") from None
+    if isinstance(plain, bytes):
+        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in plain])
+    if plain == []:
+        return Parameter(name, kind if kind in _ARRAYS else Parameter.Type.STRING_ARRAY, plain)
+    return Parameter(name, value=plain)
 
 
 def plain_value(told: Any) -> Any:
