@@ -4,7 +4,7 @@ import asyncio
 import json
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any, NoReturn
+from typing import Any
 
 from jacaros.ros.backend import Handler
 from jacaros.ros.calling import AttemptingClient, ServerWatch
@@ -242,8 +242,8 @@ _ABSENT = "jacaros: no such parameter"
 """The default in the request: rosapi has no other way to report a missing parameter."""
 
 
-class BridgeParameters:
-    """Parameters of one node, seen from outside.
+class BridgeParameters(NodeParameters):
+    """Parameters of one node, seen from outside; on ROS 1 those of the master below its name, through rosapi.
 
     Args:
         backend: sends the requests.
@@ -252,106 +252,75 @@ class BridgeParameters:
     """
 
     def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
-        self.node = node
+        super().__init__(backend.clock, node, self._make_bridge_client, events)
         self._backend = backend
-        self._of_node = NodeParameters(backend.clock, node, self._client, events)
-        self._of_master = MasterParameters(backend, node)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Raise `CapabilityMissing`: over a bridge there is no node of our own with parameters."""
-        self._missing(f"parameter {name} cannot be declared")
+        raise self._missing(f"parameter {name} cannot be declared")
 
     def withdraw(self, name: str) -> None:
         """Raise `CapabilityMissing`, as `declare`."""
-        self._missing(f"parameter {name} cannot be withdrawn")
+        raise self._missing(f"parameter {name} cannot be withdrawn")
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters, sorted."""
-        return await self._parameters.names(timeout)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        return await self._parameters.get(name, timeout)
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        await self._parameters.set(name, value, timeout)
-
-    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
-        if self._backend.ros_version == 1:
-            self._missing(f"changes of parameters of {self.node} are not reported")
-        self._require_other()
-        return self._of_node.on_change(callback)
-
-    def _client(self, name: str, type_name: str) -> BridgeClient:
-        return self._backend.keep(BridgeClient(self._backend, name, type_name))
-
-    @property
-    def _parameters(self) -> "NodeParameters | MasterParameters":
-        if self._backend.ros_version == 1:
-            return self._of_master
-        self._require_other()
-        return self._of_node
-
-    def _require_other(self) -> None:
-        """On ROS 2 parameters belong to nodes, and we have none."""
-        if self.node == self._backend.node_name:
-            raise CapabilityMissing(
-                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
-                "name another node"
-            )
-
-    def _missing(self, what: str) -> NoReturn:
-        raise CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
-
-
-class MasterParameters:
-    """The parameters of the ROS 1 master below a node's name, through rosapi.
-
-    Args:
-        backend: sends the requests.
-        node: absolute name of the node.
-    """
-
-    def __init__(self, backend: BridgeNode, node: str) -> None:
-        self._backend = backend
-        self._node = node
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
+        if not self._are_of_master:
+            return await super().names(timeout)
         answer = await self._backend.rosapi("get_param_names", {}, timeout)
-        prefix = f"{self._node}/"
+        prefix = f"{self.node}/"
         return sorted(name.removeprefix(prefix) for name in answer["names"] if name.startswith(prefix))
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
         """Return a parameter's value."""
-        arguments = {"name": f"{self._node}/{name}", "default_value": json.dumps(_ABSENT)}
-        answer = await self._backend.rosapi("get_param", arguments, timeout)
-        text = answer.get("value", "")
+        if not self._are_of_master:
+            return await super().get(name, timeout)
+        arguments = {"name": f"{self.node}/{name}", "default_value": json.dumps(_ABSENT)}
+        text = (await self._backend.rosapi("get_param", arguments, timeout)).get("value", "")
         try:
             value = json.loads(text) if text != "" else _ABSENT
         except ValueError:
             value = text
         if value == _ABSENT or value is None:
-            raise ParameterUnknown(f"node {self._node} has no parameter {name}")
-        return self._plain(name, value)
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        if isinstance(value, bytes):
-            raise ParameterRefused(
-                f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
-            )
-        arguments = {"name": f"{self._node}/{name}", "value": json.dumps(checked_value(value))}
-        await self._backend.rosapi("set_param", arguments, timeout)
-
-    def _plain(self, name: str, value: Any) -> ParameterValue:
+            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
         if isinstance(value, list) and {type(each) for each in value} == {int, float}:
             value = [float(each) for each in value]
         try:
             return checked_value(value)
         except ParameterRefused:
-            raise CallFailed(
-                f"parameter {name} of node {self._node} has an unsupported value: {value!r}"
-            ) from None
+            text = f"parameter {name} of node {self.node} has an unsupported value: {value!r}"
+            raise CallFailed(text) from None
+
+    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
+        """Change a parameter."""
+        if not self._are_of_master:
+            await super().set(name, value, timeout)
+            return
+        if isinstance(value, bytes):
+            raise ParameterRefused(
+                f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
+            )
+        arguments = {"name": f"{self.node}/{name}", "value": json.dumps(checked_value(value))}
+        await self._backend.rosapi("set_param", arguments, timeout)
+
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
+        if self._are_of_master:
+            raise self._missing(f"changes of parameters of {self.node} are not reported")
+        return super().on_change(callback)
+
+    @property
+    def _are_of_master(self) -> bool:
+        """Whether the robot has ROS 1. On ROS 2 parameters belong to nodes, and we have none."""
+        if self._backend.ros_version == 2 and self.node == self._backend.node_name:
+            raise CapabilityMissing(
+                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
+                "name another node"
+            )
+        return self._backend.ros_version == 1
+
+    def _missing(self, what: str) -> CapabilityMissing:
+        return CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
+
+    def _make_bridge_client(self, name: str, type_name: str) -> BridgeClient:
+        return self._backend.keep(BridgeClient(self._backend, name, type_name))
