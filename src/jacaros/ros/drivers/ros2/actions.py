@@ -20,7 +20,7 @@ from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 from jacaros.ros.action import ActionPolicy, Execute, Outcome
 from jacaros.ros.action_calling import GoalSender
 from jacaros.ros.action_serving import ServedGoals, text_of
-from jacaros.ros.drivers.ros2.graph import action_mismatch, action_servers, action_servers_in, profile
+from jacaros.ros.drivers.ros2.graph import action_servers, mismatch, profile
 from jacaros.ros.drivers.ros2.node import STOPPING_ROBOTS, Ros2Node
 from jacaros.ros.drivers.ros2.services import SETTLING, LateService
 from jacaros.ros.errors import CallFailed, ServerLost
@@ -296,7 +296,7 @@ class Ros2GoalWire:
 
     def send_goal(self, goal_id: str, goal: Any) -> None:
         """Send a goal."""
-        self._mismatch = action_mismatch(self._node, self.name, self._type_name)
+        self._mismatch = mismatch(self._node, "action", self.name, self._type_name)
         if self._mismatch is not None:
             raise CallFailed(self._mismatch)
         request = self._impl.SendGoalService.Request(goal_id=id_message(goal_id), goal=goal)
@@ -478,13 +478,13 @@ class Ros2GoalWire:
             self.sender.server_present(there)
         elif not there and time.monotonic() > self._compared + COMPARING:
             self._compared = time.monotonic()
-            self._mismatch = action_mismatch(self._node, self.name, self._type_name)
+            self._mismatch = mismatch(self._node, "action", self.name, self._type_name)
             if self._mismatch is not None:
                 self.sender.server_present(True)
 
     def _note_servers(self) -> bool:
         """Update the set of servers. Return whether there is a new one."""
-        servers = action_servers(self._node, self.name)
+        servers = action_servers(self._node.rcl, self.name)
         if servers <= self._servers:
             return False
         self._servers |= servers
@@ -540,15 +540,15 @@ class Ros2GoalWire:
         self._call(self._result_client, request, lambda _: self._detector.probe_answered())
 
     def _check_liveness(self) -> None:
-        suspects = action_servers(self._node, self.name)
+        suspects = action_servers(self._node.rcl, self.name)
 
         def report(missing: frozenset[bytes]) -> None:
             # With several servers it is unknown which one has our goals.
-            if not self._closed and suspects == action_servers(self._node, self.name):
+            if not self._closed and suspects == action_servers(self._node.rcl, self.name):
                 self._detector.looked(missing != suspects)
 
         if suspects:
-            self._node.check_liveness(lambda rcl: action_servers_in(rcl, self.name), suspects, report)
+            self._node.check_liveness(lambda rcl: action_servers(rcl, self.name), suspects, report)
 
     # Between the threads:
 

@@ -23,7 +23,7 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
-from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck
+from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck, Report
 from jacaros.ros.drivers.ros2.receiving import Receiver
 from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
@@ -132,9 +132,7 @@ class Ros2Node(Node):
 
         look()
 
-    def check_liveness(
-        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
-    ) -> None:
+    def check_liveness(self, find: Find, suspects: frozenset[bytes], report: Report) -> None:
         """Find out which of the *suspects* are alive; see `LivenessCheck.ask`."""
         if self._ended:
             return
