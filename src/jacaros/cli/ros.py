@@ -65,9 +65,8 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
     Prints tables on a terminal, otherwise one line for each entry.
     """  # fmt: skip
     from jacaros.cli.graph import joining, listing
-    from jacaros.cli.graph.joining import Joined
 
-    async def look(joined: Joined) -> None:
+    async def look(joined: "Joined") -> None:
         counted = await joining.rates(joined, joined.contents.topics.values()) if rates else {}
         if as_json:
             click.echo(listing.as_json(joined.contents, counted))
@@ -100,10 +99,9 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     service, the next message, and the entry for a mapping file.
     """  # fmt: skip
     from jacaros.cli.graph import showing
-    from jacaros.cli.graph.joining import Joined
     from jacaros.cli.graph.listing import find
 
-    async def look(joined: Joined) -> None:
+    async def look(joined: "Joined") -> None:
         things = find(joined, name)
         data = await showing.described_all(joined, things)
         if as_json:
@@ -145,7 +143,7 @@ def map_command(
     without arguments. The file works as written; its comments show how agents use it.
     """  # fmt: skip
     from jacaros.cli.graph import first_mapping, joining
-    from jacaros.cli.graph.joining import Joined, NothingThere
+    from jacaros.cli.graph.joining import NothingThere
     from jacaros.cli.graph.listing import find_mappable
     from jacaros.cli.graph.standard_topics import left_out, usual_things
 
@@ -154,7 +152,7 @@ def map_command(
     file = output if output is not None else Path("robot.yaml")
     folders = [shown_from(file.parent, folder) for folder in interfaces]
 
-    async def look(joined: Joined) -> str:
+    async def look(joined: "Joined") -> str:
         if names:
             things = [thing for name in names for thing in find_mappable(joined, name)]
             frames: dict[str, str] = {}
@@ -209,11 +207,10 @@ def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any
     if base_timeout and not yes and not _may_drive(graph["ros"]):
         return 1
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
-    from jacaros.cli.graph.joining import Joined
 
     mapping = None if file is None else load_mapping(find_mapping(str(file)) or file)
 
-    async def look(joined: Joined) -> int:
+    async def look(joined: "Joined") -> int:
         problems = 0 if mapping is None else await _check_mapping(joined, mapping, str(file))
         drives = not base_timeout or await _check_base(joined, mapping, graph["namespace"])
         return 0 if not problems and drives else 1
