@@ -30,7 +30,9 @@ from jacaros.ros.values import array_of_numbers
 _OCTETS = ("uint8", "char")
 _ONE_OCTET = (*_OCTETS, "byte", "int8", "bool")
 _ROS1_FIELDS: Mapping[str, Mapping[str, str]] = {
-    "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"}
+    TIME: {"sec": "secs", "nanosec": "nsecs"},
+    DURATION: {"sec": "secs", "nanosec": "nsecs"},
+    "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"},
 }
 """Fields with other names in ROS 1's definitions."""
 
@@ -92,8 +94,6 @@ class Translator:
         return decoder(value)
 
     def _message_encoder(self, type_name: str) -> Encoder:
-        if type_name in (TIME, DURATION):
-            return _ros1_time if self._version == 1 else _ros2_time
         renamed = _ROS1_FIELDS.get(type_name, {}) if self._version == 1 else {}
         fields = [
             (name, renamed.get(name, name), self._field_encoder(field))
@@ -122,8 +122,6 @@ class Translator:
         return _plain
 
     def _message_decoder(self, type_name: str) -> Decoder:
-        if type_name in (TIME, DURATION):
-            return self._time_decoder(type_name)
         renamed = _ROS1_FIELDS.get(type_name, {})
         fields = [
             (name, renamed.get(name), self._field_decoder(type_name, name, field))
@@ -172,27 +170,6 @@ class Translator:
         if field.base == "bool":
             return bool
         return int
-
-    def _time_decoder(self, type_name: str) -> Decoder:
-        new = self._schema.new
-
-        def decode(value: Any) -> Any:
-            if not isinstance(value, dict):
-                raise ValueError(f"expected a {type_name}, found {value!r:.60}")
-            time = new(type_name)
-            time.sec = int(value.get("sec") or value.get("secs") or 0)
-            time.nanosec = int(value.get("nanosec") or value.get("nsecs") or 0)
-            return time
-
-        return decode
-
-
-def _ros1_time(time: Any) -> dict[str, int]:
-    return {"secs": int(time.sec), "nsecs": int(time.nanosec)}
-
-
-def _ros2_time(time: Any) -> dict[str, int]:
-    return {"sec": int(time.sec), "nanosec": int(time.nanosec)}
 
 
 def _plain(value: Any) -> Any:
