@@ -6,7 +6,7 @@ The server forgets its clients when the connection is lost, so everything is ann
 import asyncio
 import contextlib
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -86,10 +86,9 @@ class BridgeNode(Node):
         self.packs = False
         self._numbers = itertools.count(1)
         self._has_rosapi = False
-        self._greeting: asyncio.Task[None] | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
         self._ended_at = ""
         """The type at which rosapi crashed."""
-        self._checks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
         self._reported: set[str] = set()
 
@@ -112,10 +111,7 @@ class BridgeNode(Node):
         """Run the exit hooks and disconnect."""
         await self.lifetime.leave()
         self._link.stop()
-        if self._greeting is not None:
-            self._greeting.cancel()
-        for check in self._checks:
-            check.cancel()
+        self._cancel_tasks()
         self.attached = False
         self.admission.close()
         self.close_members()
@@ -202,12 +198,11 @@ class BridgeNode(Node):
     # Interface for the link:
 
     def _link_up(self) -> None:
-        if self._greeting is not None:
-            self._greeting.cancel()
+        self._cancel_tasks()
         self._ended_at = ""
         self._lost_topics.clear()
         self._reported.clear()
-        self._greeting = self.loop.create_task(self._greet())
+        self._begin(self._greet())
 
     async def _greet(self) -> None:
         """Find out the version of ROS, and announce everything to the server."""
@@ -221,7 +216,7 @@ class BridgeNode(Node):
             )
         self.translator.ros_version, self.packs = found or (2, False)
         self.attached = True
-        self._join()
+        self._for_all("join")
         self.found()
 
     async def _ask_for_version(self) -> tuple[int, bool] | None:
@@ -237,27 +232,27 @@ class BridgeNode(Node):
             await self.clock.sleep(PAUSE)
         return None
 
-    def _join(self) -> None:
-        """Announce everything to a server that does not know us yet."""
-        for multiplexer in list(self.multiplexers.values()):
-            multiplexer.join()
-        for member in list(self.members):
-            join = getattr(member, "join", None)
-            if join is not None:
-                join()
-
     def _link_down(self) -> None:
         self.attached = False
-        if self._greeting is not None:
-            self._greeting.cancel()
+        self._cancel_tasks()
         self.requests.fail_all()
-        for multiplexer in list(self.multiplexers.values()):
-            multiplexer.lost()
-        for member in list(self.members):
-            lost = getattr(member, "lost", None)
-            if lost is not None:
-                lost()
+        self._for_all("lost")
         self._await_server()
+
+    def _for_all(self, method: str) -> None:
+        """Let all entities announce themselves to a server that does not know us yet, or note that it is lost."""
+        for each in (*self.multiplexers.values(), *self.members):
+            if (call := getattr(each, method, None)) is not None:
+                call()
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = self.loop.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def _cancel_tasks(self) -> None:
+        for task in self._tasks:
+            task.cancel()
 
     def _await_server(self) -> None:
         self.missing(f"rosbridge server at {self.url}", CURE)
@@ -306,9 +301,7 @@ class BridgeNode(Node):
 
     def _check_rosapi(self, asked: str) -> None:
         """Check whether rosapi still runs: real ones crash when they are asked for certain types."""
-        check = self.loop.create_task(self._look_for_rosapi(asked))
-        self._checks.add(check)
-        check.add_done_callback(self._checks.discard)
+        self._begin(self._look_for_rosapi(asked))
 
     async def _look_for_rosapi(self, asked: str) -> None:
         try:
