@@ -103,9 +103,13 @@ def contents(node: Ros2Node) -> GraphContents:
             topics[name] = _topic(node, name, types)
     services: dict[str, str] = {}
     for name, types in rcl.get_service_names_and_types():
-        if ACTION not in name and not _belongs_to_node(name, nodes) and rcl.count_services(name):
+        owner, _, last = name.rpartition("/")
+        of_node = last in NODE_SERVICES and owner in nodes
+        if ACTION not in name and not of_node and rcl.count_services(name):
             services[name] = node.schema.usual_type(sorted(types)[0]) if types else ""
-    return GraphContents(topics, services, actions, tuple(node for node in nodes if _is_shown(node)))
+    # Names of tools begin with an underscore; ROS 2's own lists do not show them either.
+    shown = (each for each in nodes if not each.rpartition("/")[2].startswith("_"))
+    return GraphContents(topics, services, actions, tuple(shown))
 
 
 def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
@@ -115,17 +119,6 @@ def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
         tuple(endpoint(info) for info in node.rcl.get_publishers_info_by_topic(name)),
         tuple(endpoint(info) for info in node.rcl.get_subscriptions_info_by_topic(name)),
     )
-
-
-def _belongs_to_node(service: str, nodes: list[str]) -> bool:
-    """Return whether a service is one that every node has."""
-    owner, _, last = service.rpartition("/")
-    return last in NODE_SERVICES and owner in nodes
-
-
-def _is_shown(node: str) -> bool:
-    """Return whether a node is shown: names of tools begin with an underscore, as in ROS 2's own lists."""
-    return not node.rpartition("/")[2].startswith("_")
 
 
 def publishers_in(rcl: Any, topic: str, no_mangle: bool = False) -> frozenset[bytes]:

@@ -22,20 +22,12 @@ _PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback
 class RosidlSchema:
     """Classes of the installed ROS 2 packages."""
 
-    def __init__(self) -> None:
-        self._classes: dict[str, Any] = {}
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-
     def look_in(self, folder: Path) -> None:
         """Do nothing: ROS 2 needs installed packages."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Return the fields of a type in full form. Raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            told = self.message_class(type_name).get_fields_and_field_types()
-            fields = self._fields[type_name] = {name: from_ros2(text) for name, text in told.items()}
-        return fields
+        return _fields(type_name)
 
     def new(self, type_name: str) -> Any:
         """Make a message with the definition's defaults. Raises `UnknownInterface`."""
@@ -53,10 +45,7 @@ class RosidlSchema:
 
     def message_class(self, type_name: str) -> Any:
         """Return the class of a message, request or response type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find(type_name)
-        return found
+        return _message_class(type_name)
 
     def graph_type(self, type_name: str) -> str:
         """Return the name of a type in the graph: a substitute has its own package. Raises `UnknownInterface`."""
@@ -74,21 +63,29 @@ class RosidlSchema:
         # If the original package is installed, the two differ, so the substitute must be recognised.
         return told if looks_like is None or _is_installed(looks_like) else f"{looks_like}/{kind}/{name}"
 
-    def _find(self, type_name: str) -> Any:
-        package, kind, name = type_name.split("/")
-        whole, _, part = name.rpartition("_")
-        if whole and part in _PARTS.get(kind, ()):
-            return getattr(self.message_class(f"{package}/{kind}/{whole}"), part)
-        found = _imported(package, kind, name)
-        if found is None and not _is_installed(package) and origin(kind, name) == package:
-            found = _imported(PACKAGE, kind, name)
-        if found is None:
-            raise UnknownInterface(
-                f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
-                f"install ros-<distribution>-{package.replace('_', '-')}, or build its package, source its "
-                "setup file"
-            )
-        return found
+
+@cache
+def _fields(type_name: str) -> Mapping[str, FieldType]:
+    told = _message_class(type_name).get_fields_and_field_types()
+    return {name: from_ros2(text) for name, text in told.items()}
+
+
+@cache
+def _message_class(type_name: str) -> Any:
+    package, kind, name = type_name.split("/")
+    whole, _, part = name.rpartition("_")
+    if whole and part in _PARTS.get(kind, ()):
+        return getattr(_message_class(f"{package}/{kind}/{whole}"), part)
+    found = _imported(package, kind, name)
+    if found is None and not _is_installed(package) and origin(kind, name) == package:
+        found = _imported(PACKAGE, kind, name)
+    if found is None:
+        raise UnknownInterface(
+            f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
+            f"install ros-<distribution>-{package.replace('_', '-')}, or build its package, source its "
+            "setup file"
+        )
+    return found
 
 
 @cache
