@@ -19,7 +19,7 @@ from jacaros.ros.actionlib_client import ActionlibWire
 from jacaros.ros.actionlib_server import ActionlibServer
 from jacaros.ros.backend import Sample
 from jacaros.ros.drivers.rosbridge.node import BridgeNode, OperationHandler
-from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
+from jacaros.ros.drivers.rosbridge.topics import BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
 from jacaros.ros.node import Wanted
@@ -348,9 +348,7 @@ class BridgeActionClient(GoalSender):
         version = 1 if isinstance(self.wire, ActionlibWire) else 2
         if version != self._node.ros_version:
             self.wire.close()
-            self.wire = (
-                Ros2Goals(self._node, self) if version == 1 else ActionlibWire(ActionTopics(self._node), self)
-            )
+            self.wire = Ros2Goals(self._node, self) if version == 1 else ActionlibWire(self._node, self)
         if isinstance(self.wire, Ros2Goals):
             self.wire.join()
         if self.busy:
@@ -387,7 +385,7 @@ class BridgeActionServer:
     def join(self) -> None:
         """The link is up: offer the action."""
         if self._node.ros_version == 1:
-            self._service = ActionlibServer(ActionTopics(self._node), *self._offer)
+            self._service = ActionlibServer(self._node, *self._offer)
         else:
             self._service = Ros2GoalService(self._node, *self._offer)
 

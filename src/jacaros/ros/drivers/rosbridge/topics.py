@@ -1,16 +1,15 @@
 """Topics through the bridge, including those of ROS 1's actions."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
-from jacaros.ros.backend import Sample, TopicTrouble
+from jacaros.ros.backend import TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import Wanted
-from jacaros.ros.orphans import Orphans
 from jacaros.ros.protocols.rosbridge_wire import LOOK_STEADILY, Polled
-from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.qos import QoS
 from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 from jacaros.runtime.clock import Timer
 
@@ -26,11 +25,10 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
     sent again. Other messages are lost meanwhile: a velocity from a minute ago would do harm.
     """
 
-    def __init__(
-        self, node: BridgeNode, topic: str, type_name: str, qos: QoS, droppable: bool = True
-    ) -> None:
+    def __init__(self, node: BridgeNode, topic: str, type_name: str, qos: QoS) -> None:
         super().__init__(node, topic, type_name, qos)
-        self._droppable = droppable
+        # A lost goal or request to cancel would not be repeated.
+        self._droppable = not _is_of_action(type_name)
         self._kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
         self._subscribers = Polled(
             node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
@@ -175,15 +173,12 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
     """Subscription of `RosbridgeBackend`.
 
     Messages are decoded when they are delivered, so messages dropped from a full queue cost nothing.
-
-    Args:
-        waiting: maximum number of waiting messages; default: from *qos*.
     """
 
-    def __init__(self, node: BridgeNode, wanted: Wanted, waiting: int | None = None) -> None:
+    def __init__(self, node: BridgeNode, wanted: Wanted) -> None:
         super().__init__(node, wanted, node.multiplexers, BridgeMultiplexer)
-        if waiting is not None:
-            self._waiting = deque(self._waiting, waiting)
+        if _is_of_action(wanted.type_name):  # the result must not arrive before its feedback
+            self._waiting = deque(self._waiting, WAITING)
 
     def deliver(self, message: Any) -> None:
         """Decode a message and deliver it."""
@@ -197,6 +192,11 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
             self._node.delivered()
 
 
+def _is_of_action(type_name: str) -> bool:
+    """Return whether a type is that of a topic of ROS 1's actions, which the protocol of rosbridge does not know."""
+    return "/action/" in type_name or type_name.startswith("actionlib_msgs/")
+
+
 def _quality(qos: QoS) -> dict[str, Any]:
     return {
         "history": "keep_last",
@@ -204,49 +204,3 @@ def _quality(qos: QoS) -> dict[str, Any]:
         "reliability": qos.reliability,
         "durability": qos.durability,
     }
-
-
-class ActionTopics:
-    """The topics of one action of a ROS 1 robot for `ActionlibWire` and `ActionlibServer`; an `ActionTopicsNode`.
-
-    The rosbridge protocol does not support ROS 1's actions, so goals, requests to cancel, status and feedback are
-    ordinary messages of the types that actionlib generates (``pkg/NameActionGoal`` and so on).
-
-    Incoming messages are delivered in the order of arrival: the result never before its feedback. Outgoing messages
-    are not dropped when the network is slow: a lost request to cancel would not be repeated.
-
-    Args:
-        node: the backend.
-    """
-
-    def __init__(self, node: BridgeNode) -> None:
-        self._node = node
-        self.clock = node.clock
-        self.log = node.log
-        self.factory = node.factory
-
-    @property
-    def orphans(self) -> Orphans:
-        """Recognises goals of earlier runs."""
-        return self._node.orphans
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-        return self._node.node_name
-
-    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> BridgePublisher:
-        """Make a publisher."""
-        return self._node.keep(BridgePublisher(self._node, topic, type_name, qos, droppable=False))
-
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
-    ) -> BridgeSubscription:
-        """Call *callback* with every message."""
-        return self._node.keep(
-            BridgeSubscription(self._node, Wanted(topic, type_name, callback, qos), WAITING)
-        )
-
-    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Call *hook* when the process ends."""
-        return self._node.add_exit_hook(hook)
