@@ -12,16 +12,14 @@ from rcl_interfaces.msg import (  # type: ignore[import-not-found]
     SetParametersResult,
 )
 from rclpy.exceptions import (  # type: ignore[import-not-found]
-    InvalidParameterException,
-    InvalidParameterTypeException,
-    InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
+    ParameterException,
     ParameterNotDeclaredException,
 )
 from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.drivers.ros2.types import parameter, plain_value
+from jacaros.ros.drivers.ros2.types import ARRAYS, parameter
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
@@ -62,12 +60,7 @@ class OwnParameters:
             )
         except ParameterAlreadyDeclaredException:
             raise ParameterRefused(f"parameter {name} of {self.node} is already declared") from None
-        except (
-            InvalidParameterException,
-            InvalidParameterValueException,
-            InvalidParameterTypeException,
-            ValueError,
-        ) as problem:
+        except (ParameterException, ValueError) as problem:
             self._judges.pop(name, None)
             raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
         if value.value == [] and value.type_ != made.type_:
@@ -94,9 +87,6 @@ class OwnParameters:
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
-        return self._names()
-
-    def _names(self) -> list[str]:
         return sorted(self._node.rcl.list_parameters([], 0).names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
@@ -121,13 +111,14 @@ class OwnParameters:
         return self._parameter_events.listen(self.node, callback)
 
     def _value(self, told: Any) -> ParameterValue:
-        value: ParameterValue = (
-            b"" if told.type_ == Parameter.Type.BYTE_ARRAY and not told.value else (plain_value(told.value))
-        )
-        return value
+        value: ParameterValue = told.value
+        if told.type_ == Parameter.Type.BYTE_ARRAY:
+            return b"".join(told.value)
+        return list(told.value) if told.type_ in ARRAYS else value
 
     def _unknown(self, name: str) -> str:
-        return f"node {self.node} has no parameter {name}; it has {', '.join(self._names())}"
+        known = sorted(self._node.rcl.list_parameters([], 0).names)
+        return f"node {self.node} has no parameter {name}; it has {', '.join(known)}"
 
     def _judge(self, changes: list[Any]) -> Any:
         """Decide about changes; called by rclpy on the thread that makes them."""

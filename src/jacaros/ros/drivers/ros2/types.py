@@ -103,7 +103,7 @@ def _imported(package: str, kind: str, name: str) -> Any:
         return None
 
 
-_ARRAYS = (
+ARRAYS = (
     Parameter.Type.BYTE_ARRAY,
     Parameter.Type.BOOL_ARRAY,
     Parameter.Type.INTEGER_ARRAY,
@@ -130,13 +130,5 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     if isinstance(plain, bytes):
         return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in plain])
     if plain == []:
-        return Parameter(name, kind if kind in _ARRAYS else Parameter.Type.STRING_ARRAY, plain)
+        return Parameter(name, kind if kind in ARRAYS else Parameter.Type.STRING_ARRAY, plain)
     return Parameter(name, value=plain)
-
-
-def plain_value(told: Any) -> Any:
-    """Convert a value from rclpy; None for a parameter without one."""
-    if isinstance(told, str | bool | int | float) or told is None:
-        return told
-    elements = list(told)
-    return b"".join(elements) if elements and isinstance(elements[0], bytes) else elements
