@@ -34,31 +34,22 @@ class _AskedServers:
     def __init__(self, node: Ros2Node, name: str) -> None:
         self._node = node
         self._name = name
-        self._servers = service_servers(node.rcl, name)
         self._dead: frozenset[bytes] = frozenset()
-        self._timer = node.loop.call_later(DOUBTED, self._doubt)
+        self._doubt_at = time.monotonic() + DOUBTED
+        self.known = service_servers(node.rcl, name)
 
-    @property
-    def known(self) -> bool:
-        """Whether the servers are known."""
-        return bool(self._servers)
-
-    @property
     def there(self) -> bool:
-        """Whether one of them is there."""
-        return not self._servers.isdisjoint(service_servers(self._node.rcl, self._name) - self._dead)
+        """Return whether one of them is there, as far as is known; a long call starts liveness checks."""
+        now = time.monotonic()
+        if now >= self._doubt_at:
+            self._doubt_at = now + DOUBTED_AGAIN
+            self._node.check_liveness(
+                lambda rcl: service_servers(rcl, self._name), self.known, self._note_dead
+            )
+        return not self.known.isdisjoint(service_servers(self._node.rcl, self._name) - self._dead)
 
-    def close(self) -> None:
-        """End the call."""
-        self._timer.cancel()
-
-    def _doubt(self) -> None:
-        def report(missing: frozenset[bytes]) -> None:
-            self._dead = missing
-
-        if self._servers:
-            self._node.check_liveness(lambda rcl: service_servers(rcl, self._name), self._servers, report)
-        self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
+    def _note_dead(self, missing: frozenset[bytes]) -> None:
+        self._dead = missing
 
 
 class LateService:
@@ -214,13 +205,12 @@ class Ros2Client(AttemptingClient):
         def is_there() -> bool:
             if self._closed or node.ended:
                 return True  # then the call ends in another way
-            return asked.there if asked.known else self.ready
+            return asked.there() if asked.known else self.ready
 
         try:
             with ServerWatch(clock, self.name, answer, is_there):
                 return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
-            asked.close()
             requests.close()
 
     def _require_type(self) -> None:
