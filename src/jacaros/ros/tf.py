@@ -7,8 +7,7 @@ from typing import Any
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
 from jacaros.ros.message import to_seconds
 from jacaros.ros.node import Node, Publisher, Sample
-from jacaros.ros.protocols.tf_buffer import TransformBuffer
-from jacaros.ros.protocols.transform import Transform
+from jacaros.ros.protocols.transform import Transform, TransformBuffer
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import Waiting, within
 

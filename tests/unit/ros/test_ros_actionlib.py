@@ -15,7 +15,7 @@ from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
 from jacaros.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
-from jacaros.ros.protocols.rosbridge_types import BridgeSchema
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema
 from jacaros.runtime.clock import VirtualClock, run
 
 COUNT = "jacaros_interfaces/action/Count"

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from jacaros.ros.protocols.rosbridge_requests import Polled, Requests
+from jacaros.ros.protocols.rosbridge_wire import Polled, Requests
 
 
 class Server:

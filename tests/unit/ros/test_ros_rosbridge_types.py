@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.protocols.rosbridge_types import BridgeSchema
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema
 
 
 def test_a_server_that_has_not_answered_is_not_said_to_know_nothing_and_is_asked_again() -> None:

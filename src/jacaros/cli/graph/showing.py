@@ -8,9 +8,8 @@ from typing import Any
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants_by_field
 from jacaros.cli.graph.first_mapping import lines_for
-from jacaros.cli.graph.joining import Joined
-from jacaros.cli.graph.kinds import Kind, Thing
-from jacaros.cli.graph.listening import one_message
+from jacaros.cli.graph.joining import Joined, one_message
+from jacaros.cli.graph.listing import Kind, Thing
 from jacaros.cli.graph.values import Leaf, is_time, leaves, messages, parts, value_at
 from jacaros.ros.backend import Endpoint
 from jacaros.ros.errors import RosError, UnknownInterface

@@ -1,8 +1,8 @@
-"""The usual topics, services and actions of a robot, found by their types and names."""
+"""The usual topics, services and actions of a robot, found by their types and names, and entries for some of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from jacaros.cli.graph.kinds import Kind, Thing, all_things
+from jacaros.cli.graph.listing import Kind, Thing, all_things
 from jacaros.ros.backend import GraphContents
 from jacaros.ros.guarded import VELOCITIES
 
@@ -49,6 +49,74 @@ _INNER = (
 SERVICES_AT_MOST = 10
 _OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
 """Topics that agents use in other ways, or not at all."""
+
+
+Body = tuple[str, ...]
+"""Section, comment and lines of an entry."""
+_SIDES = "names: {0: left, 1: center, 2: right}"
+KNOWN: Mapping[str, Body] = {
+    "nav_msgs/msg/Odometry": (
+        "properties",
+        "NAME(X, Y, Yaw): metres, metres, degrees",
+        "fields:",
+        "  - {path: pose.pose.position.x, round: 2}",
+        "  - {path: pose.pose.position.y, round: 2}",
+        "  - {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}",
+        "rate: 5   # updates per second, at most",
+        "dead_band: [0.02, 0.02, 1]   # smaller changes are ignored",
+    ),
+    "sensor_msgs/msg/LaserScan": (
+        "properties",
+        "NAME(R0, R25, R50, R75, R100): metres, five ranges from the first to the last",
+        "fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]",
+        "rate: 2",
+        "dead_band: 0.02",
+    ),
+    "sensor_msgs/msg/BatteryState": (
+        "properties",
+        "NAME(Percent, Status): such as NAME(80, discharging)",
+        "fields:",
+        "  - {path: percentage, unit: percent, round: down}",
+        "  - {path: power_supply_status, as: name}",
+    ),
+    "sensor_msgs/msg/JointState": (
+        "properties",
+        "NAME(Joint, Position): one for each joint; radians, or metres for a prismatic joint",
+        "each: name",
+        'fields: [{path: ., name: joint}, {path: "/position[i]", round: 3}]',
+        "rate: 5",
+        "dead_band: 0.01",
+    ),
+    "diagnostic_msgs/msg/DiagnosticArray": (
+        "properties",
+        "NAME(Part, Level, Text): one for each part of the robot",
+        "each: status",
+        "key: name",
+        "fields: [name, {path: level, names: {0: ok, 1: warning, 2: error, 3: stale}}, message]",
+    ),
+    "irobot_create_msgs/msg/HazardDetectionVector": (
+        "signals",
+        "NAME(Kind, Where): such as NAME(bump, bump_front_left)",
+        "each: detections",
+        "fields: [{path: type, as: name}, {path: header.frame_id, as: atom}]",
+        "when_changed: true   # once, not repeatedly while it lasts",
+    ),
+    "kobuki_msgs/msg/BumperEvent": (
+        "signals",
+        "NAME(Where, State): such as NAME(left, pressed)",
+        "fields:",
+        f"  - {{path: bumper, {_SIDES}}}",
+        "  - {path: state, names: {0: released, 1: pressed}}",
+    ),
+    "kobuki_msgs/msg/CliffEvent": (
+        "signals",
+        "NAME(Where, State): such as NAME(left, cliff)",
+        "fields:",
+        f"  - {{path: sensor, {_SIDES}}}",
+        "  - {path: state, names: {0: floor, 1: cliff}}",
+    ),
+}
+"""Entries of a first mapping file for topics that most robots have; ``NAME`` stands for the name of the entry."""
 
 
 def usual_things(contents: GraphContents) -> list[Thing]:

@@ -191,16 +191,12 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return Value(path, word, conversion, _shown(unit))
-    if kind.base in INTEGER_RANGES and _is_named(types, type_name, name):
-        names = list(chosen(constants(types, type_name), name, ""))
-        return Value(path, word, "as: name", limits=", ".join(names[:_FEW]) + ", ..." * (len(names) > _FEW))
+    if kind.base in INTEGER_RANGES and name in constants_by_field(types, type_name):
+        named = chosen(constants(types, type_name), name, "")
+        if len(set(named.values())) == len(named):  # otherwise two constants name the same value
+            limits = ", ".join(list(named)[:_FEW]) + ", ..." * (len(named) > _FEW)
+            return Value(path, word, "as: name", limits=limits)
     return Value(path, word, limits=f"at most {kind.bound} characters" if kind.bound else "")
-
-
-def _is_named(types: Interfaces, type_name: str, name: str) -> bool:
-    """Return whether constants name the values of a field, without two names for a value."""
-    meant = list(chosen(constants(types, type_name), name, "").values())
-    return name in constants_by_field(types, type_name) and len(set(meant)) == len(meant)
 
 
 def _with_own_names(values: list[Value]) -> list[Value]:

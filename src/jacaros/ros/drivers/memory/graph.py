@@ -20,7 +20,7 @@ from jacaros.ros.errors import RosError
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.node import M, NodeSettings, TopicPublisher, TopicSubscription, Wanted
 from jacaros.ros.parameter import DeclaredParameters, ParameterValue
-from jacaros.ros.parameter_events import ParameterListeners
+from jacaros.ros.parameter_services import ParameterListeners
 from jacaros.ros.qos import QoS, incompatibility
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.ros.waiting import settle

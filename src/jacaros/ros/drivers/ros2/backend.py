@@ -5,10 +5,9 @@ from typing import Any, TypeVar
 
 from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
-from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
-from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+from jacaros.ros.drivers.ros2.actions import Ros2ActionServer, Ros2GoalWire
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.drivers.ros2.parameters import OtherParameters, OwnParameters, read_value
+from jacaros.ros.drivers.ros2.parameters import OwnParameters
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
 from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
@@ -16,7 +15,7 @@ from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterf
 from jacaros.ros.handoff import in_thread
 from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter import Parameters
-from jacaros.ros.parameter_events import ParameterEvents
+from jacaros.ros.parameter_services import NodeParameters, ParameterEvents, read_value
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
@@ -78,8 +77,13 @@ class Ros2Backend(Ros2Node):
         """Return the parameters of our own node, or of another."""
         name = self.node_name if node is None else self.resolve(node)
         if name not in self._parameters:
-            self._parameters[name] = OtherParameters(self, name, self._parameter_events)
+            self._parameters[name] = NodeParameters(
+                self.clock, name, self._parameter_client, self._parameter_events
+            )
         return self._parameters[name]
+
+    def _parameter_client(self, name: str, type_name: str) -> Ros2Client:
+        return self.keep(Ros2Client(self, name, type_name, repeatable=True))
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Return the contents of the graph."""

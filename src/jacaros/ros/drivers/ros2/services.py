@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.ros.drivers.ros2.graph import service_mismatch, service_servers, service_servers_in
+from jacaros.ros.drivers.ros2.graph import mismatch, service_servers
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
@@ -32,38 +32,22 @@ class _AskedServers:
     def __init__(self, node: Ros2Node, name: str) -> None:
         self._node = node
         self._name = name
-        self._servers = service_servers(node, name)
         self._dead: frozenset[bytes] = frozenset()
-        self._timer = node.loop.call_later(DOUBTED, self._doubt)
+        self._doubt_at = time.monotonic() + DOUBTED
+        self.known = service_servers(node.rcl, name)
 
-    @property
-    def known(self) -> bool:
-        """Whether the servers are known."""
-        return bool(self._servers)
-
-    @property
     def there(self) -> bool:
-        """Whether one of them is there."""
-        return not self._servers.isdisjoint(service_servers(self._node, self._name) - self._dead)
+        """Return whether one of them is there, as far as is known; a long call starts liveness checks."""
+        now = time.monotonic()
+        if now >= self._doubt_at:
+            self._doubt_at = now + DOUBTED_AGAIN
+            self._node.check_liveness(
+                lambda rcl: service_servers(rcl, self._name), self.known, self._note_dead
+            )
+        return not self.known.isdisjoint(service_servers(self._node.rcl, self._name) - self._dead)
 
-    def close(self) -> None:
-        """End the call."""
-        self._timer.cancel()
-
-    def _doubt(self) -> None:
-        def report(missing: frozenset[bytes]) -> None:
-            self._dead = missing
-
-        if self._servers:
-            self._node.check_liveness(lambda rcl: service_servers_in(rcl, self._name), self._servers, report)
-        self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
-
-
-class _Call:
-    """A request on its way through rclpy's executor; see `LateService`."""
-
-    def __init__(self, request: Any) -> None:
-        self.request = request
+    def _note_dead(self, missing: frozenset[bytes]) -> None:
+        self._dead = missing
 
 
 class LateService:
@@ -89,7 +73,7 @@ class LateService:
     ) -> None:
         self._node = node
         self._take = take
-        self._service: Any = node.rcl.create_service(service_class, name, lambda request, _: _Call(request))
+        self._service: Any = node.rcl.create_service(service_class, name, lambda request, _: request)
         self._send = self._service.send_response
         self._service.send_response = self._hand_over
         self._closed = False
@@ -101,7 +85,7 @@ class LateService:
             destroy_entity = self._node.destroy_entity_later if late else self._node.destroy_entity
             destroy_entity(self._node.rcl.destroy_service, self._service)
 
-    def _hand_over(self, call: _Call, header: Any) -> None:
+    def _hand_over(self, request: Any, header: Any) -> None:
         def respond(response: Any) -> None:
             if self._closed or self._node.ended:
                 return
@@ -110,7 +94,7 @@ class LateService:
             except Exception as problem:  # the client has gone, which is not our fault
                 self._node.log(f"a response could not be sent: {problem}")
 
-        post(self._node.loop, self._take, call.request, respond)
+        post(self._node.loop, self._take, request, respond)
 
 
 class Ros2Service(ServiceServer[Ros2Node]):
@@ -189,15 +173,13 @@ class Ros2Client(ServiceClient[Ros2Node]):
         if not self.ready:
             self._acquainted = False
             # A server of another type is never ready for us.
-            if (mismatch := service_mismatch(node, self.name, self.type_name)) is not None:
-                raise CallFailed(mismatch)
+            self._require_type()
             raise ServiceUnavailable(f"no node offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
             if self._closed:
                 raise CallFailed(f"the client of service {self.name} was closed during the call")
-            if (mismatch := service_mismatch(node, self.name, self.type_name)) is not None:
-                raise CallFailed(mismatch)
+            self._require_type()
             self._acquainted = True
         answer = self._new_answer()
 
@@ -213,14 +195,18 @@ class Ros2Client(ServiceClient[Ros2Node]):
         def is_there() -> bool:
             if self._closed or node.ended:
                 return True  # then the call ends in another way
-            return asked.there if asked.known else self.ready
+            return asked.there() if asked.known else self.ready
 
         try:
             with ServerWatch(clock, self.name, answer, is_there):
                 return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
-            asked.close()
             requests.close()
+
+    def _require_type(self) -> None:
+        problem = mismatch(self._node, "service", self.name, self.type_name)
+        if problem is not None:
+            raise CallFailed(problem)
 
     def _is_new(self) -> bool:
         """Return whether the server is new; after a crash, the next one takes over before the first counts as
@@ -229,7 +215,7 @@ class Ros2Client(ServiceClient[Ros2Node]):
         if self._acquainted and now < self._compared + COMPARING:
             return False
         self._compared = now
-        servers = service_servers(self._node, self.name)
+        servers = service_servers(self._node.rcl, self.name)
         fresh = not self._acquainted or not servers <= self._servers
         self._servers |= servers
         return fresh

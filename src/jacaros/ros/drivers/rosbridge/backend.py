@@ -8,7 +8,6 @@ Everything happens on the loop; only exit hooks may send from another thread (se
 """
 
 import os
-from typing import Any
 
 from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
@@ -20,13 +19,12 @@ from jacaros.ros.drivers.rosbridge.services import (
     BridgeService,
     absolute,
     look,
-    read,
 )
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
 from jacaros.ros.errors import CapabilityMissing
 from jacaros.ros.node import Capability, NodeSettings, Parts
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.protocols.rosbridge_requests import PATIENCE
+from jacaros.ros.parameter_services import ParameterEvents, read_value
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 
@@ -56,7 +54,7 @@ class RosbridgeBackend(BridgeNode):
                 "and so there are no parameters"
             )
         super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
-        self._parameter_events = ParameterEvents(self.subscription, read)
+        self._parameter_events = ParameterEvents(self.subscription, read_value)
 
     @property
     def capabilities(self) -> frozenset[Capability]:  # type: ignore[override]
@@ -89,61 +87,6 @@ class RosbridgeBackend(BridgeNode):
         answer = await self.rosapi("publishers", {"topic": topic}, PATIENCE)
         # The server publishes for its clients, and does not tell which.
         return [name for name in absolute(answer["publishers"]) if "rosbridge" not in name]
-
-    # Messages of the server:
-
-    def _received(self, message: dict[str, Any]) -> None:
-        operation = message["op"]
-        if operation == "publish":
-            multiplexer = self.multiplexers.get(str(message.get("topic")))
-            if multiplexer is not None:
-                multiplexer.put(message.get("msg"))
-        else:  # in order, after earlier messages of topics
-            self.loop.call_soon(self._dispatch, operation, message)
-
-    def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
-        try:
-            self._do(operation, message)
-        except (TypeError, ValueError, KeyError, AttributeError) as problem:
-            self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
-
-    def _do(self, operation: str, message: dict[str, Any]) -> None:
-        number = str(message.get("id"))
-        if operation == "service_response":
-            self.requests.answered(message)
-        elif operation == "call_service":
-            service = self.services.get(str(message.get("service")))
-            if service is not None:
-                service.called(message)
-        elif operation == "status":
-            self._note_status(message, number)
-        elif operation in ("action_feedback", "action_result"):
-            goals = self.goals.get(number)
-            if goals is not None and operation == "action_feedback":
-                goals.feedback(number, message.get("values"))
-            elif goals is not None:
-                goals.result(number, message)
-        elif operation in ("send_action_goal", "cancel_action_goal"):
-            server = self.action_servers.get(str(message.get("action")))
-            if server is not None and operation == "send_action_goal":
-                server.goal(message)
-            elif server is not None:
-                server.cancel(number)
-
-    def _note_status(self, message: dict[str, Any], number: str) -> None:
-        """Handle a status message of the server, mostly that it refuses a request."""
-        text = str(message.get("msg"))
-        if message.get("level") not in ("error", "warning") or number.startswith("call_service:"):
-            return  # a failed call is answered as well
-        asked, _, topic = number.rpartition(":")[0].partition(":")
-        multiplexer = self.multiplexers.get(topic)
-        if asked == "subscribe" and multiplexer is not None:
-            multiplexer.report(f"topic {multiplexer.topic}: refused by the rosbridge server: {text}")
-        elif number in self.goals and "nknown operation" in text:
-            self.goals[number].refused(number, text)
-        elif text not in self._reported and not number.startswith("send_action_goal:"):
-            self._reported.add(text)
-            self.log(f"message of the rosbridge server: {text}")
 
 
 BACKEND: type[Backend] = RosbridgeBackend

@@ -4,7 +4,7 @@ import asyncio
 import json
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any, NoReturn
+from typing import Any
 
 from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
@@ -18,8 +18,8 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
-from jacaros.ros.parameter_events import ParameterEvents, ParameterServices
-from jacaros.ros.protocols.rosbridge_requests import Polled
+from jacaros.ros.parameter_services import NodeParameters, ParameterEvents
+from jacaros.ros.protocols.rosbridge_wire import Polled
 from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
@@ -80,7 +80,7 @@ class BridgeService(ServiceServer[BridgeNode]):
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
         node.schema.service(type_name)
         super().__init__(node, name, type_name, handler)
-        node.services[name] = self
+        node.handlers["call_service", name] = self._called
         if node.attached:
             self.join()
 
@@ -90,10 +90,10 @@ class BridgeService(ServiceServer[BridgeNode]):
         self._node.send({"op": "advertise_service", "type": kind, "service": self.name})
 
     def _leave(self) -> None:
+        self._node.unhandle(self._called, "call_service", self.name)
         self._node.send({"op": "unadvertise_service", "service": self.name})
 
-    def called(self, message: dict[str, Any]) -> None:
-        """Handle a request of the server; on the loop."""
+    def _called(self, message: dict[str, Any]) -> None:
         node, number = self._node, message.get("id")
         try:
             request = node.translator.decode(request_type(self.type_name), message.get("args") or {})
@@ -143,7 +143,10 @@ class _Look:
 
     async def contents(self) -> GraphContents:
         topics, services, nodes, actions = await asyncio.gather(
-            self._ask("topics"), self._ask("services"), self._ask("nodes"), self._action_servers()
+            self._ask("topics"),
+            self._ask("services"),
+            self._ask("nodes"),
+            self._known("action_servers", "action_servers", ()),
         )
         types = dict(zip(topics["topics"], topics["types"], strict=True))
         hidden = {f"{action}/{part}" for action in actions for part in _ACTIONLIB}
@@ -152,7 +155,9 @@ class _Look:
         ]
         infos = await asyncio.gather(*(self._topic(name, types[name]) for name in shown))
         plain = [name for name in services["services"] if not _is_internal(name)]
-        kinds = await asyncio.gather(*(self._type("service_type", "service", name) for name in plain))
+        kinds = await asyncio.gather(
+            *(self._known("service_type", "type", "", service=name) for name in plain)
+        )
         found = await asyncio.gather(*(self._action(name, types) for name in actions))
         return GraphContents(
             {info.name: info for info in infos},
@@ -172,13 +177,6 @@ class _Look:
             tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
         )
 
-    async def _action_servers(self) -> list[str]:
-        try:
-            answer = await self._ask("action_servers")
-        except ServiceError:  # an older server
-            return []
-        return list(answer.get("action_servers", ()))
-
     async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
         """Return an action's name, its type, and whether a server offers it."""
         goal = types.get(f"{name}/goal", "")
@@ -186,14 +184,15 @@ class _Look:
             # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
             servers = await self._ask("publishers", topic=f"{name}/status")
             return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
-        kind = await self._type("action_type", "action", name)
+        kind = await self._known("action_type", "type", "", action=name)
         return name, _full(action_type, kind), True
 
-    async def _type(self, service: str, argument: str, name: str) -> str:
+    async def _known(self, what: str, field: str, unknown: Any, **arguments: str) -> Any:
+        """Return a field of an answer, *unknown* if an older server has none."""
         try:
-            return str((await self._ask(service, **{argument: name})).get("type", ""))
+            return (await self._ask(what, **arguments)).get(field, unknown)
         except ServiceError:
-            return ""
+            return unknown
 
     async def _ask(self, what: str, **arguments: str) -> dict[str, Any]:
         async with self._gate:
@@ -224,8 +223,8 @@ _ABSENT = "jacaros: no such parameter"
 """The default in the request: rosapi has no other way to report a missing parameter."""
 
 
-class BridgeParameters:
-    """Parameters of one node, seen from outside.
+class BridgeParameters(NodeParameters):
+    """Parameters of one node, seen from outside; on ROS 1 those of the master below its name, through rosapi.
 
     Args:
         backend: sends the requests.
@@ -234,205 +233,75 @@ class BridgeParameters:
     """
 
     def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
-        self.node = node
+        super().__init__(backend.clock, node, self._make_bridge_client, events)
         self._backend = backend
-        self._parameter_events = events
-        self._of_node = NodeParameters(backend, node)
-        self._of_master = MasterParameters(backend, node)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Raise `CapabilityMissing`: over a bridge there is no node of our own with parameters."""
-        self._missing(f"parameter {name} cannot be declared")
+        raise self._missing(f"parameter {name} cannot be declared")
 
     def withdraw(self, name: str) -> None:
         """Raise `CapabilityMissing`, as `declare`."""
-        self._missing(f"parameter {name} cannot be withdrawn")
+        raise self._missing(f"parameter {name} cannot be withdrawn")
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters, sorted."""
-        return await self._parameters.names(timeout)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        return await self._parameters.get(name, timeout)
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        await self._parameters.set(name, value, timeout)
-
-    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
-        if self._backend.ros_version == 1:
-            self._missing(f"changes of parameters of {self.node} are not reported")
-        self._require_other()
-        return self._parameter_events.listen(self.node, callback)
-
-    @property
-    def _parameters(self) -> "NodeParameters | MasterParameters":
-        if self._backend.ros_version == 1:
-            return self._of_master
-        self._require_other()
-        return self._of_node
-
-    def _require_other(self) -> None:
-        """On ROS 2 parameters belong to nodes, and we have none."""
-        if self.node == self._backend.node_name:
-            raise CapabilityMissing(
-                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
-                "name another node"
-            )
-
-    def _missing(self, what: str) -> NoReturn:
-        raise CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
-
-
-class MasterParameters:
-    """The parameters of the ROS 1 master below a node's name, through rosapi.
-
-    Args:
-        backend: sends the requests.
-        node: absolute name of the node.
-    """
-
-    def __init__(self, backend: BridgeNode, node: str) -> None:
-        self._backend = backend
-        self._node = node
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
+        if not self._are_of_master:
+            return await super().names(timeout)
         answer = await self._backend.rosapi("get_param_names", {}, timeout)
-        prefix = f"{self._node}/"
+        prefix = f"{self.node}/"
         return sorted(name.removeprefix(prefix) for name in answer["names"] if name.startswith(prefix))
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
         """Return a parameter's value."""
-        arguments = {"name": f"{self._node}/{name}", "default_value": json.dumps(_ABSENT)}
-        answer = await self._backend.rosapi("get_param", arguments, timeout)
-        text = answer.get("value", "")
+        if not self._are_of_master:
+            return await super().get(name, timeout)
+        arguments = {"name": f"{self.node}/{name}", "default_value": json.dumps(_ABSENT)}
+        text = (await self._backend.rosapi("get_param", arguments, timeout)).get("value", "")
         try:
             value = json.loads(text) if text != "" else _ABSENT
         except ValueError:
             value = text
         if value == _ABSENT or value is None:
-            raise ParameterUnknown(f"node {self._node} has no parameter {name}")
-        return self._plain(name, value)
+            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
+        if isinstance(value, list) and {type(each) for each in value} == {int, float}:
+            value = [float(each) for each in value]
+        try:
+            return checked_value(value)
+        except ParameterRefused:
+            text = f"parameter {name} of node {self.node} has an unsupported value: {value!r}"
+            raise CallFailed(text) from None
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter."""
+        if not self._are_of_master:
+            await super().set(name, value, timeout)
+            return
         if isinstance(value, bytes):
             raise ParameterRefused(
                 f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
             )
-        if self._plain_or_none(value) is None:
-            raise ParameterRefused(f"parameter {name} cannot be {value!r}")
-        arguments = {"name": f"{self._node}/{name}", "value": json.dumps(value)}
+        arguments = {"name": f"{self.node}/{name}", "value": json.dumps(checked_value(value))}
         await self._backend.rosapi("set_param", arguments, timeout)
 
-    def _plain(self, name: str, value: Any) -> ParameterValue:
-        plain = self._plain_or_none(value)
-        if plain is not None:
-            return plain
-        if isinstance(value, dict):
-            raise ParameterUnknown(
-                f"parameter {name} of {self._node} is a group; read its parts, {name}/PART"
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
+        if self._are_of_master:
+            raise self._missing(f"changes of parameters of {self.node} are not reported")
+        return super().on_change(callback)
+
+    @property
+    def _are_of_master(self) -> bool:
+        """Whether the robot has ROS 1. On ROS 2 parameters belong to nodes, and we have none."""
+        if self._backend.ros_version == 2 and self.node == self._backend.node_name:
+            raise CapabilityMissing(
+                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
+                "name another node"
             )
-        raise CallFailed(f"parameter {name} of node {self._node} has an unsupported value: {value!r}")
+        return self._backend.ros_version == 1
 
-    def _plain_or_none(self, value: Any) -> ParameterValue | None:
-        if isinstance(value, bool | int | float | str):
-            return value
-        if isinstance(value, list):
-            for kinds in ((bool,), (int,), (int, float), (str,)):
-                # bool is a subclass of int, and a list of both is not supported
-                if all(
-                    isinstance(each, kinds) and (bool in kinds or not isinstance(each, bool))
-                    for each in value
-                ):
-                    return value
-        return None
+    def _missing(self, what: str) -> CapabilityMissing:
+        return CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
 
-
-_FIELDS = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    5: "byte_array_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
-"""The field of ``rcl_interfaces/msg/ParameterValue`` for each number of ``ParameterType``."""
-_NUMBERS: Mapping[type, int] = {bool: 1, int: 2, float: 3, str: 4, bytes: 5}
-_LIST_NUMBERS: Mapping[type, int] = {bool: 6, int: 7, float: 8, str: 9}
-_TEXTS, _NOT_SET = 9, 0
-
-
-class NodeParameters:
-    """The parameters of one node.
-
-    Args:
-        node: sends the calls.
-        name: absolute name of the node that has them.
-    """
-
-    def __init__(self, node: BridgeNode, name: str) -> None:
-        self.node = name
-        self._node = node
-        self._services = ParameterServices(name, self._client)
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
-        answer = await self._services.call("ListParameters", {"depth": 0}, timeout)
-        return sorted(answer.result.names)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        answer = await self._services.call("GetParameters", {"names": [name]}, timeout)
-        value = read(answer.values[0]) if len(answer.values) == 1 else None
-        if value is None:
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
-        return value
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        wanted = checked_value(value)
-        number = _NUMBERS.get(type(wanted))
-        if isinstance(wanted, list):
-            number = _LIST_NUMBERS[type(wanted[0])] if wanted else await self._type(name, timeout) or _TEXTS
-        assert number is not None, f"checked_value has let {wanted!r} pass"
-        given = list(wanted) if isinstance(wanted, bytes) else wanted
-        told = {"name": name, "value": {"type": number, _FIELDS[number]: given}}
-        answer = await self._services.call("SetParameters", {"parameters": [told]}, timeout)
-        if answer.results and answer.results[0].successful:
-            return
-        if not await self._type(name, timeout):
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
-        reason = answer.results[0].reason if answer.results else "the node gave no reason"
-        raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {reason}")
-
-    async def _type(self, name: str, timeout: float | None) -> int:
-        """Return the number of a parameter's type; 0 if it does not exist."""
-        answer = await self._services.call("GetParameterTypes", {"names": [name]}, timeout)
-        return int(answer.types[0]) if len(answer.types) == 1 else _NOT_SET
-
-    def _client(self, name: str, type_name: str) -> BridgeClient:
-        client = BridgeClient(self._node, name, type_name)
-        self._node.keep(client)
-        return client
-
-
-def read(told: Any) -> ParameterValue | None:
-    """Read a ``rcl_interfaces/msg/ParameterValue``; None for a parameter without a value."""
-    field = _FIELDS.get(int(told.type))
-    if field is None:
-        return None
-    value = getattr(told, field)
-    if field == "byte_array_value":
-        return bytes(int(octet) & 255 for octet in value)
-    if field.endswith("array_value"):
-        plain: list[Any] = value.tolist() if hasattr(value, "tolist") else list(value)
-        return plain
-    single: ParameterValue = value
-    return single
+    def _make_bridge_client(self, name: str, type_name: str) -> BridgeClient:
+        return self._backend.keep(BridgeClient(self._backend, name, type_name))
