@@ -5,31 +5,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals, text_of
-from jacaros.ros.action_client import ActionClient, Orphans
-from jacaros.ros.message import Schema
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.names import result_type
-from jacaros.ros.node import Publisher, Sample, Subscription
-from jacaros.ros.protocols.actionlib import (
-    COMMANDS,
-    GOAL_STATUS_TYPE,
-    ID_TYPE,
-    NEWS,
-    STATUS,
-    STATUS_KEPT,
-    STATUS_PERIOD,
-    STATUS_TYPE,
-    UNDER_WAY,
-    SentGoal,
-    SentGoals,
-    State,
-    part_type,
-    time_of,
-)
-from jacaros.ros.qos import QoS
-from jacaros.runtime.clock import Clock, Timer
+from jacaros.ros.node import Node, Sample
+from jacaros.ros.protocols import actionlib as protocol
+from jacaros.ros.protocols.actionlib import SentGoal, SentGoals, State, part_type
+from jacaros.runtime.clock import Timer
 
 LOOKING = 0.02
 """Seconds between two checks for a server that a caller waits for."""
@@ -40,33 +24,6 @@ begins."""
 _numbers = itertools.count(1)
 
 
-class ActionTopicsNode(Protocol):
-    """The interface of a backend for actions."""
-
-    clock: Clock
-    log: Callable[[str], None]
-    factory: Schema
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-
-    @property
-    def orphans(self) -> Orphans:
-        """Recognises goals of earlier runs."""
-
-    def publisher(self, topic: str, type_name: str, qos: QoS = ...) -> Publisher:
-        """Make a publisher."""
-
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = ...
-    ) -> Subscription:
-        """Call *callback* with every message."""
-
-    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Call *hook* when the process ends."""
-
-
 class ActionlibWire:
     """The five topics of one action, on the client's side.
 
@@ -75,23 +32,25 @@ class ActionlibWire:
         sender: the client.
     """
 
-    def __init__(self, node: ActionTopicsNode, sender: ActionClient) -> None:
+    def __init__(self, node: Node, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         name, kind = sender.name, sender.type_name
         self._complete = self._heard = self._present = self._closed = False
         self._quiet = 0
         self._timer: Timer | None = None
-        self._goal = node.publisher(f"{name}/goal", part_type(kind, "ActionGoal"), COMMANDS)
-        self._cancel = node.publisher(f"{name}/cancel", ID_TYPE, COMMANDS)
+        self._goal = node.publisher(f"{name}/goal", part_type(kind, "ActionGoal"), protocol.COMMANDS)
+        self._cancel = node.publisher(f"{name}/cancel", protocol.ID_TYPE, protocol.COMMANDS)
         empty = partial(node.factory.make, result_type(kind))
         self._goals = SentGoals(sender, empty, self._goal.publish, self._send_cancel)
-        self._status = node.subscription(f"{name}/status", STATUS_TYPE, self._take_status, STATUS)
+        self._status = node.subscription(
+            f"{name}/status", protocol.STATUS_TYPE, self._take_status, protocol.STATUS
+        )
         self._feedback = node.subscription(
-            f"{name}/feedback", part_type(kind, "ActionFeedback"), self._take_feedback, NEWS
+            f"{name}/feedback", part_type(kind, "ActionFeedback"), self._take_feedback, protocol.NEWS
         )
         self._result = node.subscription(
-            f"{name}/result", part_type(kind, "ActionResult"), self._take_result, NEWS
+            f"{name}/result", part_type(kind, "ActionResult"), self._take_result, protocol.NEWS
         )
         self._forget_hook = node.add_exit_hook(self._cancel_all)
 
@@ -161,7 +120,7 @@ class ActionlibWire:
         self._complete = complete
         self._set_present(complete and self._heard)
         if self._timer is None and (self._sender.busy or not self._present):
-            delay = STATUS_PERIOD if self._present else LOOKING
+            delay = protocol.STATUS_PERIOD if self._present else LOOKING
             self._timer = self._node.clock.call_later(delay, self._tick)
 
     def _tick(self) -> None:
@@ -192,7 +151,7 @@ class ActionlibWire:
         if self._present:  # otherwise a request to cancel would be lost
             listed = sample.message.status_list
             self._sender.goals_under_way(
-                each.goal_id.id for each in listed if State(each.status) in UNDER_WAY
+                each.goal_id.id for each in listed if State(each.status) in protocol.UNDER_WAY
             )
         if self._goals:
             told = [(each.goal_id.id, each.status, each.text) for each in sample.message.status_list]
@@ -260,9 +219,7 @@ class ActionlibServer:
         policy: how to treat goals.
     """
 
-    def __init__(
-        self, node: ActionTopicsNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
-    ) -> None:
+    def __init__(self, node: Node, name: str, type_name: str, execute: Execute, policy: ActionPolicy) -> None:
         self.name = name
         self._node = node
         self._result_type = result_type(type_name)
@@ -273,13 +230,17 @@ class ActionlibServer:
         self._cancelled_until = NO_TIME
         self._count = 0
         self._closed = False
-        self._status = node.publisher(f"{name}/status", STATUS_TYPE, STATUS)
-        self._feedback = node.publisher(f"{name}/feedback", part_type(type_name, "ActionFeedback"), NEWS)
-        self._result = node.publisher(f"{name}/result", part_type(type_name, "ActionResult"), NEWS)
-        self._goal = node.subscription(
-            f"{name}/goal", part_type(type_name, "ActionGoal"), self._take_goal, COMMANDS
+        self._status = node.publisher(f"{name}/status", protocol.STATUS_TYPE, protocol.STATUS)
+        self._feedback = node.publisher(
+            f"{name}/feedback", part_type(type_name, "ActionFeedback"), protocol.NEWS
         )
-        self._cancel = node.subscription(f"{name}/cancel", ID_TYPE, self._take_cancel, COMMANDS)
+        self._result = node.publisher(f"{name}/result", part_type(type_name, "ActionResult"), protocol.NEWS)
+        self._goal = node.subscription(
+            f"{name}/goal", part_type(type_name, "ActionGoal"), self._take_goal, protocol.COMMANDS
+        )
+        self._cancel = node.subscription(
+            f"{name}/cancel", protocol.ID_TYPE, self._take_cancel, protocol.COMMANDS
+        )
         self._timer: Timer | None = None
         self._tell_regularly()
 
@@ -317,7 +278,7 @@ class ActionlibServer:
                 self._finish(known, State.RECALLED, "cancelled before it began")
             return
         goal = self._goals[goal_id] = _Goal(goal_id, message.goal_id.stamp, State.PENDING)
-        if NO_TIME < time_of(goal.stamp) <= self._cancelled_until:
+        if NO_TIME < protocol.time_of(goal.stamp) <= self._cancelled_until:
             self._finish(goal, State.RECALLED, OUTDATED)
             return
         refusal = self._served.judge(message.goal)
@@ -337,10 +298,10 @@ class ActionlibServer:
 
     def _take_cancel(self, sample: Sample) -> None:
         """Handle a request to cancel one goal, all goals up to a time, or, with neither given, all goals."""
-        wanted, until = sample.message.id, time_of(sample.message.stamp)
+        wanted, until = sample.message.id, protocol.time_of(sample.message.stamp)
         everything = not wanted and until == NO_TIME
         for goal_id, goal in list(self._goals.items()):
-            in_time = until != NO_TIME and time_of(goal.stamp) <= until
+            in_time = until != NO_TIME and protocol.time_of(goal.stamp) <= until
             if (everything or goal_id == wanted or in_time) and self._served.cancel(goal_id):
                 goal.change(State.PREEMPTING)
         if wanted and wanted not in self._goals:
@@ -399,7 +360,7 @@ class ActionlibServer:
         for goal_id in over:
             del self._goals[goal_id]
         self._report()
-        self._timer = self._node.clock.call_later(STATUS_PERIOD, self._tell_regularly)
+        self._timer = self._node.clock.call_later(protocol.STATUS_PERIOD, self._tell_regularly)
 
     def _report(self) -> None:
         if not self._closed:
@@ -413,7 +374,7 @@ class ActionlibServer:
     def _status_of(self, goal: _Goal) -> Any:
         if goal.status is None:
             goal.status = self._node.factory.make(
-                GOAL_STATUS_TYPE,
+                protocol.GOAL_STATUS_TYPE,
                 {
                     "goal_id": {"id": goal.goal_id, "stamp": goal.stamp},
                     "status": goal.state.value,
@@ -423,4 +384,4 @@ class ActionlibServer:
         return goal.status
 
     def _later(self) -> float:
-        return self._node.clock.elapsed + STATUS_KEPT
+        return self._node.clock.elapsed + protocol.STATUS_KEPT

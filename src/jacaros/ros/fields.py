@@ -65,26 +65,6 @@ class FieldType:
         return f"{single}[<={self.length}]" if self.length else f"{single}[]"
 
 
-_ROS1 = re.compile(r"(?P<base>[\w/]+)(?P<array>\[(?P<length>\d*)\])?")
-_ROS1_BASES = {
-    "byte": "int8",
-    "char": "uint8",
-    "time": TIME,
-    "duration": DURATION,
-    "Header": "std_msgs/msg/Header",
-}
-
-
-def from_ros1(text: str) -> FieldType:
-    """Read ROS 1's notation: ``float64[36]``, ``geometry_msgs/Pose``, ``time``."""
-    match = _ROS1.fullmatch(text)
-    if match is None:
-        raise ValueError(f"not a ROS 1 field type: {text!r}")
-    base = _ROS1_BASES.get(match["base"], match["base"])
-    length = int(match["length"] or 0)
-    return FieldType(_full(base), match["array"] is not None, length, fixed=length > 0)
-
-
 _ROS2_ARRAY = re.compile(r"(?P<base>.+)\[(?P<length>\d+)\]")
 _ROS2_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*(?P<length>\d+))?>")
 _ROS2_STRING = re.compile(r"w?string(<(?P<bound>\d+)>)?")
@@ -163,6 +143,15 @@ def parse_definition(text: str, package: str) -> Definition:
             except ValueError as problem:
                 raise ValueError(f"line {number}: {problem}") from None
     return Definition(fields, constants)
+
+
+def from_ros1(text: str) -> FieldType:
+    """Read the notation of ROS 1's Python classes: ``float64[36]``, ``geometry_msgs/Pose``, ``time``."""
+    match = _LINE.fullmatch(f"{text} name")
+    if match is None:
+        raise ValueError(f"not a ROS 1 field type: {text!r}")
+    field = _field(match, "")
+    return replace(field, base={"byte": "int8", "char": "uint8"}.get(field.base, field.base))
 
 
 def _field(match: re.Match[str], package: str) -> FieldType:

@@ -5,7 +5,7 @@ declared, and "a node's parameters" are those below its name.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -162,7 +162,7 @@ class Parameters(Protocol):
         """
 
 
-class GivenParameters:
+class GivenParameters(dict[str, ParameterValue]):
     """Values of parameters from outside, and which of them are declared.
 
     As in other nodes of ROS 2, a value takes effect when its parameter is declared; an undeclared one does not exist.
@@ -172,25 +172,17 @@ class GivenParameters:
     """
 
     def __init__(self, values: Mapping[str, ParameterValue]) -> None:
-        self._values = dict(values)
+        super().__init__(values)
         self._taken: set[str] = set()
-
-    def value(self, name: str) -> ParameterValue | None:
-        """Return the value for a parameter; None if none exists."""
-        return self._values.get(name)
 
     def take(self, name: str) -> ParameterValue | None:
         """Return the value for a parameter that is being declared; None if none exists."""
         self._taken.add(name)
-        return self._values.get(name)
-
-    def items(self) -> Iterator[tuple[str, ParameterValue]]:
-        """Return all names and values."""
-        yield from self._values.items()
+        return self.get(name)
 
     def untaken(self) -> list[str]:
         """Return the names of undeclared parameters, sorted."""
-        return sorted(set(self._values) - self._taken)
+        return sorted(set(self) - self._taken)
 
     def known(self) -> list[str]:
         """Return the names of all declared parameters, sorted."""

@@ -14,9 +14,8 @@ from typing import Any
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import Definition, FieldType, parse_definition
 from jacaros.ros.interfaces import BUILT_IN, definition, split_action, split_service
-from jacaros.ros.message import DEFAULTS, Schema
+from jacaros.ros.message import DEFAULTS, Schema, zeros
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.ros.values import zeros
 
 _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
 

@@ -89,7 +89,7 @@ class OwnParameter:
         return None
 
     def _cure(self) -> str:
-        given = self._host.ros.given_parameters.value(self._name)
+        given = self._host.ros.given_parameters.get(self._name)
         if given is None or fault_of(given, self._declaration) is None:
             return "give it another name: parameter: NAME"
         fitting = quote(f"{self._name}:={json.dumps(self._declaration.default)}")

@@ -23,9 +23,9 @@ from typing import Any
 
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, TIME, FieldType
+from jacaros.ros.message import array_of_numbers
 from jacaros.ros.names import message_type
 from jacaros.ros.typestore import DefinitionSchema, is_stored
-from jacaros.ros.values import array_of_numbers
 
 _OCTETS = ("uint8", "char")
 _ONE_OCTET = (*_OCTETS, "byte", "int8", "bool")

@@ -155,7 +155,7 @@ class Ros2Node(Backend):
                 # Values for rclpy's own parameters; ours get their values when they are declared.
                 parameter_overrides=[
                     parameter(name, value)
-                    for name, value in (self._simulated | dict(self.given_parameters.items())).items()
+                    for name, value in (self._simulated | self.given_parameters).items()
                 ],
             )
         except ParameterException as problem:  # a value for one of rclpy's own parameters
