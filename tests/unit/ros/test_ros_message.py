@@ -162,7 +162,7 @@ def test_definitions_in_folders_are_found(tmp_path: Path) -> None:
     assert (order.where.x, order.items.tolist()) == (2.0, [1, 2])
     with pytest.raises(MessageMismatch, match="4 elements"):
         schema.make("shop_msgs/msg/Order", {"items": [1, 2, 3, 4]})
-    schema.service("shop_msgs/srv/Buy")
+    schema.load("shop_msgs/srv/Buy")
     assert list(schema.fields("shop_msgs/srv/Buy_Request")) == ["what"]
     assert list(schema.fields("shop_msgs/srv/Buy_Response")) == ["price"]
 

@@ -155,7 +155,7 @@ def test_unknown_and_faulty_actions_are_reported(tmp_path: Path, monkeypatch: py
     with pytest.raises(UnknownInterface, match=r"no YActionAction\); is it x/action/Y\?; install"):
         schema.action_class("x/action/YAction", "Goal")
     with pytest.raises(
-        UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected an action def"
+        UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected goal, result"
     ):
         schema.new("lab_msgs/action/Cut_Goal")
     with pytest.raises(UnknownInterface, match="lab_msgs/msg/int33"):

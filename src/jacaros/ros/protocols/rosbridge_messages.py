@@ -320,9 +320,9 @@ class BridgeSchema(DefinitionSchema):
         elif not is_stored(type_name):
             self._register(type_name, _ACTIONLIB[part].format(action=action))
 
-    def _definition(self, type_name: str, what: str, ending: str) -> str:
+    def _definition(self, type_name: str) -> str:
         try:
-            return super()._definition(type_name, what, ending)
+            return super()._definition(type_name)
         except UnknownInterface as unknown:
             # The second: parts of types that the server has described.
             known = _OWN.get(type_name) or self._reported.get(type_name)
@@ -331,7 +331,7 @@ class BridgeSchema(DefinitionSchema):
             reason = self._describe()
             if reason is None:
                 try:
-                    text = self._fetch(type_name, ending)
+                    text = self._fetch(type_name)
                     if text is not None:
                         return text
                     reason = "the rosbridge server does not know it either"
@@ -339,10 +339,10 @@ class BridgeSchema(DefinitionSchema):
                     reason = "the rosbridge server was asked for it, but has not answered yet"
             raise UnknownInterface(f"{unknown} ({reason})") from None
 
-    def _fetch(self, type_name: str, ending: str) -> str | None:
+    def _fetch(self, type_name: str) -> str | None:
         """Return the definition of a type in the form of a file, and store those of its parts."""
         parts = []
-        for service in _DETAILS[ending]:
+        for service in _DETAILS[type_name.split("/")[1]]:
             answer = self._ask(f"/rosapi/{service}", {"type": type_name})
             typedefs = None if answer is None else answer.get("typedefs")
             if not typedefs:

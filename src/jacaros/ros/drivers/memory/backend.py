@@ -74,7 +74,7 @@ class MemoryClient(ServiceClient[MemoryNode]):
     """Client of `MemoryBackend`."""
 
     def __init__(self, node: MemoryNode, name: str, type_name: str) -> None:
-        node.schema.service(type_name)
+        node.schema.load(type_name)
         super().__init__(node, name, type_name)
 
     @property
@@ -235,7 +235,7 @@ class MemoryGoalWire:
 
 
 def _action_client(node: MemoryNode, name: str, type_name: str) -> ActionClient:
-    node.schema.action(type_name)
+    node.schema.load(type_name)
     client = ActionClient(node.clock, node.log, node.factory, name, type_name, node.leaving_goals)
     client.wire = MemoryGoalWire(node, client)
     return node.keep(client)

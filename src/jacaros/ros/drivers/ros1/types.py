@@ -14,7 +14,7 @@ from typing import Any
 from jacaros.files.texts import kept_files
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
-from jacaros.ros.interfaces import definition, split_action
+from jacaros.ros.interfaces import definition, how_to_define, split
 from jacaros.ros.message import Schema
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
@@ -79,20 +79,18 @@ class GenpySchema(Schema):
         if type_name in (TIME, DURATION):
             return getattr(import_module("genpy"), type_name.rsplit("/", 1)[1])
         package, kind, name = type_name.split("/")
+        whole, _, part = type_name.rpartition("_")
         if kind == "srv":
-            service, _, part = type_name.rpartition("_")
-            return getattr(self.service_class(service), f"_{part.lower()}_class")
+            return getattr(self.service_class(whole), f"_{part.lower()}_class")
         if kind == "action":
-            action, _, part = type_name.rpartition("_")
-            return self.action_class(action, part)
+            return self.action_class(whole, part)
         found = _imported(package, kind, name) or self._generated_message(package, name)
         if found is None:
             help = f"install {package}"
             if package in _ON_DEBIAN:
                 help += f" (on Debian: apt-get install python3-{package.replace('_', '-')})"
             raise UnknownInterface(
-                f"message type {type_name} is not installed for ROS 1; {help}, or put its definition into a folder and "
-                f"name that folder in interface_paths (in a mapping file: interfaces): {type_name}.msg"
+                f"message type {type_name} is not installed for ROS 1; {help}, or {how_to_define(type_name)}"
             )
         return found
 
@@ -117,9 +115,8 @@ class GenpySchema(Schema):
         text = definition(type_name, self._roots)
         if text is None:
             raise UnknownInterface(
-                f"service type {type_name} is not installed for ROS 1; install its package, or put its "
-                "definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): "
-                f"{type_name}.srv"
+                f"service type {type_name} is not installed for ROS 1; install its package, or "
+                f"{how_to_define(type_name)}"
             )
         return self._generate(generated_service, f"{ros1_package}/{name}", text)
 
@@ -133,16 +130,17 @@ class GenpySchema(Schema):
             help = "" if guess == name else f"; is it {package}/action/{guess}?"
             raise UnknownInterface(
                 f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){help}; "
-                "install its package, or put its definition into a folder and name that folder in "
-                f"interface_paths (in a mapping file: interfaces): {type_name}.action"
+                f"install its package, or {how_to_define(type_name)}"
             )
         return self.message_class(f"{package}/msg/{name}{part}")
 
     def _generated_part(self, package: str, name: str, part: str, text: str) -> Any:
+        action = f"{package}/action/{name}"
         try:
-            texts = action_texts(name, text)
+            texts = {full.removeprefix(f"{action}_"): each for full, each in split(action, text).items()}
         except ValueError as problem:
-            raise UnknownInterface(f"invalid definition of {package}/action/{name}: {problem}") from None
+            raise UnknownInterface(f"invalid definition of {action}: {problem}") from None
+        texts |= {wrapper: wrapping.format(name=name) for wrapper, wrapping in ACTION_PARTS.items()}
         return self._generate(generated_message, f"{package}/{name}{part}", texts[part])
 
     def _generate(self, generate: Callable[..., Any], full_name: str, text: str) -> Any:
@@ -210,22 +208,6 @@ def generated_service(full_name: str, text: str, find: FindClass) -> Any:
         return _joined(import_module("genpy.generator").srv_generator(context, service, {}))
 
     return getattr(_module(full_name, _digest(text, classes), source, classes), full_name.split("/")[1])
-
-
-def action_texts(name: str, text: str) -> dict[str, str]:
-    """Split an action's definition into those of its seven messages, by the suffix of their names.
-
-    Args:
-        name: name of the action without its package.
-        text: the three parts of the definition.
-    """
-    goal, result, feedback = split_action(text)
-    return {
-        "Goal": goal,
-        "Result": result,
-        "Feedback": feedback,
-        **{part: wrapping.format(name=name) for part, wrapping in ACTION_PARTS.items()},
-    }
 
 
 _FIELD = re.compile(r"^(?P<base>[\w/]+)(?P<bound><=\d+)?(?P<array>\[[^\]]*\])?\s+(?P<name>\w+)(?P<rest>.*)$")

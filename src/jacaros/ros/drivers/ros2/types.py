@@ -11,12 +11,10 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.ros.errors import ParameterRefused, UnknownInterface
 from jacaros.ros.fields import FieldType, from_ros2
+from jacaros.ros.interfaces import PARTS
 from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
 from jacaros.ros.message import Schema
 from jacaros.ros.parameter import checked_value
-
-_PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""The messages of services and actions."""
 
 
 class RosidlSchema(Schema):
@@ -67,7 +65,7 @@ def _fields(type_name: str) -> Mapping[str, FieldType]:
 def _message_class(type_name: str) -> Any:
     package, kind, name = type_name.split("/")
     whole, _, part = name.rpartition("_")
-    if whole and part in _PARTS.get(kind, ()):
+    if whole and part in PARTS.get(kind, ()):
         return getattr(_message_class(f"{package}/{kind}/{whole}"), part)
     found = _imported(package, kind, name)
     if found is None and not _is_installed(package) and origin(kind, name) == package:

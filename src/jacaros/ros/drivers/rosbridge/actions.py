@@ -330,7 +330,7 @@ class BridgeActionClient(ActionClient):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        node.schema.action(type_name)
+        node.schema.load(type_name)
         super().__init__(
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
@@ -370,7 +370,7 @@ class BridgeActionServer:
     def __init__(
         self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> None:
-        node.schema.action(type_name)
+        node.schema.load(type_name)
         node.keep(self)
         self.name = name
         self._node = node

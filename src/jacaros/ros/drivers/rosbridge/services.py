@@ -34,7 +34,7 @@ class BridgeClient(ServiceClient[BridgeNode]):
     """Client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        node.schema.service(type_name)
+        node.schema.load(type_name)
         super().__init__(node, name, type_name)
         self._offered = Polled(
             node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
@@ -78,7 +78,7 @@ class BridgeService(ServiceServer[BridgeNode]):
     """Service of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
-        node.schema.service(type_name)
+        node.schema.load(type_name)
         super().__init__(node, name, type_name, handler)
         node.handlers["call_service", name] = self._called
         if node.attached:
