@@ -7,7 +7,7 @@ on the client library). The differences are handled here: stamps, defaults and c
 
 import dataclasses
 from array import array
-from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +29,8 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "nav2_msgs/action/UndockRobot_Goal": {"max_undocking_time": 30.0},
     "nav2_msgs/action/UndockRobot_Result": {"success": True},
 }
-"""Default values of ROS 2's definitions; ROS 1 and the memory graph have none, so they are set there, too, to avoid
-zero rotations."""
+"""Default values of ROS 2's definitions. Families of classes without them (of ROS 1, and our own) set these, to avoid zero
+rotations."""
 
 
 class Schema:
@@ -43,7 +43,6 @@ class Schema:
     def __init__(self, roots: Sequence[Path] = ()) -> None:
         self._roots = tuple(roots)
         self._fields: dict[str, Mapping[str, FieldType]] = {}
-        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
         self._classes: dict[str, Any] = {}
 
     def look_in(self, folder: Path) -> None:
@@ -117,8 +116,6 @@ class Schema:
 
     def _make(self, type_name: str, values: Mapping[str, Any], path: str) -> Any:
         message = self.new(type_name)
-        for set_default in self._default_setters(type_name):
-            set_default(message)
         fields = self.fields(type_name)
         for name, value in values.items():
             field = fields.get(name)
@@ -179,29 +176,6 @@ class Schema:
         else:
             raise TypeError(f"{written(value)} is given; write seconds or a time")
         return made
-
-    def _default_setters(self, type_name: str) -> tuple[Callable[[Any], None], ...]:
-        setters = self._setters.get(type_name)
-        if setters is None:
-            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
-        return setters
-
-    def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterable[Callable[[Any], None]]:
-        for name, value in DEFAULTS.get(type_name, {}).items():
-            if getattr(self.new(type_name), name) != value:
-                yield _setter(path, name, value)
-        for name, field in self.fields(type_name).items():
-            if field.is_message and not field.array and field.base not in TIMES:
-                yield from self._find_defaults(field.base, (*path, name))
-
-
-def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], None]:
-    def set_default(message: Any) -> None:
-        for step in path:
-            message = getattr(message, step)
-        setattr(message, name, value)
-
-    return set_default
 
 
 def _unknown_field(owner: str, where: str, name: str, fields: Mapping[str, FieldType]) -> MessageMismatch:

@@ -23,15 +23,7 @@ import rospy  # type: ignore[import-not-found]
 import rospy.impl.registration as registration  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.ros1.connections import (
-    MessageHandlers,
-    connect_streams,
-    deliver_before_ready,
-    log_to_standard_error,
-    print_to_standard_error,
-    report_parameter_changes,
-    silence_closed_nodes,
-)
+from jacaros.ros.drivers.ros1.connections import MessageHandlers, log_to_standard_error, mend_rospy
 from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import CallFailed, MessageMismatch, RosError, ServiceError, ServiceUnavailable
 from jacaros.ros.handoff import post
@@ -88,13 +80,9 @@ class Ros1Node(Backend):
             raise RosError("ROS 1 allows one node per process, and this process already had one")
         Ros1Node._started = True
         stay_local(self.master_uri)
-        print_to_standard_error()
-        deliver_before_ready()
-        silence_closed_nodes()
         looked = self.join()
-        report_parameter_changes(partial(post, self.loop, self.parameter_changed))
         self.handlers.loop = self.loop
-        connect_streams(self.handlers)
+        mend_rospy(self.handlers, partial(post, self.loop, self.parameter_changed))
         self.link.start()
         await looked
 

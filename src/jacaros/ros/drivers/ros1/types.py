@@ -4,7 +4,7 @@ import hashlib
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -15,7 +15,7 @@ from jacaros.files.texts import kept_files
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
 from jacaros.ros.interfaces import definition, how_to_define, split
-from jacaros.ros.message import Schema
+from jacaros.ros.message import DEFAULTS, Schema
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 """Types that are in another package on ROS 1 than on ROS 2."""
@@ -42,6 +42,20 @@ class GenpySchema(Schema):
     Args:
         roots: folders with further definitions; see `jacaros.ros.interfaces`.
     """
+
+    def __init__(self, roots: Sequence[Path] = ()) -> None:
+        super().__init__(roots)
+        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with the defaults of ROS 2, which genpy does not know. Raises `UnknownInterface`."""
+        message = super().new(type_name)
+        setters = self._setters.get(type_name)
+        if setters is None:
+            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
+        for set_default in setters:
+            set_default(message)
+        return message
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert an array to ``bytes`` for octets, otherwise to a list, which genpy serialises."""
@@ -106,6 +120,14 @@ class GenpySchema(Schema):
                 return self._generated_part(package, name.removesuffix(suffix), suffix, action_text)
         return None
 
+    def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterator[Callable[[Any], None]]:
+        for name, value in DEFAULTS.get(type_name, {}).items():
+            yield _setter(path, name, value)
+        if type_name not in _TIME_FIELDS:
+            for name, field in self.fields(type_name).items():
+                if field.is_message and not field.array:
+                    yield from self._find_defaults(field.base, (*path, name))
+
     def _find_service(self, type_name: str) -> Any:
         package, kind, name = type_name.split("/")
         ros1_package = ROS1_PACKAGES.get(type_name, package)
@@ -152,6 +174,15 @@ class GenpySchema(Schema):
     def _named_as_on_ros1(self, full_name: str) -> Any:
         package, name = full_name.split("/")
         return self.message_class(f"{package}/msg/{name}")
+
+
+def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], None]:
+    def set_default(message: Any) -> None:
+        for step in path:
+            message = getattr(message, step)
+        setattr(message, name, value)
+
+    return set_default
 
 
 def _imported(package: str, kind: str, name: str) -> Any:
