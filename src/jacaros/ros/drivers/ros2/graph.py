@@ -45,16 +45,6 @@ def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
     }
 
 
-def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
-    """Return the types with which our own node uses a topic."""
-    names = node.names
-    told = [
-        *node.rcl.get_publisher_names_and_types_by_node(names.node_name, names.namespace or "/"),
-        *node.rcl.get_subscriber_names_and_types_by_node(names.node_name, names.namespace or "/"),
-    ]
-    return [types for name, types in told if name == topic]
-
-
 _OFFERED = {"service": ("", ""), "action": (SEND_GOAL, "_SendGoal")}
 """What follows the name and the type in the service that shows that something is offered."""
 
