@@ -22,7 +22,6 @@ from jacaros.ros.names import action_type, message_type, request_type, response_
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_events import ParameterEvents
 from jacaros.ros.parameter_services import NodeParameters
-from jacaros.ros.protocols.rosbridge_wire import Polled
 from jacaros.ros.serving import Responder
 from jacaros.ros.waiting import settle, within
 
@@ -41,9 +40,7 @@ class BridgeClient(AttemptingClient):
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
         node.schema.service(type_name)
         super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
-        self._offered = Polled(
-            node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
-        )
+        self._offered = node.polled("service_type", lambda seen: bool(seen["type"]), False, service=name)
 
     @property
     def ready(self) -> bool:
