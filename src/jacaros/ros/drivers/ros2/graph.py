@@ -7,22 +7,11 @@ import rclpy.qos  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.parameter_services import NODE_SERVICES
 from jacaros.ros.protocols.ros2_actions import ACTION, FEEDBACK, SEND_GOAL
 from jacaros.ros.qos import QoS
 
 INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events"})
-NODE_SERVICES = frozenset(
-    {
-        "describe_parameters",
-        "get_parameter_types",
-        "get_parameters",
-        "get_type_description",
-        "list_parameters",
-        "set_parameters",
-        "set_parameters_atomically",
-    }
-)
-"""Services that every node offers, below its name."""
 
 
 def absolute(namespace: str, name: str) -> str:

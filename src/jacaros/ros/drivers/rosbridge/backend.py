@@ -36,22 +36,13 @@ from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.names import action_type, message_type, service_type
 from jacaros.ros.node import NodeSettings, Parts
 from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import read_value
+from jacaros.ros.parameter_services import NODE_SERVICES, read_value
 from jacaros.ros.protocols.rosbridge_wire import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
 
 
 _ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
-_PARAMETER_SERVICES = (
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "get_type_description",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
-)
 _LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
 AT_ONCE = 8
 """Number of concurrent requests; older servers answer them in turn anyway."""
@@ -136,7 +127,7 @@ def _is_internal(name: str) -> bool:
     last = name.rsplit("/", 1)[-1]
     return (
         "/_action/" in name
-        or last in _PARAMETER_SERVICES
+        or last in NODE_SERVICES
         or last in ("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels")
         or name.startswith("/rosapi/")  # the services that we use
     )
