@@ -252,15 +252,14 @@ def _may_drive(ros: str) -> bool:
 async def _check_base(joined: "Joined", mapping: "MappingFile | None", namespace: str) -> bool:
     """Drive, print what the base did, and return whether it stops by itself."""
     from jacaros.cli.graph.base_timeout import Drive, find_base, verdict
-    from jacaros.cli.graph.verifying import topics_of
+    from jacaros.cli.graph.verifying import nodes_of, topics_of
 
     parts = mapping.artifacts.values() if mapping is not None else ()
     named = {name for part in parts for name in topics_of(joined, part)}
     command, odometry = find_base(joined, named, namespace)
     click.echo(f"driving with `{command.name}`, watching `{odometry.name}`")
     if command.publishers:
-        others = sorted({each.node or "an unknown node" for each in command.publishers})
-        click.echo(f"warning: {', '.join(others)} may command `{command.name}`, too", err=True)
+        click.echo(f"warning: {nodes_of(command.publishers)} may command `{command.name}`, too", err=True)
     ceased = await Drive(joined, command, odometry).run()
     click.echo(verdict(ceased))
     return ceased.seconds is not None

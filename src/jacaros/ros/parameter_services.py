@@ -70,6 +70,19 @@ class ParameterEvents(ParameterListeners):
                 callback(known)
 
 
+NODE_SERVICES = frozenset(
+    {
+        "describe_parameters",
+        "get_parameter_types",
+        "get_parameters",
+        "get_type_description",
+        "list_parameters",
+        "set_parameters",
+        "set_parameters_atomically",
+    }
+)
+"""Services that every node of ROS 2 offers, below its name."""
+
 _KINDS = (bool, int, float, str, bytes)
 """The types of plain values, in the order of ``ParameterType``; bool is a subclass of int, so it comes first."""
 _FIELDS = (

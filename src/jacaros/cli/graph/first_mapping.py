@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 from jacaros.cli.graph.joining import Joined, NothingThere, root
 from jacaros.cli.graph.listing import Kind, Thing
@@ -73,7 +74,7 @@ def mapping_for(
     Args:
         joined: the graph.
         things: topics, services and actions, see `find_mappable`.
-        frames: result of `listening.frames`; empty for no frames.
+        frames: result of `joining.frames`; empty for no frames.
         file: name of the file, for the comments.
         options: options of the commands in the comments, such as ``--ros ros2``.
         left: topics, services and actions that were left out, for a comment.
@@ -115,26 +116,23 @@ def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
 def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
     """Return an entry for the pose of the robot in the map, from tf; without a map, odometry gives the same pose."""
     prefix = f"{artifact.namespace}/" if artifact.namespace else ""
-    for body in _BODIES:
-        for inside in dict.fromkeys((prefix, "")):
-            source = f"{inside}{body}"
-            targets = dict.fromkeys(("map", f"{inside}map"))
-            target = next((each for each in targets if _joins(frames, each, source)), None)
-            if target is None:
-                continue
-            name = "pose" if all(entry.name != "pose" for entry in artifact.entries) else "pose_in_tf"
-            line = (
-                f"target: {target.removeprefix(inside)}",
-                f"source: {body}",
-                "fields: [{path: x, round: 2}, {path: y, round: 2}, {path: yaw, unit: degrees, round: 1}]",
-                "rate: 5",
-                "dead_band: [0.02, 0.02, 1]",
-            )
-            own = ('tf_prefix: ""',) if prefix and not inside else ()
-            return [
-                *(Entry("", "tf_prefix", "frames of this robot have no prefix", own) for _ in own),
-                Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", line),
-            ]
+    for body, inside in product(_BODIES, dict.fromkeys((prefix, ""))):
+        targets = dict.fromkeys(("map", f"{inside}map"))
+        target = next((each for each in targets if _joins(frames, each, f"{inside}{body}")), None)
+        if target is None:
+            continue
+        name = "pose" if all(entry.name != "pose" for entry in artifact.entries) else "pose_in_tf"
+        lines = (
+            f"target: {target.removeprefix(inside)}",
+            f"source: {body}",
+            "fields: [{path: x, round: 2}, {path: y, round: 2}, {path: yaw, unit: degrees, round: 1}]",
+            "rate: 5",
+            "dead_band: [0.02, 0.02, 1]",
+        )
+        pose = Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", lines)
+        if not prefix or inside:
+            return [pose]
+        return [Entry("", "tf_prefix", "frames of this robot have no prefix", ('tf_prefix: ""',)), pose]
     return []
 
 
@@ -146,18 +144,14 @@ def _file(artifacts: list[_Artifact], file: str, options: str, interfaces: Seque
     yield from _head(artifacts, file, options)
     if interfaces:
         yield f"interfaces: {json.dumps(list(interfaces))}"
-    if len(artifacts) == 1:
-        artifact = artifacts[0]
-        yield from _namespace(artifact)
-        yield from _connected(artifact)
-        yield from _body(artifact)
-        return
-    yield "artifacts:"
+    several = len(artifacts) > 1
+    if several:
+        yield "artifacts:"
     for artifact in artifacts:
-        yield f"  {artifact.name}:"
-        for line in (*_namespace(artifact), *_connected(artifact), *_body(artifact)):
-            yield f"    {line}" if line else ""
-        yield ""
+        lines = (*_namespace(artifact), *_connected(artifact), *_body(artifact))
+        if several:
+            lines = (f"  {artifact.name}:", *(f"    {line}".rstrip() for line in lines), "")
+        yield from lines
 
 
 def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:

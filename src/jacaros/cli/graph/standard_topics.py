@@ -8,18 +8,18 @@ from jacaros.ros.guarded import VELOCITIES
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
 """A namespace with one of these topics, or a subscription to ``cmd_vel``, belongs to a robot."""
-_SENSORS = (
-    "nav_msgs/msg/Odometry",
-    "sensor_msgs/msg/LaserScan",
-    "sensor_msgs/msg/BatteryState",
-    "sensor_msgs/msg/Range",
-    "sensor_msgs/msg/Imu",
-    "irobot_create_msgs/msg/DockStatus",
-)
-_BY_NAME = {
-    "map": ("nav_msgs/msg/OccupancyGrid",),
-    "amcl_pose": ("geometry_msgs/msg/PoseWithCovarianceStamped",),
+_USUAL = {
+    **dict.fromkeys(VELOCITIES, "cmd_vel"),
+    "nav_msgs/msg/OccupancyGrid": "map",
+    "geometry_msgs/msg/PoseWithCovarianceStamped": "amcl_pose",
+    "nav_msgs/msg/Odometry": "",
+    "sensor_msgs/msg/LaserScan": "",
+    "sensor_msgs/msg/BatteryState": "",
+    "sensor_msgs/msg/Range": "",
+    "sensor_msgs/msg/Imu": "",
+    "irobot_create_msgs/msg/DockStatus": "",
 }
+"""Types of usual topics, and the last part of the topic's name; empty for any."""
 _ROLES = (
     (
         "irobot_create_msgs/msg/HazardDetectionVector",
@@ -165,16 +165,13 @@ def _is_there(thing: Thing, contents: GraphContents) -> bool:
 
 
 def _is_usual(thing: Thing, contents: GraphContents) -> bool:
-    last = thing.name.rpartition("/")[2]
-    match thing.kind:
-        case Kind.TOPIC:
-            if thing.type_name in VELOCITIES:
-                return last == "cmd_vel" and bool(contents.topics[thing.name].subscriptions)
-            wanted = thing.type_name in _SENSORS or thing.type_name in _BY_NAME.get(last, ())
-            return wanted and _is_there(thing, contents)
-        case Kind.SERVICE:
-            return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
-    return False
+    if thing.kind is Kind.SERVICE:
+        return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
+    wanted = _USUAL.get(thing.type_name)
+    if thing.kind is not Kind.TOPIC or wanted not in ("", thing.name.rpartition("/")[2]):
+        return False
+    info = contents.topics[thing.name]
+    return bool(info.subscriptions if thing.type_name in VELOCITIES else info.publishers)
 
 
 def robots(contents: GraphContents) -> list[str]:
@@ -186,9 +183,9 @@ def robots(contents: GraphContents) -> list[str]:
     found: dict[str, set[str]] = {}
     for name, info in contents.topics.items():
         space, _, last = name.strip("/").rpartition("/")
-        kinds = set(info.types) & set(_BASE) | (
-            {last} if last == "cmd_vel" and set(info.types) & set(VELOCITIES) else set()
-        )
+        kinds = set(info.types).intersection(_BASE)
+        if last == "cmd_vel" and not set(VELOCITIES).isdisjoint(info.types):
+            kinds.add(last)
         if kinds:
             found.setdefault(space, set()).update(kinds)
     return sorted(space for space, kinds in found.items() if space and (len(kinds) > 1 or "" not in found))

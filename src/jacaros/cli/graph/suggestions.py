@@ -236,22 +236,14 @@ def _code(types: Interfaces, result: str) -> list[str]:
 
 
 def _feedback(types: Interfaces, name: str, type_name: str) -> list[str]:
-    values = {value.path: value for value in values_of(types, feedback_type(type_name))}
-    if "distance_remaining" in values:
-        return [
-            "feedback:",
-            "  # distance_left(DistanceRemaining): metres",
-            "  distance_left: {fields: [{path: distance_remaining, round: 2}], rate: 2, dead_band: 0.1}",
-        ]
-    shown = list(values.values())[:3]
+    values = values_of(types, feedback_type(type_name))
+    way = [value for value in values if value.path == "distance_remaining"]
+    shown = way or values[:3]
     if not shown:
         return []
+    event, more = ("distance_left", ", dead_band: 0.1") if way else (f"{name}_feedback", "")
     items = ", ".join(value.as_field for value in shown)
-    return [
-        "feedback:",
-        f"  # {_call(f'{name}_feedback', shown)}",
-        f"  {name}_feedback: {{fields: [{items}], rate: 2}}",
-    ]
+    return ["feedback:", f"  # {_call(event, shown)}", f"  {event}: {{fields: [{items}], rate: 2{more}}}"]
 
 
 _TOLD_ANYWAY = (

@@ -8,7 +8,6 @@ from typing import Any
 from jacaros.artifacts.mapping.interfaces import Interfaces, chosen, constants, constants_by_field
 from jacaros.artifacts.mapping.message_units import unit_of, words_of
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
-from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
 HEADER = "std_msgs/msg/Header"
 _LAYOUT = "std_msgs/msg/MultiArrayLayout"
@@ -269,18 +268,13 @@ def is_time(kind: FieldType) -> bool:
     return kind.base in (TIME, DURATION)
 
 
+_PARTS = {"srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+
+
 def parts(type_name: str) -> dict[str, str]:
     """Return the message types of an interface: the message, or request and response, or goal, result and feedback."""
-    kind = type_name.split("/")[1]
-    if kind == "srv":
-        return {"request": request_type(type_name), "response": response_type(type_name)}
-    if kind == "action":
-        return {
-            "goal": goal_type(type_name),
-            "result": result_type(type_name),
-            "feedback": feedback_type(type_name),
-        }
-    return {"message": type_name}
+    names = _PARTS.get(type_name.split("/")[1], ())
+    return {name: f"{type_name}_{name.capitalize()}" for name in names} or {"message": type_name}
 
 
 def value_at(message: Any, path: str) -> Any:

@@ -106,7 +106,7 @@ def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
         info = joined.contents.topics.get(names.resolve(operation.target.text))
         if info is not None and info.publishers and any(each in VELOCITIES for each in info.types):
             yield operation.target.place.problem(
-                f"{_nodes(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
+                f"{nodes_of(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
                 "give every source a topic of its own, and let twist_mux choose between them",
             )
 
@@ -121,7 +121,7 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
         yield _absent(names, written, f"no node publishes `{name}`", near)
         return
     if not info.publishers:
-        who = _nodes(info.subscriptions)
+        who = nodes_of(info.subscriptions)
         yield written.place.problem(
             f"no node publishes `{name}`; it has only subscriptions, by {who}",
             "start the node that publishes it, or replace the property by an operation with `publish`",
@@ -273,5 +273,6 @@ def _first(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
 
 
-def _nodes(endpoints: Iterable[Endpoint]) -> str:
+def nodes_of(endpoints: Iterable[Endpoint]) -> str:
+    """Return the names of the nodes of some endpoints."""
     return ", ".join(sorted({each.node or "an unknown node" for each in endpoints}))

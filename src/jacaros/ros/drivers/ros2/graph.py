@@ -7,22 +7,11 @@ import rclpy.qos  # type: ignore[import-not-found]
 
 from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.ros2.node import Ros2Node
+from jacaros.ros.parameter_services import NODE_SERVICES
 from jacaros.ros.protocols.ros2_actions import ACTION, FEEDBACK, SEND_GOAL
 from jacaros.ros.qos import QoS
 
 INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events"})
-NODE_SERVICES = frozenset(
-    {
-        "describe_parameters",
-        "get_parameter_types",
-        "get_parameters",
-        "get_type_description",
-        "list_parameters",
-        "set_parameters",
-        "set_parameters_atomically",
-    }
-)
-"""Services that every node offers, below its name."""
 
 
 def absolute(namespace: str, name: str) -> str:
@@ -43,16 +32,6 @@ def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
     return {
         info.topic_type: endpoint(info).node or "an unknown node" for info in told if info.topic_type != ours
     }
-
-
-def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
-    """Return the types with which our own node uses a topic."""
-    names = node.names
-    told = [
-        *node.rcl.get_publisher_names_and_types_by_node(names.node_name, names.namespace or "/"),
-        *node.rcl.get_subscriber_names_and_types_by_node(names.node_name, names.namespace or "/"),
-    ]
-    return [types for name, types in told if name == topic]
 
 
 _OFFERED = {"service": ("", ""), "action": (SEND_GOAL, "_SendGoal")}

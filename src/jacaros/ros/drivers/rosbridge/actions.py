@@ -21,7 +21,7 @@ from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
 from jacaros.ros.node import Sample, Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
-from jacaros.ros.protocols.rosbridge_wire import LOOK_AGAIN, Polled
+from jacaros.ros.protocols.rosbridge_wire import LOOK_AGAIN
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer
 
@@ -56,12 +56,8 @@ class Ros2Goals:
         self._goals: dict[str, _Sent] = {}
         self._known: set[str] = set()
         self._present = False
-        self._polled = Polled(
-            node.requests,
-            "/rosapi/action_servers",
-            {},
-            lambda seen: sender.name in seen["action_servers"],
-            False,
+        self._polled = node.polled(
+            "action_servers", lambda seen: sender.name in seen["action_servers"], False
         )
         self._timer: Timer | None = None
         self._status: BridgeSubscription | None = None

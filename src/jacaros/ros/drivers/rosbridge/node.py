@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.rosbridge.link import Link
@@ -19,9 +19,11 @@ from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
 from jacaros.ros.node import NodeSettings, TopicMultiplexer
 from jacaros.ros.protocols.rosbridge_messages import BridgeSchema, Translator, written_on_ros1
-from jacaros.ros.protocols.rosbridge_wire import PATIENCE, Requests
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE, Polled, Requests
 from jacaros.ros.waiting import settle, within
 from jacaros.runtime.clock import Timer
+
+T = TypeVar("T")
 
 FIRST_LOOK = 5.0
 """Seconds that starting waits for the first attempt to connect; a missing server refuses immediately."""
@@ -170,6 +172,12 @@ class BridgeNode(Backend):
             self._say(
                 f"topic {topic}: messages are lost: the rosbridge server at {self.url} is away or too slow"
             )
+
+    def polled(
+        self, service: str, read: Callable[[dict[str, Any]], T], unknown: T, /, **arguments: str
+    ) -> Polled[T]:
+        """Return a value that a service of rosapi reports; see `Polled`."""
+        return Polled(self.requests, f"/rosapi/{service}", arguments, read, unknown)
 
     async def rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None = None) -> Any:
         """Call a service of rosapi and return the fields of its response.

@@ -1,12 +1,10 @@
-"""Services through the bridge, as client and server, and rosapi's services for the graph and for parameters."""
+"""Services through the bridge, as client and server, and parameters."""
 
-import asyncio
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.errors import (
     CallFailed,
@@ -16,10 +14,9 @@ from jacaros.ros.errors import (
     ParameterUnknown,
     ServiceError,
 )
-from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
+from jacaros.ros.names import request_type, response_type
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
 from jacaros.ros.parameter_services import NodeParameters, ParameterEvents
-from jacaros.ros.protocols.rosbridge_wire import Polled
 from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
@@ -36,9 +33,7 @@ class BridgeClient(ServiceClient[BridgeNode]):
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
         node.schema.load(type_name)
         super().__init__(node, name, type_name)
-        self._offered = Polled(
-            node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
-        )
+        self._offered = node.polled("service_type", lambda seen: bool(seen["type"]), False, service=name)
 
     @property
     def ready(self) -> bool:
@@ -110,113 +105,6 @@ class BridgeService(ServiceServer[BridgeNode]):
             # answer.
 
         self.answer(request, done)
-
-
-_ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
-_PARAMETER_SERVICES = (
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "get_type_description",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
-)
-_LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
-AT_ONCE = 8
-"""Number of concurrent requests; older servers answer them in turn anyway."""
-
-
-async def look(backend: BridgeNode, timeout: float) -> GraphContents:
-    """Return the contents of the graph according to rosapi. Raises `ServiceError`."""
-    try:
-        async with asyncio.timeout(timeout):
-            return await _Look(backend).contents()
-    except TimeoutError:
-        raise CallFailed(f"rosapi did not return the contents of the graph within {timeout:g} s") from None
-
-
-class _Look:
-    def __init__(self, backend: BridgeNode) -> None:
-        self._backend = backend
-        self._gate = asyncio.Semaphore(AT_ONCE)
-
-    async def contents(self) -> GraphContents:
-        topics, services, nodes, actions = await asyncio.gather(
-            self._ask("topics"),
-            self._ask("services"),
-            self._ask("nodes"),
-            self._known("action_servers", "action_servers", ()),
-        )
-        types = dict(zip(topics["topics"], topics["types"], strict=True))
-        hidden = {f"{action}/{part}" for action in actions for part in _ACTIONLIB}
-        shown = [
-            name for name in types if name not in _LOGS and name not in hidden and "/_action/" not in name
-        ]
-        infos = await asyncio.gather(*(self._topic(name, types[name]) for name in shown))
-        plain = [name for name in services["services"] if not _is_internal(name)]
-        kinds = await asyncio.gather(
-            *(self._known("service_type", "type", "", service=name) for name in plain)
-        )
-        found = await asyncio.gather(*(self._action(name, types) for name in actions))
-        return GraphContents(
-            {info.name: info for info in infos},
-            {name: _full(service_type, kind) for name, kind in zip(plain, kinds, strict=True)},
-            {name: kind for name, kind, served in found if served},
-            tuple(sorted(absolute(nodes["nodes"]))),
-        )
-
-    async def _topic(self, name: str, kind: str) -> TopicInfo:
-        publishers, subscribers = await asyncio.gather(
-            self._ask("publishers", topic=name), self._ask("subscribers", topic=name)
-        )
-        return TopicInfo(
-            name,
-            tuple(sorted(_full(message_type, each) for each in kind.split(",") if each)),
-            tuple(Endpoint(node) for node in absolute(publishers["publishers"])),
-            tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
-        )
-
-    async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
-        """Return an action's name, its type, and whether a server offers it."""
-        goal = types.get(f"{name}/goal", "")
-        if goal.endswith("ActionGoal"):  # ROS 1
-            # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
-            servers = await self._ask("publishers", topic=f"{name}/status")
-            return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
-        kind = await self._known("action_type", "type", "", action=name)
-        return name, _full(action_type, kind), True
-
-    async def _known(self, what: str, field: str, unknown: Any, **arguments: str) -> Any:
-        """Return a field of an answer, *unknown* if an older server has none."""
-        try:
-            return (await self._ask(what, **arguments)).get(field, unknown)
-        except ServiceError:
-            return unknown
-
-    async def _ask(self, what: str, **arguments: str) -> dict[str, Any]:
-        async with self._gate:
-            answer: dict[str, Any] = await self._backend.rosapi(what, arguments)
-            return answer
-
-
-def _full(form: Any, name: str) -> str:
-    return str(form(name)) if name else ""
-
-
-def absolute(names: Iterable[str]) -> list[str]:
-    """Return names with the slash that rosapi omits."""
-    return [name if name.startswith("/") else f"/{name}" for name in names]
-
-
-def _is_internal(name: str) -> bool:
-    last = name.rsplit("/", 1)[-1]
-    return (
-        "/_action/" in name
-        or last in _PARAMETER_SERVICES
-        or last in ("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels")
-        or name.startswith("/rosapi/")  # the services that we use
-    )
 
 
 _ABSENT = "jacaros: no such parameter"

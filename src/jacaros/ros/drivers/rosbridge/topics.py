@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, TopicTrouble, Wanted
-from jacaros.ros.protocols.rosbridge_wire import LOOK_STEADILY, Polled
+from jacaros.ros.protocols.rosbridge_wire import LOOK_STEADILY
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer
 
@@ -28,9 +28,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
         # A lost goal or request to cancel would not be repeated.
         self._droppable = not _is_of_action(type_name)
         self._kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
-        self._subscribers = Polled(
-            node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
-        )
+        self._subscribers = node.polled("subscribers", lambda seen: len(seen["subscribers"]), 0, topic=topic)
         self._number = node.number("advertise", topic)
         if node.attached:
             self.join()
@@ -88,9 +86,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         self._last: Any = None
         self._late: Timer | None = None
         self._depth = 0
-        self._publishers = Polled(
-            node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
-        )
+        self._publishers = node.polled("publishers", lambda seen: len(seen["publishers"]), 0, topic=topic)
 
     @property
     def publisher_count(self) -> int:
@@ -123,15 +119,15 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             operation["compression"] = "cbor"
         # Without qos the server chooses one that matches all publishers that it knows. But if none exist yet, it
         # misses what they publish before they discover it.
-        if self._node.ros_version == 2 and any(
-            reader.qos.durability == "transient_local" for reader in self.readers
-        ):
+        durabilities = {reader.qos.durability for reader in self.readers if self._node.ros_version == 2}
+        if "transient_local" in durabilities:
             operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
-        elif self._node.ros_version == 2 and any(
-            reader.qos.durability == "best_available" for reader in self.readers
-        ):
-            self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
+        elif "best_available" in durabilities:
+            self._look_later(operation)
         self._node.request(operation, self.join, self.report)
+
+    def _look_later(self, operation: dict[str, Any]) -> None:
+        self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
 
     def _look_for_late(self, operation: dict[str, Any]) -> None:
         """Subscribe again when the first publisher has appeared: then the server requests its stored message."""
@@ -139,9 +135,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             if self.publisher_count:
                 self._node.send(operation)
             else:
-                self._late = self._node.clock.call_later(
-                    LOOK_STEADILY, partial(self._look_for_late, operation)
-                )
+                self._look_later(operation)
 
     def lost(self) -> None:
         """Forget the latched message."""
