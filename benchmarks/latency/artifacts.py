@@ -2,7 +2,7 @@
 
 from jacaros.artifacts import internal_operation, operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 
 INT32, TWIST = "std_msgs/msg/Int32", "geometry_msgs/msg/Twist"
 

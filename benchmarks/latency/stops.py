@@ -17,7 +17,7 @@ from jacaros.mas.agents.host import AgentHost
 from jacaros.ros.drivers.ros1.connections import InletTransport
 from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
 from jacaros.ros.drivers.ros1.topics import Ros1Publisher
-from jacaros.ros.topics import TopicMultiplexer
+from jacaros.ros.node import TopicMultiplexer
 
 STOPS: tuple[tuple[type, str, str], ...] = (
     (Inlet, "_read", ""),

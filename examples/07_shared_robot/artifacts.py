@@ -4,7 +4,7 @@ import math
 
 from jacaros.artifacts import Artifact, Atom, internal_operation, operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 

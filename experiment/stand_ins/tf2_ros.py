@@ -14,8 +14,7 @@ from tf2_msgs.msg import TFMessage
 
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.message import to_seconds
-from jacaros.ros.protocols.tf_buffer import TransformBuffer
-from jacaros.ros.protocols.transform import Transform
+from jacaros.ros.protocols.transform import Transform, TransformBuffer
 
 STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -44,20 +44,18 @@ class ActionClient:
         self.graph = node.graph
         self.name = node.backend.resolve(action_name)
         self._new_id = node.backend.new_goal_id
-        self.sender = self  # the graph's servers tell it what becomes of the goals
         self._feedback: dict[str, Callable[[Any], object] | None] = {}
         self._sent: dict[str, tuple[Any, Future]] = {}
         self._handles: dict[str, ClientGoalHandle] = {}
-        self.graph.graph.connect(self)  # type: ignore[arg-type]  # it answers as a GoalSender does
 
     def server_is_ready(self) -> bool:
         """Return whether a server offers the action."""
-        return self.graph.graph.action_server(self.name) is not None
+        return self.graph.graph.find("action", self.name) is not None
 
     def send_goal_async(self, goal: Any, feedback_callback: Callable[[Any], object] | None = None) -> Future:
         """Send a goal; the future's result is its `ClientGoalHandle`."""
         goal_id, answer = self._new_id(), Future(self.graph)
-        server = self.graph.graph.action_server(self.name)
+        server = self.graph.graph.find("action", self.name)
         if server is not None:
             self._sent[goal_id], self._feedback[goal_id] = (server, answer), feedback_callback
             self.graph.graph.tell(server.take, goal_id, goal, self)
@@ -98,14 +96,3 @@ class ActionClient:
         self._handles[goal_id].cancelled.set_result(
             SimpleNamespace(goals_canceling=[goal_id] if agreed else [])
         )
-
-    @property
-    def offered(self) -> bool:
-        """Whether a server offers the action."""
-        return self.server_is_ready()
-
-    def server_came(self) -> None:
-        """Do nothing: rclpy's client asks by `server_is_ready`."""
-
-    def server_went(self) -> None:
-        """Do nothing, as rclpy: the end of a goal is never reported."""

@@ -34,7 +34,7 @@ class Interface:
         if "/action/" not in type_name:
             _SCHEMA.fields(type_name)
         elif not type_name.endswith(tuple(f"_{part}" for part in _PARTS)):
-            _SCHEMA.action(type_name)
+            _SCHEMA.load(type_name)
 
     def __call__(self, **fields: Any) -> Any:
         message = _SCHEMA.new(self.type_name)

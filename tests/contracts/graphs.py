@@ -18,7 +18,7 @@ from typing import IO, Any, cast
 import peer as peer_module
 
 import jacaros.ros.errors
-from jacaros.ros.drivers.memory.backend import MemoryGraph
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 PATIENCE = 90.0

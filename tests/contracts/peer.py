@@ -21,9 +21,9 @@ from peer_actions import ActionCommands
 from peer_graph import GraphCommands
 
 from jacaros.artifacts.kit.connection import Matching
-from jacaros.ros.backend import Sample, TopicEvent
 from jacaros.ros.handoff import post
 from jacaros.ros.message import plain
+from jacaros.ros.node import Sample, TopicEvent
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Clock, WallClock, run

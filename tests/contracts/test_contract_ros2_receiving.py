@@ -288,7 +288,7 @@ class _Answering(dict[Any, Any]):
 
 
 def test_a_call_may_be_answered_while_it_is_forgotten() -> None:
-    from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+    from jacaros.ros.drivers.ros2.actions import Ros2GoalWire
 
     wire = Ros2GoalWire.__new__(Ros2GoalWire)
     wire._calls = _Answering({"first": None, "second": None})

@@ -30,7 +30,7 @@ def test_finished_goals_calls_motions_and_artifacts_use_no_memory() -> None:
 
     def look(lab: Lab) -> None:
         looks.append(kinds())
-        node: Any = lab.graph.node("/agents")
+        node: Any = lab.graph.find("node", "/agents")
         registries.append(
             {
                 "members": len(node.members),

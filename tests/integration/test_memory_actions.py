@@ -122,7 +122,7 @@ def test_a_goal_cancelled_by_another_client_fails_as_canceled(
     async def send(*arguments: object) -> CancelledElsewhere:
         return CancelledElsewhere()
 
-    monkeypatch.setattr("jacaros.ros.action_calling.GoalSender.send", send)
+    monkeypatch.setattr("jacaros.ros.action_client.ActionClient.send", send)
     result = run(tmp_path, "+!go <- count(5, 1, L); .print(never).")
     assert result.of("counter") == ["action_failed canceled"]
 

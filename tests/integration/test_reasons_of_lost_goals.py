@@ -99,7 +99,7 @@ def test_a_goal_cancelled_by_another_client(tmp_path: Path, monkeypatch: pytest.
     async def send(*arguments: object) -> Cancelled:
         return Cancelled()
 
-    monkeypatch.setattr("jacaros.ros.action_calling.GoalSender.send", send)
+    monkeypatch.setattr("jacaros.ros.action_client.ActionClient.send", send)
     message = "another client cancelled the goal of action /count"
     assert told(tmp_path, "count(5)") == expected(message, "count(5)", "canceled")
 

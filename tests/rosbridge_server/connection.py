@@ -11,9 +11,9 @@ from conversion import Mismatch, from_json, short, to_cbor, to_json
 from goals import AdvertisedAction
 
 from jacaros.errors import JacarosError
-from jacaros.ros.backend import Sample
 from jacaros.ros.errors import CallFailed, CallTimedOut
 from jacaros.ros.names import message_type, request_type, response_type, service_type
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import QoS
 
 if TYPE_CHECKING:

@@ -135,7 +135,7 @@ def _message(node: Node, type_name: str, values: Any, ros1: bool, root: str, pat
                 ("nanosec" if "nanosec" in values else "nsecs"),
             )
         return node.factory.make(type_name, {"sec": values.get(seconds, 0), "nanosec": values.get(rest, 0)})
-    message = node.factory.schema.new(type_name)
+    message = node.factory.new(type_name)
     fields = node.factory.fields(type_name)
     for name, value in values.items():
         where = (*path, name)

@@ -10,7 +10,7 @@ from parameters import ParameterServices
 
 from jacaros.ros.errors import CallFailed, JacarosError, ParameterError
 from jacaros.ros.fields import FieldType
-from jacaros.ros.interfaces import BUILT_IN, split_action
+from jacaros.ros.interfaces import BUILT_IN, split
 from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 from jacaros.ros.node import Node
 
@@ -161,7 +161,7 @@ class RosApi:
         return {"typedefs": list(seen.values())}
 
     def _typedef(self, type_name: str, fields: Any) -> dict[str, Any]:
-        kind = type(self._node.factory.schema.new(type_name))
+        kind = type(self._node.factory.new(type_name))
         constants = [name for name in vars(kind) if name.isupper()]
         return {
             "type": short(type_name),
@@ -226,11 +226,11 @@ def write_ros1_types(folder: Path) -> None:
     """Write what ROS 1 has beyond ROS 2: the messages of actionlib's topics for our actions, and the log's."""
     for path in BUILT_IN.glob("*/action/*.action"):
         package, name = path.parts[-3], path.stem
-        parts = dict(zip(("Goal", "Result", "Feedback"), split_action(path.read_text()), strict=True))
+        parts = split(f"{package}/action/{name}", path.read_text())
         header = "std_msgs/Header header\n"
         status = f"{header}actionlib_msgs/GoalStatus status\n"
         texts = {
-            **{f"{name}{part}": text for part, text in parts.items()},
+            **{name + part.rpartition("_")[2]: text for part, text in parts.items()},
             f"{name}ActionGoal": f"{header}actionlib_msgs/GoalID goal_id\n{package}/{name}Goal goal\n",
             f"{name}ActionResult": f"{status}{package}/{name}Result result\n",
             f"{name}ActionFeedback": f"{status}{package}/{name}Feedback feedback\n",

@@ -28,7 +28,8 @@ from parameters import ParameterServices
 from peer import Peer
 from rosapi import RosApi, write_ros1_types
 
-from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
+from jacaros.ros.drivers.memory.backend import MemoryBackend
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.handoff import post
 from jacaros.ros.node import NodeSettings
 from jacaros.runtime.clock import WallClock, run

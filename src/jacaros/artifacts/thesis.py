@@ -10,7 +10,9 @@ from jacaros.artifacts.kit.options import positive, text, yes_or_no
 from jacaros.artifacts.kit.reading import READING_OPTIONS, Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.streams import ReadingPolicy
-from jacaros.ros.backend import Client, Publisher, Sample
+from jacaros.ros.backend import Sample
+from jacaros.ros.node import Publisher
+from jacaros.ros.services import Client
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
 """The rooms by number, in the thesis's words: programs compare and print them."""

@@ -2,9 +2,7 @@
 
 import asyncio
 import sys
-import threading
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,12 +10,24 @@ import click
 
 from jacaros.cli.options import VariableOption
 from jacaros.cli.usage import usage_error
+from jacaros.ros.handoff import in_thread
 from jacaros.ros.middleware import ROS_KINDS
 
 if TYPE_CHECKING:
-    from jacaros.ros.orphans import OrphanPolicy
+    from jacaros.ros.action_client import OrphanPolicy
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+def together(*options: Callable[[F], F]) -> Callable[[F], F]:
+    """Return a decorator that adds several options to a command."""
+
+    def add(command: F) -> F:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
 
 
 class RosKind(click.Choice[str]):
@@ -145,36 +155,21 @@ _PARAMETERS = (
 )
 
 
-def graph_options(command: F) -> F:
-    """Add the options for the address of a graph, the name of our node, and remappings."""
-    return _with(command, (*_ADDRESS, _NAMESPACE, *_NAMES))
-
-
-def address_options(command: F) -> F:
-    """Add the options for the address of a graph and the namespace of our node."""
-    return _with(command, (*_ADDRESS, _NAMESPACE))
-
-
-def world_options(command: F) -> F:
-    """Add the same options as `graph_options` without the namespace: world files give each robot its own."""
-    return _with(command, (*_ADDRESS, *_NAMES))
-
-
-def parameter_options(command: F) -> F:
-    """Add the options that set parameters of our node."""
-    return _with(command, _PARAMETERS)
-
-
-def orphans_option(command: F) -> F:
-    """Add the option ``--orphans``, for action goals that an earlier run left behind."""
-    option = click.option(
-        "--orphans",
-        type=click.Choice(["cancel", "keep", "ask"]),
-        default="cancel",
-        help="What to do with action goals that an earlier run of this node left behind, for example because it was "
-        "killed: cancel them (default), keep them, or ask on the terminal.",
-    )
-    return _with(command, (option,))
+graph_options = together(*_ADDRESS, _NAMESPACE, *_NAMES)
+"""The options for the address of a graph, the name of our node, and remappings."""
+address_options = together(*_ADDRESS, _NAMESPACE)
+"""The options for the address of a graph and the namespace of our node."""
+world_options = together(*_ADDRESS, *_NAMES)
+"""The same options as `graph_options` without the namespace: world files give each robot its own."""
+parameter_options = together(*_PARAMETERS)
+"""The options that set parameters of our node."""
+orphans_option = click.option(
+    "--orphans",
+    type=click.Choice(["cancel", "keep", "ask"]),
+    default="cancel",
+    help="What to do with action goals that an earlier run of this node left behind, for example because it was "
+    "killed: cancel them (default), keep them, or ask on the terminal.",
+)
 
 
 def orphan_policy(written: str) -> "OrphanPolicy":
@@ -194,28 +189,14 @@ def orphan_policy(written: str) -> "OrphanPolicy":
 
 async def _ask(question: str) -> bool:
     """Ask on the terminal, in a daemon thread, so that the process can exit meanwhile."""
-    loop = asyncio.get_running_loop()
-    answer: asyncio.Future[str] = loop.create_future()
 
-    def settle(text: str) -> None:
-        if not answer.done():
-            answer.set_result(text)
-
-    def read() -> None:
+    def read() -> str:
         print(f"{question} [Y/n] ", end="", file=sys.stderr, flush=True)
-        text = sys.stdin.readline()
-        with suppress(RuntimeError):  # the run has ended
-            loop.call_soon_threadsafe(settle, text)
+        return sys.stdin.readline()
 
-    threading.Thread(target=read, name="orphans", daemon=True).start()
+    answer = await in_thread(asyncio.get_running_loop(), read, "orphans")
     # At the end of the input no user can answer: an empty answer without a line feed keeps the goal.
-    return (await answer).strip().lower() in ("y", "yes") or answer.result() == "\n"
-
-
-def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
-    for option in reversed(options):
-        command = option(command)
-    return command
+    return answer.strip().lower() in ("y", "yes") or answer == "\n"
 
 
 def read_remaps(written: tuple[str, ...]) -> dict[str, str]:

@@ -46,9 +46,9 @@ def command(
     When they stop, the guard cancels all goals of the actions that the agents use, and publishes zero velocity to their
     topics until the agents return. Start it on the robot's computer to stop the robot when that loses its network.
     """  # fmt: skip
-    from jacaros.ros.address import GraphAddress
     from jacaros.ros.guard import Guard
     from jacaros.ros.heartbeat import socket_path
+    from jacaros.ros.open import GraphAddress
 
     address = GraphAddress(**graph)
     address.check()

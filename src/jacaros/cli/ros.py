@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from jacaros.cli.graph_options import address_options, ros_option, world_option
+from jacaros.cli.graph_options import address_options, ros_option, together, world_option
 from jacaros.cli.options import settled
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import shown_from
@@ -18,10 +18,9 @@ if TYPE_CHECKING:
     from jacaros.artifacts.mapping.file import MappingFile
     from jacaros.cli.graph.joining import Joined
 
-F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
 
-_OPTIONS = (
+_asking = together(
     ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
     world_option("World file, or the name of a shipped world; with --ros memory only."),
     address_options,
@@ -34,15 +33,7 @@ _OPTIONS = (
         help="Seconds to wait for nodes, replies and messages.",
     ),
 )
-
-
-def _asking(command: F) -> F:
-    """Add the options that select the graph."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
-
-
+"""Adds the options that select the graph."""
 _INTERFACES = click.option(
     "--interfaces",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
@@ -73,11 +64,10 @@ def list_command(rates: bool, as_json: bool, **graph: Any) -> None:
 
     Prints tables on a terminal, otherwise one line for each entry.
     """  # fmt: skip
-    from jacaros.cli.graph import listening, listing
-    from jacaros.cli.graph.joining import Joined
+    from jacaros.cli.graph import joining, listing
 
-    async def look(joined: Joined) -> None:
-        counted = await listening.rates(joined, joined.contents.topics.values()) if rates else {}
+    async def look(joined: "Joined") -> None:
+        counted = await joining.rates(joined, joined.contents.topics.values()) if rates else {}
         if as_json:
             click.echo(listing.as_json(joined.contents, counted))
         elif sys.stdout.isatty():
@@ -109,10 +99,9 @@ def show_command(name: str, as_json: bool, **graph: Any) -> None:
     service, the next message, and the entry for a mapping file.
     """  # fmt: skip
     from jacaros.cli.graph import showing
-    from jacaros.cli.graph.joining import Joined
-    from jacaros.cli.graph.kinds import find
+    from jacaros.cli.graph.listing import find
 
-    async def look(joined: Joined) -> None:
+    async def look(joined: "Joined") -> None:
         things = find(joined, name)
         data = await showing.described_all(joined, things)
         if as_json:
@@ -153,9 +142,9 @@ def map_command(
     The usual ones are odometry, laser scan, battery, bumpers, map, velocity, the actions to drive and dock, and services
     without arguments. The file works as written; its comments show how agents use it.
     """  # fmt: skip
-    from jacaros.cli.graph import first_mapping, listening
-    from jacaros.cli.graph.joining import Joined, NothingThere
-    from jacaros.cli.graph.kinds import find_mappable
+    from jacaros.cli.graph import first_mapping, joining
+    from jacaros.cli.graph.joining import NothingThere
+    from jacaros.cli.graph.listing import find_mappable
     from jacaros.cli.graph.standard_topics import left_out, usual_things
 
     if output is not None and output.exists() and not force:
@@ -163,7 +152,7 @@ def map_command(
     file = output if output is not None else Path("robot.yaml")
     folders = [shown_from(file.parent, folder) for folder in interfaces]
 
-    async def look(joined: Joined) -> str:
+    async def look(joined: "Joined") -> str:
         if names:
             things = [thing for name in names for thing in find_mappable(joined, name)]
             frames: dict[str, str] = {}
@@ -171,7 +160,7 @@ def map_command(
         else:
             things = usual_things(joined.contents)
             left = left_out(joined.contents, things)
-            frames = await listening.frames(joined)
+            frames = await joining.frames(joined)
             if not things:
                 raise NothingThere(
                     "the graph has no odometry, scan, cmd_vel, battery or action to drive\n"
@@ -218,11 +207,10 @@ def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any
     if base_timeout and not yes and not _may_drive(graph["ros"]):
         return 1
     from jacaros.artifacts.mapping.file import find_mapping, load_mapping
-    from jacaros.cli.graph.joining import Joined
 
     mapping = None if file is None else load_mapping(find_mapping(str(file)) or file)
 
-    async def look(joined: Joined) -> int:
+    async def look(joined: "Joined") -> int:
         problems = 0 if mapping is None else await _check_mapping(joined, mapping, str(file))
         drives = not base_timeout or await _check_base(joined, mapping, graph["namespace"])
         return 0 if not problems and drives else 1
@@ -232,12 +220,12 @@ def check_command(file: Path | None, base_timeout: bool, yes: bool, **graph: Any
 
 async def _check_mapping(joined: "Joined", mapping: "MappingFile", name: str) -> int:
     """Print the problems of a mapping file, and return their number."""
-    from jacaros.cli.graph import listening
+    from jacaros.cli.graph import joining
     from jacaros.cli.graph.verifying import problems_of, warnings_of
     from jacaros.files.yaml import shown
 
     parts = mapping.artifacts.values()
-    frames = await listening.frames(joined) if any(part.frames for part in parts) else {}
+    frames = await joining.frames(joined) if any(part.frames for part in parts) else {}
     problems = [each for part in parts for each in await problems_of(joined, part, frames)]
     warnings = list(dict.fromkeys(each for part in parts for each in warnings_of(joined, part)))
     lines = mapping.text.splitlines()
@@ -264,15 +252,14 @@ def _may_drive(ros: str) -> bool:
 async def _check_base(joined: "Joined", mapping: "MappingFile | None", namespace: str) -> bool:
     """Drive, print what the base did, and return whether it stops by itself."""
     from jacaros.cli.graph.base_timeout import Drive, find_base, verdict
-    from jacaros.cli.graph.verifying import topics_of
+    from jacaros.cli.graph.verifying import nodes_of, topics_of
 
     parts = mapping.artifacts.values() if mapping is not None else ()
     named = {name for part in parts for name in topics_of(joined, part)}
     command, odometry = find_base(joined, named, namespace)
     click.echo(f"driving with `{command.name}`, watching `{odometry.name}`")
     if command.publishers:
-        others = sorted({each.node or "an unknown node" for each in command.publishers})
-        click.echo(f"warning: {', '.join(others)} may command `{command.name}`, too", err=True)
+        click.echo(f"warning: {nodes_of(command.publishers)} may command `{command.name}`, too", err=True)
     ceased = await Drive(joined, command, odometry).run()
     click.echo(verdict(ceased))
     return ceased.seconds is not None

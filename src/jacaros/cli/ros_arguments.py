@@ -4,6 +4,7 @@
 Arguments"); rosrun and roslaunch mix ``name:=value`` with the other arguments (wiki.ros.org, "Remapping Arguments").
 """
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,6 +14,9 @@ from jacaros.cli.usage import usage_error
 from jacaros.errors import UsageError
 from jacaros.files.texts import file_text
 from jacaros.ros.middleware import ROS_KINDS
+
+Option = tuple[str, ...]
+"""The words of one of our options: its name, and its value; none for an argument without effect."""
 
 _SIGN = ":="
 _ROS2_VALUES = {
@@ -27,13 +31,13 @@ _ROS2_VALUES = {
     "--enclave": "",
 }
 """ROS 2 arguments that take a value, and our option for each; an empty name marks arguments without effect here."""
-_ROS2_FLAGS = {
-    "--enable-rosout-logs": "--rosout",
-    "--disable-rosout-logs": "--no-rosout",
-    "--enable-stdout-logs": "",
-    "--disable-stdout-logs": "",
-    "--enable-external-lib-logs": "",
-    "--disable-external-lib-logs": "",
+_ROS2_FLAGS: Mapping[str, Option] = {
+    "--enable-rosout-logs": ("--rosout",),
+    "--disable-rosout-logs": ("--no-rosout",),
+    "--enable-stdout-logs": (),
+    "--disable-stdout-logs": (),
+    "--enable-external-lib-logs": (),
+    "--disable-external-lib-logs": (),
 }
 _NAMES = {"__ns": "--namespace", "__node": "--node-name", "__name": "--node-name", "__master": "--master"}
 _ROS1_WITHOUT_EFFECT = ("__log",)
@@ -59,46 +63,29 @@ def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[st
         UsageError: an argument of ROS is unknown or malformed.
     """
     own, of_ros2 = _divided(arguments)
-    places = set(_ros1_arguments(own))
-    of_ros1 = [own[place] for place in sorted(places)]
+    places = list(_ros1_arguments(own))
+    added = list(filter(None, (*(_of_ros1(own[place]) for place in places), *_of_ros2(of_ros2))))
     own = [each for place, each in enumerate(own) if place not in places]
-    added = [*_ros1_options(of_ros1), *_Ros2Arguments(of_ros2).options()]
     if own[:1] == ["sim"]:
         added = _without_parameters(added, warn)
-    kind = os.environ.get("JACAROS_ROS") or ("ros1" if of_ros1 and "--ros-args" not in arguments else "ros2")
+    kind = os.environ.get("JACAROS_ROS") or ("ros1" if places and "--ros-args" not in arguments else "ros2")
     # An unknown kind remains in the environment, so that the error names the variable.
     if not _given(own, "--ros") and (kind in ROS_KINDS or ":" in kind):
-        added += ["--ros", kind]
-    return [*own, *added]
+        added.append(("--ros", kind))
+    return [*own, *itertools.chain.from_iterable(added)]
 
 
-def _without_parameters(options: list[str], warn: Callable[[str], None]) -> list[str]:
+def _without_parameters(options: list[Option], warn: Callable[[str], None]) -> list[Option]:
     """Drop parameters: a world declares none, and keeps its own time."""
-    kept: dict[str, list[str]] = {
-        "--param": [],
-        "--params-file": [],
-        "--namespace": [""],
-        "--node-name": ["world"],
-    }
-    rest = []
-    for option, value in _paired(options):
-        if option in kept:
-            kept[option].append(value)
-        if option not in ("--param", "--params-file"):
-            rest += [option] if option in _ROS2_FLAGS.values() else [option, value]
-    node = f"{kept['--namespace'][-1]}/{kept['--node-name'][-1]}"
-    given = read_parameters(kept["--param"], [Path(file) for file in kept["--params-file"]], node)
-    for name in given:
+    values: dict[str, list[str]] = {"--namespace": [""], "--node-name": ["world"]}
+    for option, *value in options:
+        values.setdefault(option, []).extend(value)
+    node = f"{values['--namespace'][-1]}/{values['--node-name'][-1]}"
+    files = [Path(file) for file in values.get("--params-file", ())]
+    for name in read_parameters(values.get("--param", ()), files, node):
         if name != "use_sim_time":
             warn(f"parameter `{name}` has no effect: worlds have no parameters; edit the world file instead")
-    return rest
-
-
-def _paired(options: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield each option with its value; the value of a flag is empty."""
-    rest = iter(options)
-    for option in rest:
-        yield option, "" if option in _ROS2_FLAGS.values() else next(rest)
+    return [option for option in options if option[0] not in ("--param", "--params-file")]
 
 
 def _divided(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -125,82 +112,53 @@ def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
     for place, each in enumerate(arguments):
         if each == "--ros-args":
             return
-        if _SIGN in each and not each.startswith("-") and not _is_value(arguments, place):
+        is_value = place > 0 and arguments[place - 1] in ("--remap", "--param")
+        if _SIGN in each and not each.startswith("-") and not is_value:
             yield place
 
 
-def _is_value(arguments: Sequence[str], place: int) -> bool:
-    """Return whether an argument is the value of one of our options."""
-    return place > 0 and arguments[place - 1] in ("--remap", "--param")
+def _of_ros1(written: str) -> Option:
+    name, _, value = written.partition(_SIGN)
+    if name in _NAMES:
+        return _NAMES[name], value
+    if name.startswith("__"):
+        if name in _ROS1_WITHOUT_EFFECT:
+            return ()
+        raise usage_error(f"unsupported argument: `{written}`", "set ROS_IP or ROS_HOSTNAME for the address")
+    return ("--param", written[1:]) if name.startswith("_") else ("--remap", written)
 
 
-def _ros1_options(written: Iterable[str]) -> Iterator[str]:
-    for each in written:
-        name, _, value = each.partition(_SIGN)
-        if name in _NAMES:
-            yield from (_NAMES[name], value)
-        elif name in _ROS1_WITHOUT_EFFECT:
+def _of_ros2(written: Iterable[str]) -> Iterator[Option]:
+    """Yield our options for the arguments after ``--ros-args``."""
+    rest = iter(written)
+    for each in rest:
+        if each in _ROS2_FLAGS:
+            yield _ROS2_FLAGS[each]
             continue
-        elif name.startswith("__"):
-            raise usage_error(f"unsupported argument: `{each}`", "set ROS_IP or ROS_HOSTNAME for the address")
-        elif name.startswith("_"):
-            yield from ("--param", each[1:])
-        else:
-            yield from ("--remap", each)
-
-
-class _Ros2Arguments:
-    """The arguments after ``--ros-args``."""
-
-    def __init__(self, written: Sequence[str]) -> None:
-        self._options: list[str] = []
-        self._rules: list[str] = []
-        self._parameters: list[str] = []
-        self._files: list[str] = []
-        rest = iter(written)
-        for each in rest:
-            if each in _ROS2_FLAGS:
-                self._options += [_ROS2_FLAGS[each]] if _ROS2_FLAGS[each] else []
-            elif each in _ROS2_VALUES:
-                self._take(each, _ROS2_VALUES[each], next(rest, None))
-            else:
-                known = ", ".join([*_ROS2_VALUES, *_ROS2_FLAGS])
-                raise usage_error(
-                    f"unknown argument after --ros-args: `{each}`",
-                    f"expected {known}, or `--` before other arguments",
-                )
-
-    def _take(self, written: str, name: str, value: str | None) -> None:
+        if each not in _ROS2_VALUES:
+            known = ", ".join([*_ROS2_VALUES, *_ROS2_FLAGS])
+            raise usage_error(
+                f"unknown argument after --ros-args: `{each}`",
+                f"expected {known}, or `--` before other arguments",
+            )
+        option, value = _ROS2_VALUES[each], next(rest, None)
         if value is None:
-            raise usage_error(f"missing value after `{written}` of --ros-args")
-        if name == "--params-file":
-            self._files.append(value)
-        elif name:
+            raise usage_error(f"missing value after `{each}` of --ros-args")
+        if option in ("--remap", "--param"):
             left, sign, right = value.partition(_SIGN)
             if not sign or not left:
                 raise usage_error(
-                    f"invalid value of {written} in --ros-args: expected NAME:=VALUE, found `{value}`"
+                    f"invalid value of {each} in --ros-args: expected NAME:=VALUE, found `{value}`"
                 )
             if ":" in left:
                 raise usage_error(
-                    f"unexpected node name: `{written} {value}`",
-                    f"this process has one node: {written} {value.partition(':')[2]}",
+                    f"unexpected node name: `{each} {value}`",
+                    f"this process has one node: {each} {value.partition(':')[2]}",
                 )
-            if name == "--param":
-                self._parameters.append(value)
-            elif left in _NAMES:
-                self._options += [_NAMES[left], right]
-            else:
-                self._rules.append(value)
-
-    def options(self) -> list[str]:
-        """Return our options for these arguments."""
-        return [
-            *self._options,
-            *(part for rule in self._rules for part in ("--remap", rule)),
-            *(part for parameter in self._parameters for part in ("--param", parameter)),
-            *(part for file in self._files for part in ("--params-file", file)),
-        ]
+            if option == "--remap" and left in _NAMES:
+                option, value = _NAMES[left], right
+        if option:
+            yield option, value
 
 
 def read_parameters(
@@ -236,10 +194,8 @@ def _written(each: str) -> tuple[str, Any]:
 def _content(file: Path) -> Any:
     try:
         text = file_text(file)
-    except FileNotFoundError as error:
-        raise usage_error(f"--params-file {file}: {error.strerror}") from None
     except (OSError, UnicodeError) as error:
-        raise usage_error(f"--params-file {file}: {error}") from None
+        raise usage_error(f"--params-file {file}: {getattr(error, 'strerror', '') or error}") from None
     content = _yaml(text, f"--params-file {file}")
     if content is not None and not isinstance(content, Mapping):
         raise usage_error(

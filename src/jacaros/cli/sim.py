@@ -12,7 +12,7 @@ from jacaros.cli.options import ground_truth_option, option
 from jacaros.cli.outputs import check_output
 from jacaros.cli.usage import examples, usage_error
 from jacaros.files.texts import is_file
-from jacaros.ros.address import GraphAddress
+from jacaros.ros.open import GraphAddress
 from jacaros.runtime.clock import Clock, VirtualClock, WallClock, run
 from jacaros.sim.data.robot import BatterySettings
 from jacaros.sim.data.world import WorldDescription

@@ -13,10 +13,10 @@ from jacaros.files.maps import meanings
 from jacaros.inspector.scene import UNKNOWN, RobotView
 from jacaros.plane.pose import Point, Pose
 from jacaros.plane.shapes import Rectangle, Segment
-from jacaros.ros.backend import TRANSFORMS, Backend, Sample, Subscription
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError, TransformUnavailable
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import constant
+from jacaros.ros.node import Capability, Sample, Subscription
 from jacaros.ros.protocols.transform import Transform
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Clock
@@ -73,7 +73,7 @@ class SeenRobot:
         message = self.odometry
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         pose = Transform((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
-        if TRANSFORMS in backend.capabilities:
+        if Capability.TRANSFORMS in backend.capabilities:
             with contextlib.suppress(TransformUnavailable):
                 corrected = backend.tf_lookup(MAP, message.header.frame_id.strip("/")).after(pose)
                 if all(map(math.isfinite, (*corrected.translation, corrected.yaw))):
@@ -151,7 +151,7 @@ class GraphScene:
             subscription.close()
 
     async def _keep_looking(self) -> None:
-        if TRANSFORMS in self._backend.capabilities:
+        if Capability.TRANSFORMS in self._backend.capabilities:
             self._backend.tf_listen()
         while True:
             with contextlib.suppress(RosError):  # the graph may be temporarily unreachable

@@ -15,7 +15,8 @@ from jacaros.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer
 
 if TYPE_CHECKING:
-    from jacaros.ros.backend import Backend, Publisher
+    from jacaros.ros.backend import Backend
+    from jacaros.ros.node import Publisher
 
 TOPIC = "/diagnostics"
 TYPE = "diagnostic_msgs/msg/DiagnosticArray"

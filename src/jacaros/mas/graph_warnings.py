@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.files.texts import close_matches, did_you_mean
-from jacaros.ros.backend import PARAMETERS, Backend, Subscription
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import GraphContents
+from jacaros.ros.node import Capability, Subscription
 from jacaros.ros.ros_clock import CLOCK_QOS, CLOCK_TOPIC, CLOCK_TYPE
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
@@ -38,7 +38,7 @@ class GraphTime:
         self._told = False
         listening = backend.subscription(CLOCK_TOPIC, CLOCK_TYPE, self._heard, CLOCK_QOS)
         self._listening: Subscription | None = listening
-        if backend.ros_version == 1 and PARAMETERS in backend.capabilities:
+        if backend.ros_version == 1 and Capability.PARAMETERS in backend.capabilities:
             backend.on_connection(self._connected)
             self._connected(backend.connected)
 

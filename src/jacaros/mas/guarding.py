@@ -7,11 +7,10 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from jacaros.errors import UsageError
-from jacaros.ros.address import GraphAddress
 from jacaros.ros.backend import Backend
-from jacaros.ros.graph_heartbeat import GraphHeartbeat
 from jacaros.ros.guarded import guarded_by
-from jacaros.ros.heartbeat import Heartbeat, socket_path
+from jacaros.ros.heartbeat import GraphHeartbeat, Heartbeat, socket_path
+from jacaros.ros.open import GraphAddress
 
 STARTING = 15.0
 """Seconds in which a guard must start and join the graph."""

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.errors import UsageError
-from jacaros.ros.address import GraphAddress
 from jacaros.ros.middleware import MIDDLEWARES, middleware
+from jacaros.ros.open import GraphAddress
 
 if TYPE_CHECKING:
-    from jacaros.ros.orphans import OrphanPolicy
+    from jacaros.ros.action_client import OrphanPolicy
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,29 @@
-"""Actions of the middleware, as client and server: long-running goals with feedback that can be cancelled.
+"""Actions of the middleware: long-running goals with feedback that can be cancelled, and how a server runs them.
 
 Modelled on ROS 2's actions (design article "Actions") and on ROS 1's actionlib, whose states are mapped to the same
-three outcomes. Everything here happens on the loop of the backend's clock.
+three outcomes. A driver passes on what clients send (`ServedGoals.judge`, `begin`, `cancel`) and receives what to send
+them: feedback and the outcome. Everything here happens on the loop of the backend's clock.
 """
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Protocol
+
+from jacaros.ros.errors import MessageMismatch
+from jacaros.ros.message import Schema, field_names
+from jacaros.ros.names import feedback_type, result_type
+from jacaros.runtime.clock import Clock, Timer
+
+SERVER_LOST_AFTER = 3.0
+"""Seconds without any sign of the server after which an active goal fails with `ServerLost`."""
+PREEMPTED = "preempted by a newer goal"
+CLOSED = "the server was closed"
+LOOKING = 0.01
+"""Seconds within which a server with pre-emption handles new goals and requests to cancel, as in Nav2."""
+TEXT_FIELDS = ("error_msg", "message")
+"""Fields of action results that hold a text."""
 
 
 class GoalStatus(StrEnum):
@@ -37,105 +53,6 @@ class Outcome:
     text: str = ""
 
 
-class GoalHandle(Protocol):
-    """A goal that its server has accepted, seen by the client."""
-
-    @property
-    def goal_id(self) -> str:
-        """Id of the goal in the graph."""
-
-    async def outcome(self, timeout: float | None = None) -> Outcome:
-        """Wait for the goal to end; any number of callers may wait, also after the end.
-
-        Raises:
-            CallTimedOut: the goal is still active after *timeout* seconds of the clock; it is not cancelled.
-            ServerLost: the server disappeared, so the outcome will never be known (`SERVER_LOST_AFTER`).
-        """
-
-    async def cancel(self, timeout: float | None = None) -> bool:
-        """Ask the server to cancel the goal. Return True if it agreed, False if it refused or the goal had ended.
-
-        The goal has ended only when `outcome` returns.
-
-        Raises:
-            CallTimedOut: the server did not answer in time.
-            ServerLost: the server disappeared.
-        """
-
-    def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
-        """Cancel the goal and return immediately.
-
-        Its client owns the goal until it has ended, and logs a warning if that takes more than 5 s.
-
-        Args:
-            afterwards: awaited when the goal has ended.
-        """
-
-
-class ActionClient(Protocol):
-    """Sends goals to an action server."""
-
-    @property
-    def name(self) -> str:
-        """Absolute name of the action."""
-
-    @property
-    def ready(self) -> bool:
-        """Whether a server offers the action, as far as is known."""
-
-    def goal(self, **fields: Any) -> Any:
-        """Make a goal message; see `Backend.message`."""
-
-    async def send(
-        self, goal: Any = None, on_feedback: Callable[[Any], None] | None = None, timeout: float | None = None
-    ) -> GoalHandle:
-        """Send a goal and wait until the server has accepted it.
-
-        Goals of this node that are being cancelled come first: the goal is sent when they have ended, at most 5 s
-        after each request. That time does not count towards *timeout*.
-
-        Args:
-            goal: a goal message, a mapping of its fields, or None for the defaults.
-            on_feedback: called on the loop with each feedback message of this goal, until its end.
-            timeout: seconds to wait for the server and for its acceptance, in total; None: no limit.
-
-        Raises:
-            MessageMismatch: the goal does not match the type definition.
-            GoalRejected: the server rejected it.
-            ServerUnavailable: no server offered the action in time.
-            CallTimedOut: the server neither accepted nor rejected the goal in time; if it accepts later, the goal is
-                cancelled.
-
-        Cancelling this coroutine cancels the goal if the server accepts it.
-        """
-
-    def close(self) -> None:
-        """Close the client: its goals are cancelled if the server can be reached, and waiting callers fail."""
-
-
-class ServerGoal(Protocol):
-    """A goal that a server runs, seen by the server."""
-
-    @property
-    def goal_id(self) -> str:
-        """Id of the goal in the graph."""
-
-    @property
-    def request(self) -> Any:
-        """The goal message."""
-
-    @property
-    def cancel_requested(self) -> bool:
-        """Whether the client requested cancelling and was not refused."""
-
-    def feedback(self, message: Any = None, /, **fields: Any) -> None:
-        """Send feedback to the client: a feedback message, a mapping, or keywords.
-
-        Raises:
-            MessageMismatch: it does not match the type definition.
-        """
-
-
 class Abort(Exception):
     """Raise it in the code of a goal to end the goal as aborted.
 
@@ -148,6 +65,54 @@ class Abort(Exception):
         super().__init__(text)
         self.text = text
         self.result = result
+
+
+class ServerGoal:
+    """A goal that a server runs.
+
+    Attributes:
+        goal_id: id of the goal in the graph.
+        request: the goal message.
+        cancel_requested: whether the client requested cancelling and was not refused.
+    """
+
+    def __init__(
+        self,
+        goal_id: str,
+        request: Any,
+        send: Callable[[Any], Any],
+        report: Callable[["ServerGoal", Outcome], None],
+    ) -> None:
+        self.goal_id = goal_id
+        self.request = request
+        self.cancel_requested = False
+        self.task: asyncio.Task[Any] | None = None
+        self.overtaken = self.stopped = self.over = False
+        self._send = send
+        self._report = report
+
+    def feedback(self, message: Any = None, /, **fields: Any) -> None:
+        """Send feedback to the client: a feedback message, a mapping, or keywords; ignored after the goal's end.
+
+        Raises:
+            MessageMismatch: it does not match the type definition.
+        """
+        if message is not None and fields:
+            raise TypeError("expected a feedback message or its fields, found both")
+        if not self.over:
+            self._send(message if message is not None else fields)
+
+    def end(self, outcome: Outcome) -> None:
+        """Send the outcome, unless it was sent."""
+        if not self.over:
+            self.over = True
+            self._report(self, outcome)
+
+    def stop(self) -> None:
+        """Raise ``CancelledError`` in the code of the goal."""
+        self.stopped = True
+        if self.task is not None:
+            self.task.cancel()
 
 
 Execute = Callable[[ServerGoal], Awaitable[Any]]
@@ -193,5 +158,250 @@ class ActionServer(Protocol):
         """Stop offering the action; active goals are aborted with the text ``the server was closed``."""
 
 
-SERVER_LOST_AFTER = 3.0
-"""Seconds without any sign of the server after which an active goal fails with `ServerLost`."""
+class ServedGoals:
+    """The goals of one action server.
+
+    With pre-emption they behave as in Nav2's ``SimpleActionServer``: a new goal waits until the server checks, at
+    most `LOOKING` seconds. Then the active goal ends as aborted, even if cancelling was requested in that time;
+    without a new goal it ends as cancelled. A waiting goal is replaced by a newer one.
+
+    Args:
+        clock: measures `LOOKING`.
+        factory: makes the messages.
+        name: absolute name of the action.
+        type_name: action type in full form.
+        execute: the user's coroutine function.
+        policy: how to treat goals.
+        log: called with one line about failed code.
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        factory: Schema,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        policy: ActionPolicy,
+        log: Callable[[str], None],
+    ) -> None:
+        self._clock = clock
+        self._factory = factory
+        self._name = name
+        self._result_type = result_type(type_name)
+        self._feedback_type = feedback_type(type_name)
+        self._execute = execute
+        self._policy = policy
+        self._log = log
+        self._goals: dict[str, ServerGoal] = {}
+        self._current: ServerGoal | None = None
+        self._waiting: ServerGoal | None = None
+        self._look_timer: Timer | None = None
+        self._closed = False
+
+    def judge(self, request: Any) -> str | None:
+        """Return None if a goal message is accepted, or the reason for rejecting it."""
+        if self._closed:
+            return CLOSED
+        if self._policy.accept is None:
+            return None
+        try:
+            return self._policy.accept(request)
+        except Exception as problem:  # the server keeps running, and the client receives the reason
+            reason = f"{type(problem).__name__}: {problem}"
+            self._log(f"judging a goal of action {self._name} failed: {reason}")
+            return reason
+
+    def begin(
+        self,
+        goal_id: str,
+        request: Any,
+        feedback: Callable[[Any], None],
+        ended: Callable[[Outcome], None],
+    ) -> ServerGoal:
+        """Run an accepted goal as a task of its own.
+
+        Call *feedback* with each feedback message, and *ended* once with the outcome.
+
+        With pre-emption, the code of the newer goal begins when that of the older one has ended.
+        """
+
+        def send(given: Any) -> None:
+            feedback(self._factory.checked(self._feedback_type, given))
+
+        def end(goal: ServerGoal, outcome: Outcome) -> None:
+            self._goals.pop(goal.goal_id, None)
+            ended(outcome)
+
+        goal = ServerGoal(goal_id, request, send, end)
+        self._goals[goal_id] = goal
+        if self._policy.preempt:
+            self._queue(goal)
+        else:
+            self._start(goal)
+        return goal
+
+    def cancel(self, goal_id: str) -> bool:
+        """Handle a client's request to cancel; return whether it is accepted."""
+        goal = self._goals.get(goal_id)
+        if goal is None or goal.overtaken:
+            return False
+        if goal.cancel_requested:
+            return True
+        if not self._may_cancel(goal):
+            return False
+        goal.cancel_requested = True
+        if self._policy.preempt:
+            self._look_soon()
+        else:
+            goal.stop()
+        return True
+
+    def under_way(self) -> list[str]:
+        """Ids of the active goals."""
+        return list(self._goals)
+
+    def close(self) -> None:
+        """Abort the active goals: send the outcome to their clients immediately, and cancel their code."""
+        self._shut()
+        for goal in list(self._goals.values()):
+            goal.end(self._ended(GoalStatus.ABORTED, None, CLOSED))
+            goal.stop()
+
+    def abandon(self) -> None:
+        """Stop the active goals without informing clients, as when a process is killed."""
+        self._shut()
+        for goal in list(self._goals.values()):
+            goal.over = True
+            goal.stop()
+        self._goals.clear()
+
+    def _shut(self) -> None:
+        self._closed, self._waiting = True, None
+        if self._look_timer is not None:
+            self._look_timer.cancel()
+
+    def _start(self, goal: ServerGoal) -> None:
+        goal.task = asyncio.get_running_loop().create_task(self._carry_out(goal))
+        goal.task.add_done_callback(lambda task: self._ran(goal, task))
+
+    async def _carry_out(self, goal: ServerGoal) -> Any:
+        return await self._execute(goal)
+
+    def _ran(self, goal: ServerGoal, task: "asyncio.Task[Any]") -> None:
+        goal.end(self._outcome(goal, task))
+        if goal is self._current:
+            self._current, waiting = None, self._waiting
+            self._waiting = None
+            if waiting is not None and not self._closed:
+                self._queue(waiting)
+
+    # Pre-emption: one goal is active, and at most one waits for it to end.
+
+    def _queue(self, goal: ServerGoal) -> None:
+        if self._current is not None:
+            self._drop_waiting()
+            self._waiting = goal
+            self._look_soon()
+            return
+        self._current = goal
+        self._start(goal)
+        if goal.cancel_requested:
+            self._look_soon()
+
+    def _drop_waiting(self) -> None:
+        """End the waiting goal before it has begun."""
+        waiting, self._waiting = self._waiting, None
+        if waiting is not None:
+            waiting.overtaken = not waiting.cancel_requested
+            waiting.end(self._cancelled(waiting, None))
+
+    def _look_soon(self) -> None:
+        if self._look_timer is None and not self._closed:
+            self._look_timer = self._clock.call_later(LOOKING, self._look)
+
+    def _look(self) -> None:
+        self._look_timer = None
+        current, waiting = self._current, self._waiting
+        if current is None or current.stopped or self._closed:
+            return
+        if waiting is not None and waiting.cancel_requested:
+            # As in Nav2, cancelling the waiting goal ends both.
+            self._drop_waiting()
+            current.overtaken = not current.cancel_requested
+        else:
+            current.overtaken = waiting is not None
+        if current.overtaken or current.cancel_requested:
+            current.stop()
+
+    def _may_cancel(self, goal: ServerGoal) -> bool:
+        if self._policy.may_cancel is None:
+            return True
+        try:
+            return bool(self._policy.may_cancel(goal))
+        except Exception as problem:
+            self._log(
+                f"judging a cancellation of action {self._name} failed: {type(problem).__name__}: {problem}"
+            )
+            return False
+
+    def _outcome(self, goal: ServerGoal, task: asyncio.Task[Any]) -> Outcome:
+        """Return the outcome that corresponds to the end of a goal's code."""
+        if task.cancelled():
+            return self._cancelled(goal, None)
+        problem = task.exception()
+        if problem is None:
+            return self._given(goal, task.result())
+        if isinstance(problem, Abort):
+            return self._aborted(problem)
+        return self._failed(f"{type(problem).__name__}: {problem}")
+
+    def _given(self, goal: ServerGoal, result: Any) -> Outcome:
+        try:
+            message = self._factory.checked(self._result_type, result)
+        except MessageMismatch as problem:
+            return self._failed(str(problem))
+        if goal.stopped:
+            return self._cancelled(goal, message)
+        return Outcome(GoalStatus.SUCCEEDED, message, text_of(message))
+
+    def _cancelled(self, goal: ServerGoal, result: Any) -> Outcome:
+        if goal.overtaken:
+            return self._ended(self._policy.overtaken, result, PREEMPTED)
+        if goal.cancel_requested:
+            return self._ended(GoalStatus.CANCELED, result, "")
+        return self._ended(GoalStatus.ABORTED, result, "the code of the goal was cancelled")
+
+    def _aborted(self, problem: Abort) -> Outcome:
+        try:
+            return self._ended(GoalStatus.ABORTED, problem.result, problem.text)
+        except MessageMismatch as mismatch:
+            return self._failed(f"{mismatch} (aborting: {problem.text})")
+
+    def _failed(self, reason: str) -> Outcome:
+        self._log(f"the code of action {self._name} failed: {reason}")
+        return self._ended(GoalStatus.ABORTED, None, reason)
+
+    def _ended(self, status: GoalStatus, result: Any, text: str) -> Outcome:
+        message = self._factory.checked(self._result_type, result)
+        if text:
+            self._fill_in(message, text)
+        return Outcome(status, message, text or text_of(message))
+
+    def _fill_in(self, result: Any, text: str) -> None:
+        """Write *text* to the result if it has an empty field for it."""
+        fields = self._factory.fields(self._result_type)
+        for name in TEXT_FIELDS:
+            field = fields.get(name)
+            if field is not None and field.base == "string" and not field.array and not getattr(result, name):
+                setattr(result, name, text)
+
+
+def text_of(result: Any) -> str:
+    """Return the text of a result message, or ""."""
+    for name in TEXT_FIELDS:
+        if name in (field_names(result) or ()):
+            text = getattr(result, name)
+            if isinstance(text, str) and text:
+                return text
+    return ""

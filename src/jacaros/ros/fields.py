@@ -1,6 +1,13 @@
-"""The types of message fields, read from the notations of the client libraries of ROS 1 and ROS 2."""
+"""The types of message fields, read from the notations of the client libraries, and from message definitions.
 
+Each line of a definition (``.msg``, and the parts of ``.srv`` and ``.action``) of ROS 1 or ROS 2 is a field,
+``float64[<=3] name default``, a constant, ``uint8 NAME=7``, or a comment. Default values are ignored: few definitions have
+them, and `jacaros.ros.message.DEFAULTS` holds those.
+"""
+
+import ast
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 TIME = "builtin_interfaces/msg/Time"
@@ -58,26 +65,6 @@ class FieldType:
         return f"{single}[<={self.length}]" if self.length else f"{single}[]"
 
 
-_ROS1 = re.compile(r"(?P<base>[\w/]+)(?P<array>\[(?P<length>\d*)\])?")
-_ROS1_BASES = {
-    "byte": "int8",
-    "char": "uint8",
-    "time": TIME,
-    "duration": DURATION,
-    "Header": "std_msgs/msg/Header",
-}
-
-
-def from_ros1(text: str) -> FieldType:
-    """Read ROS 1's notation: ``float64[36]``, ``geometry_msgs/Pose``, ``time``."""
-    match = _ROS1.fullmatch(text)
-    if match is None:
-        raise ValueError(f"not a ROS 1 field type: {text!r}")
-    base = _ROS1_BASES.get(match["base"], match["base"])
-    length = int(match["length"] or 0)
-    return FieldType(_full(base), match["array"] is not None, length, fixed=length > 0)
-
-
 _ROS2_ARRAY = re.compile(r"(?P<base>.+)\[(?P<length>\d+)\]")
 _ROS2_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*(?P<length>\d+))?>")
 _ROS2_STRING = re.compile(r"w?string(<(?P<bound>\d+)>)?")
@@ -101,3 +88,91 @@ def _ros2_single(text: str) -> FieldType:
 
 def _full(base: str) -> str:
     return base.replace("/", "/msg/") if base.count("/") == 1 else base
+
+
+_LINE = re.compile(
+    r"""\s* (?:@[a-z]+\s+)?                                   # an annotation of ROS 2
+    (?P<base>[A-Za-z]\w*(?:/\w+)*) (?:<=(?P<bound>\d+))?
+    (?P<array>\[(?:(?P<most><=)?(?P<length>\d+))?\])?
+    \s+ (?P<name>[A-Za-z]\w*) (?:\s*=\s*(?P<constant>.*\S)|\s*|\s+[^\s=].*)""",
+    re.VERBOSE,
+)
+_PLAIN = frozenset({*INTEGER_RANGES, *FLOATS, "bool", "string"})
+_OTHER_NAMES = {"time": TIME, "duration": DURATION, "Header": "std_msgs/msg/Header", "wstring": "string"}
+_COMMENT = re.compile(r"\s*#.*")
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A parsed message definition.
+
+    Attributes:
+        fields: types by name, in order.
+        constants: values by name, in order.
+    """
+
+    fields: Mapping[str, FieldType]
+    constants: Mapping[str, object]
+
+
+def parse_definition(text: str, package: str) -> Definition:
+    """Parse the definition of a message.
+
+    Args:
+        text: text of the definition.
+        package: package of types that are named without one.
+
+    Raises:
+        ValueError: a line is neither a field nor a constant, or a name occurs twice.
+    """
+    fields: dict[str, FieldType] = {}
+    constants: dict[str, object] = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        if _COMMENT.sub("", line).strip():
+            match = _LINE.fullmatch(line) or _LINE.fullmatch(_COMMENT.sub("", line))
+            if match is None:
+                raise ValueError(f"line {number}: expected a field or a constant, found `{line.strip()}`")
+            name = match["name"]
+            if name in fields or name in constants:
+                raise ValueError(f"line {number}: the name `{name}` occurs twice")
+            try:
+                if match["constant"] is None:
+                    fields[name] = _field(match, package)
+                else:
+                    constants[name] = _constant(match["base"], match["constant"])
+            except ValueError as problem:
+                raise ValueError(f"line {number}: {problem}") from None
+    return Definition(fields, constants)
+
+
+def from_ros1(text: str) -> FieldType:
+    """Read the notation of ROS 1's Python classes: ``float64[36]``, ``geometry_msgs/Pose``, ``time``."""
+    match = _LINE.fullmatch(f"{text} name")
+    if match is None:
+        raise ValueError(f"not a ROS 1 field type: {text!r}")
+    field = _field(match, "")
+    return replace(field, base={"byte": "int8", "char": "uint8"}.get(field.base, field.base))
+
+
+def _field(match: re.Match[str], package: str) -> FieldType:
+    base = _OTHER_NAMES.get(match["base"], match["base"])
+    if base not in _PLAIN:
+        parts = base.split("/")
+        base = f"{parts[0] if len(parts) > 1 else package}/msg/{parts[-1]}" if len(parts) < 3 else base
+    length = int(match["length"] or 0)
+    fixed = length > 0 and not match["most"]
+    return FieldType(base, match["array"] is not None, length, fixed, int(match["bound"] or 0))
+
+
+def _constant(base: str, text: str) -> object:
+    if base in ("string", "wstring"):
+        return ast.literal_eval(text) if re.fullmatch(r"'.*'|\".*\"", text) else text
+    text = _COMMENT.sub("", text)
+    if base == "bool" and text.lower() in ("true", "false", "0", "1"):
+        return text.lower() in ("true", "1")
+    if base in FLOATS:
+        return float(text)
+    if base in INTEGER_RANGES:
+        # ROS 1 and ROS 2 read a leading zero as C does: octal.
+        return int(text, 8) if re.fullmatch(r"[+-]?0[0-7]+", text) else int(text, 0)
+    raise ValueError(f"`{text}` is not a value of {base}")

@@ -11,18 +11,214 @@ import secrets
 import signal
 import socket
 import sys
-from collections.abc import Callable
+import uuid
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from jacaros.errors import UsageError
-from jacaros.ros.backend import Backend, Sample
-from jacaros.ros.brakes import CANCELLING, Brakes
-from jacaros.ros.graph_heartbeat import NEWEST, TEXT, topics_of
-from jacaros.ros.guarded import Named
-from jacaros.ros.guarding import Watch
-from jacaros.ros.heartbeat import NO_GUARD, line
+from jacaros.ros.backend import Backend
+from jacaros.ros.errors import RosError, ServiceError
+from jacaros.ros.guarded import Named, velocity
+from jacaros.ros.heartbeat import NEWEST, NO_GUARD, TEXT, line, topics_of
+from jacaros.ros.node import Publisher, Sample
+from jacaros.ros.services import Client
+
+LEAVING = 5.0
+"""Seconds without a heartbeat that agents may take to end."""
+
+
+class Watch:
+    """Decides from heartbeats whether the robot must be stopped: a state machine without input, output or clock.
+
+    idle      no agents, nothing to stop
+    watching  heartbeats arrive
+    tripped   they ceased: the robot is stopped until the agents return and release it
+
+    Times are seconds of one monotonic clock.
+
+    Args:
+        timeout: seconds without a heartbeat after which the guard trips.
+        on_trip: called with the reason when the guard trips.
+        on_release: called when the agents may drive again.
+
+    Attributes:
+        agents: whether agents are connected.
+        armed: whether they drive anything; otherwise there is nothing to stop.
+        driving: whether the robot may be moving when heartbeats cease. Only agents on other computers report this:
+            one that loses its network while its robot stands must not disturb other drivers of the robot.
+        tripped: why the robot is being stopped; empty if it is not.
+    """
+
+    def __init__(
+        self, timeout: float, on_trip: Callable[[str], None], on_release: Callable[[], None]
+    ) -> None:
+        self.agents = self.armed = False
+        self.driving = True
+        self.tripped = ""
+        self._timeout = timeout
+        self._on_trip, self._on_release = on_trip, on_release
+        self._patience = timeout
+        self._heard = 0.0
+
+    def connect(self, now: float, timeout: float | None = None) -> None:
+        """Note that agents have connected. A tripped guard stays tripped until they release it.
+
+        Args:
+            now: the time.
+            timeout: seconds without a heartbeat, instead of those of the watch.
+        """
+        self.agents = self.driving = True
+        self._patience = self._timeout if timeout is None else timeout
+        self._heard = now
+
+    def beat(self, now: float) -> None:
+        """Note a heartbeat, or any other message of the agents."""
+        self._heard = now
+
+    def permit(self) -> None:
+        """Release the robot: the agents are back and have interrupted their motions."""
+        if self.tripped:
+            self.tripped = ""
+            self._on_release()
+
+    def expect_end(self) -> None:
+        """Note that the agents are shutting down and stop their robot themselves: heartbeats may be late."""
+        self._patience = LEAVING
+
+    def leave(self) -> None:
+        """Note that the agents have ended normally and stopped their robot themselves."""
+        self.agents = False
+        self.permit()
+
+    def lose(self) -> None:
+        """Note that the connection broke without a goodbye: the agents' process has died."""
+        self.agents = False
+        self._trip("the agents' process died")
+
+    def look(self, now: float) -> float:
+        """Trip if heartbeats ceased. Return the seconds until the next check, at most the time-out."""
+        if not self.agents or self.tripped or (self.driving and not self.armed):
+            return self._timeout
+        silence = now - self._heard
+        if silence < self._patience:
+            return self._patience - silence
+        if self.driving:
+            self._trip(f"no heartbeat from the agents for {silence:.2f} s")
+        else:
+            self.leave()
+        return self._timeout
+
+    def _trip(self, why: str) -> None:
+        if self.armed and not self.tripped:
+            self.tripped = why
+            self._on_trip(why)
+
+
+CANCELLING = 0.25
+"""Seconds between two requests to cancel all goals, and the maximum wait for an answer."""
+
+
+class Brakes:
+    """Publishers and clients that stop everything the agents drive.
+
+    They are opened before they are needed, because discovery takes longer than a robot may keep driving.
+
+    Args:
+        backend: the guard's node.
+        log: called with one line.
+    """
+
+    def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
+        self.simulated_time = False
+        self._backend, self._log = backend, log
+        self._topics: dict[Named, Publisher] = {}
+        self._clients: dict[Named, Client] = {}
+        """Of ROS 2's services that cancel goals."""
+        self._cancels: dict[Named, Publisher] = {}
+        """Of actionlib's topics that cancel goals."""
+        self._asking: set[asyncio.Future[Any]] = set()
+        self._acquainted: set[str] = set()
+        """Names of actions whose server has answered a request to cancel."""
+
+    @property
+    def found(self) -> dict[str, int]:
+        """The number of receivers of each topic and action. Where it is 0, nothing can be stopped yet."""
+        publishers = (*self._topics.items(), *self._cancels.items())
+        counts = {name: publisher.subscription_count for (name, _), publisher in publishers}
+        return counts | {name: int(name in self._acquainted) for name, _ in self._clients}
+
+    @property
+    def described(self) -> str:
+        """Text that lists what is stopped."""
+        goals = [f"cancels all goals of {name}" for name, _ in (*self._clients, *self._cancels)]
+        return ", ".join([*goals, *(f"sends zero velocity to {name}" for name, _ in self._topics)])
+
+    def cover(self, topics: list[Named], actions: list[Named]) -> None:
+        """Open what is named, and close the rest."""
+        _keep(self._topics, topics, self._open_topic, self._log)
+        if self._backend.ros_version == 1:
+            _keep(self._cancels, actions, self._open_cancel, self._log)
+        else:
+            _keep(self._clients, actions, self._open_client, self._log)
+
+    def stop(self) -> None:
+        """Send zero velocity to every topic."""
+        for (_, kind), publisher in self._topics.items():
+            now = 0.0 if self.simulated_time else self._backend.clock.now()
+            publisher.publish(velocity(publisher, kind, now))
+
+    def cancel(self) -> None:
+        """Ask every action server to cancel all its goals, without waiting for the answers."""
+        # In both protocols an empty id and no stamp mean all goals.
+        for publisher in self._cancels.values():
+            publisher.publish(publisher.message())
+        for client in self._clients.values():
+            self._begin(_call(client, {}))
+
+    def _open_topic(self, item: Named) -> Publisher:
+        return self._backend.publisher(*item)
+
+    def _open_cancel(self, item: Named) -> Publisher:
+        return self._backend.publisher(f"{item[0]}/cancel", "actionlib_msgs/msg/GoalID")
+
+    def _open_client(self, item: Named) -> Client:
+        client = self._backend.client(f"{item[0]}/_action/cancel_goal", "action_msgs/srv/CancelGoal")
+        self._acquainted.discard(item[0])
+        self._begin(self._get_acquainted(item[0], client))
+        return client
+
+    async def _get_acquainted(self, action: str, client: Client) -> None:
+        """Cancel a goal that does not exist: the first call to a server is slower than later ones."""
+        nothing = {"goal_info": {"goal_id": {"uuid": list(uuid.uuid4().bytes)}}}
+        with suppress(RosError):
+            await client.call(nothing, None)
+            self._acquainted.add(action)
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.ensure_future(work)
+        self._asking.add(task)
+        task.add_done_callback(self._asking.discard)
+
+
+async def _call(client: Client, request: dict[str, Any]) -> None:
+    with suppress(ServiceError):
+        await client.call(request, CANCELLING)
+
+
+def _keep(
+    made: dict[Named, Any], wanted: list[Named], make: Callable[[Named], Any], log: Callable[[str], None]
+) -> None:
+    for item in [item for item in made if item not in wanted]:
+        made.pop(item).close()
+    for item in wanted:
+        if item not in made:
+            try:
+                made[item] = make(item)
+            except RosError as problem:
+                log(f"warning: {item[0]} cannot be stopped: {problem}")
+
 
 PERIOD = 0.05
 """Seconds between two zero velocities while the robot is being stopped."""

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Publisher
 
 STAMPED = "geometry_msgs/msg/TwistStamped"
 VELOCITIES = ("geometry_msgs/msg/Twist", STAMPED)

@@ -5,7 +5,10 @@ import concurrent.futures
 import threading
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Generic, TypeVar
+
+from jacaros.ros.waiting import settle
 
 T = TypeVar("T")
 
@@ -119,14 +122,7 @@ def ask(
         Exception: the exception that was passed.
     """
     answer: concurrent.futures.Future[Any] = concurrent.futures.Future()
-
-    def report(result: T | None, problem: Exception | None) -> None:
-        if problem is not None:
-            answer.set_exception(problem)
-        else:
-            answer.set_result(result)
-
-    alive = post(loop, question, report)
+    alive = post(loop, question, partial(settle, answer))
     while alive:
         # Not `result(timeout)`, because the passed exception may be a TimeoutError itself.
         if concurrent.futures.wait([answer], timeout=0.2).done:
@@ -144,21 +140,13 @@ def in_thread(loop: asyncio.AbstractEventLoop, work: Callable[[], T], name: str)
     """
     future: asyncio.Future[T] = loop.create_future()
 
-    def settle(result: T | None, problem: BaseException | None) -> None:
-        if future.done():
-            return
-        if problem is not None:
-            future.set_exception(problem)
-        else:
-            future.set_result(result)  # type: ignore[arg-type]
-
     def body() -> None:
         try:
             result = work()
         except BaseException as problem:
-            post(loop, settle, None, problem)
+            post(loop, settle, future, None, problem)
         else:
-            post(loop, settle, result, None)
+            post(loop, settle, future, result, None)
 
     threading.Thread(target=body, name=name, daemon=True).start()
     return future

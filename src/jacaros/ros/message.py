@@ -6,14 +6,14 @@ on the client library). The differences are handled here: stamps, defaults and c
 """
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping
+from array import array
+from collections.abc import Iterable, Mapping, Sequence, Set
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.files.texts import aside
 from jacaros.ros.errors import MessageMismatch, NameInvalid
-from jacaros.ros.fields import DURATION, TIME, FieldType
-from jacaros.ros.values import array_of_numbers, single_value, written
+from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
 
 TIMES = (TIME, DURATION)
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
@@ -29,55 +29,62 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "nav2_msgs/action/UndockRobot_Goal": {"max_undocking_time": 30.0},
     "nav2_msgs/action/UndockRobot_Result": {"success": True},
 }
-"""Default values of ROS 2's definitions; ROS 1 and the memory graph have none, so they are set there, too, to avoid
-zero rotations."""
+"""Default values of ROS 2's definitions. Families of classes without them (of ROS 1, and our own) set these, to avoid zero
+rotations."""
 
 
-class Schema(Protocol):
-    """The interface of a family of message classes (of rospy, rclpy or our own)."""
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a message type in full form, in order. Raises `UnknownInterface`."""
-
-    def look_in(self, folder: Path) -> None:
-        """Search *folder* for definitions, too, if the family uses definition files."""
-
-    def new(self, type_name: str) -> Any:
-        """Make a message with the library's own defaults. Raises `UnknownInterface`."""
-
-    def numbers(self, field: FieldType, values: Any) -> Any:
-        """Convert the result of `array_of_numbers` to the form that the library stores in *field*."""
-
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Convert a checked number, bool or text to the form that the library stores in *field*."""
-
-
-class MessageFactory:
-    """Makes messages of one family of classes from keywords.
+class Schema:
+    """A family of message classes (of rospy, rclpy or our own), and the messages made of them.
 
     Args:
-        schema: the family.
+        roots: folders with further definitions, if the family uses definition files; see `jacaros.ros.interfaces`.
     """
 
-    def __init__(self, schema: Schema) -> None:
-        self.schema = schema
-        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
-        self._classes: dict[str, type] = {}
+    def __init__(self, roots: Sequence[Path] = ()) -> None:
+        self._roots = tuple(roots)
+        self._fields: dict[str, Mapping[str, FieldType]] = {}
+        self._classes: dict[str, Any] = {}
+
+    def look_in(self, folder: Path) -> None:
+        """Search *folder* for definitions, too, from now on."""
+        if folder not in self._roots:
+            self._roots = (*self._roots, folder)
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type in full form, in the order of its definition.
+        """Return the fields of a message type in full form, in the order of its definition.
 
         Raises:
             UnknownInterface: the type is unknown.
         """
-        return self.schema.fields(type_name)
+        fields = self._fields.get(type_name)
+        if fields is None:
+            fields = self._fields[type_name] = self._read_fields(type_name)
+        return fields
 
-    def message_class(self, type_name: str) -> type:
-        """Return the client library's class of a type in full form. Raises `UnknownInterface`."""
-        kind = self._classes.get(type_name)
-        if kind is None:
-            kind = self._classes[type_name] = type(self.schema.new(type_name))
-        return kind
+    def message_class(self, type_name: str) -> Any:
+        """Return the class of a message type in full form. Raises `UnknownInterface`."""
+        found = self._classes.get(type_name)
+        if found is None:
+            found = self._classes[type_name] = self._find_class(type_name)
+        return found
+
+    def new(self, type_name: str) -> Any:
+        """Make a message with the family's own defaults. Raises `UnknownInterface`."""
+        return self.message_class(type_name)()
+
+    def numbers(self, field: FieldType, values: Any) -> Any:
+        """Convert the result of `array_of_numbers` to the form that the family stores in *field*."""
+        return values
+
+    def single(self, field: FieldType, value: Any) -> Any:
+        """Convert a checked number, bool or text to the form that the family stores in *field*."""
+        return value
+
+    def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        raise NotImplementedError
+
+    def _find_class(self, type_name: str) -> Any:
+        raise NotImplementedError
 
     def make(self, type_name: str, values: Mapping[str, Any] | None = None) -> Any:
         """Make a message; missing fields get their defaults.
@@ -95,11 +102,21 @@ class MessageFactory:
             return self._time(type_name, values or {})
         return self._make(type_name, values or {}, "")
 
+    def checked(self, type_name: str, given: Any) -> Any:
+        """Return *given* as a message of a type: unchanged, made from a mapping, or with all defaults for None.
+
+        Raises:
+            MessageMismatch: it does not match the type definition.
+        """
+        if given is None or isinstance(given, Mapping):
+            return self.make(type_name, given)
+        if not isinstance(given, self.message_class(type_name)):
+            raise MessageMismatch(f"expected a {type_name}, found {given!r}", type_name)
+        return given
+
     def _make(self, type_name: str, values: Mapping[str, Any], path: str) -> Any:
-        message = self.schema.new(type_name)
-        for set_default in self._default_setters(type_name):
-            set_default(message)
-        fields = self.schema.fields(type_name)
+        message = self.new(type_name)
+        fields = self.fields(type_name)
         for name, value in values.items():
             field = fields.get(name)
             where = f"{path}.{name}" if path else name
@@ -117,16 +134,16 @@ class MessageFactory:
             if not field.array:
                 return self._single(field, value, where)
             if field.is_numeric:
-                return self.schema.numbers(field, array_of_numbers(field, value))
+                return self.numbers(field, array_of_numbers(field, value))
             return self._list(field, value, where)
         except (TypeError, ValueError, OverflowError) as problem:
-            known = tuple(self.schema.fields(owner))
+            known = tuple(self.fields(owner))
             text = f"{owner}: field {where} is {field}, but {problem}"
             raise MessageMismatch(text, owner, where, known) from None
 
     def _single(self, field: FieldType, value: Any, where: str) -> Any:
         if not field.is_message:
-            return self.schema.single(field, single_value(field, value))
+            return self.single(field, single_value(field, value))
         if field.base in TIMES:
             return self._time(field.base, value)
         if isinstance(value, Mapping):
@@ -144,7 +161,7 @@ class MessageFactory:
         return elements
 
     def _time(self, base: str, value: Any) -> Any:
-        made = self.schema.new(base)
+        made = self.new(base)
         if isinstance(value, int | float) and not isinstance(value, bool):
             stamp(made, value)
         elif isinstance(value, Mapping):
@@ -159,29 +176,6 @@ class MessageFactory:
         else:
             raise TypeError(f"{written(value)} is given; write seconds or a time")
         return made
-
-    def _default_setters(self, type_name: str) -> tuple[Callable[[Any], None], ...]:
-        setters = self._setters.get(type_name)
-        if setters is None:
-            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
-        return setters
-
-    def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterable[Callable[[Any], None]]:
-        for name, value in DEFAULTS.get(type_name, {}).items():
-            if getattr(self.schema.new(type_name), name) != value:
-                yield _setter(path, name, value)
-        for name, field in self.schema.fields(type_name).items():
-            if field.is_message and not field.array and field.base not in TIMES:
-                yield from self._find_defaults(field.base, (*path, name))
-
-
-def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], None]:
-    def set_default(message: Any) -> None:
-        for step in path:
-            message = getattr(message, step)
-        setattr(message, name, value)
-
-    return set_default
 
 
 def _unknown_field(owner: str, where: str, name: str, fields: Mapping[str, FieldType]) -> MessageMismatch:
@@ -288,3 +282,116 @@ def _dataclass_fields(kind: type) -> list[str]:
     if names is None:
         names = _names_by_class[kind] = [field.name for field in dataclasses.fields(kind)]
     return names
+
+
+def written(value: object) -> str:
+    """Format a value for an error message: ``repr`` for built-in types, ``str`` for others, such as terms."""
+    return repr(value) if type(value).__module__ == "builtins" else str(value)
+
+
+def single_value(field: FieldType, value: Any) -> bool | int | float | str:
+    """Return *value* as a plain Python value of the base type of *field* (not as an array).
+
+    Integer fields accept whole floating-point numbers, and all fields accept numpy scalars.
+
+    Raises:
+        TypeError: the value has the wrong type.
+        ValueError: the number is out of range, or the string too long.
+    """
+    if hasattr(value, "item") and getattr(value, "shape", None) == ():
+        value = value.item()
+    if field.base == "string":
+        return _text(field, value)
+    if field.base == "bool":
+        if isinstance(value, bool):
+            return value
+    elif not isinstance(value, bool):
+        if field.base in FLOATS and isinstance(value, int | float):
+            return float(value)
+        if field.base in INTEGER_RANGES:
+            return _integer(field.base, value)
+    raise TypeError(f"{written(value)} is given")
+
+
+def _text(field: FieldType, value: Any) -> str:
+    if isinstance(value, str):
+        if field.bound and len(value) > field.bound:
+            raise ValueError(f"a string of {len(value)} characters is given")
+        return str.__str__(value)  # convert subclasses, such as atoms, to plain strings
+    raise TypeError(f"{written(value)} is given")
+
+
+def _integer(base: str, value: Any) -> int:
+    if base == "byte" and isinstance(value, bytes) and len(value) == 1:
+        return value[0]
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    if not isinstance(value, int):
+        raise TypeError(f"{written(value)} is given")
+    low, high = INTEGER_RANGES[base]
+    if not low <= value <= high:
+        raise ValueError(f"{value} is given; it must be from {low} to {high}")
+    return value
+
+
+_TYPECODES = {
+    "float64": "d",
+    "float32": "f",
+    "int8": "b",
+    "uint8": "B",
+    "byte": "B",
+    "char": "B",
+    "int16": "h",
+    "uint16": "H",
+    "int32": "i",
+    "uint32": "I",
+    "int64": "q",
+    "uint64": "Q",
+}
+"""Type codes of `array.array`, the same as in rclpy."""
+
+
+def array_of_numbers(field: FieldType, values: Any) -> Any:
+    """Return *values* as an `array.array` of the field's type, or as a list for booleans.
+
+    Accepts lists, tuples, ranges, bytes, numpy arrays and any other iterable.
+
+    Raises:
+        TypeError: an element is not a number, or has a fraction in an integer field.
+        ValueError: wrong length or out of range.
+    """
+    if isinstance(values, str | Mapping | Set) or not isinstance(values, Iterable):
+        raise TypeError(f"{_shortened(values)} is given")
+    made = _converted(field, values)
+    if field.length and (len(made) != field.length if field.fixed else len(made) > field.length):
+        raise ValueError(f"{len(made)} elements are given")
+    return made
+
+
+def _converted(field: FieldType, values: Any) -> Any:
+    if isinstance(values, bytes | bytearray | memoryview):
+        values = array("B", bytes(values))  # one number per byte, not raw bytes of wider numbers
+    code = _TYPECODES.get(field.base)
+    if code is not None and isinstance(values, array):
+        if values.typecode == code:
+            return values
+    elif hasattr(values, "tolist"):
+        values = values.tolist()
+    if code is not None:
+        try:
+            return array(code, values)
+        except (OverflowError, TypeError):
+            pass  # an element is invalid, or is a whole float for an integer field: check each one below
+    checked: list[Any] = [single_value(field.element, each) for each in values]
+    return checked if code is None else array(code, checked)
+
+
+def zeros(field: FieldType, length: int) -> Any:
+    """Make *length* zeros of the field's type: an `array.array`, or a list for booleans."""
+    code = _TYPECODES.get(field.base)
+    return [False] * length if code is None else array(code, bytes(length * array(code).itemsize))
+
+
+def _shortened(values: Any) -> str:
+    text = repr(values)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -14,7 +14,7 @@ class Middleware:
         backend: the class of its nodes, as ``MODULE:NAME``.
         library: Python library that it needs; it is imported only when the kind is chosen.
         install: what to do if the library is missing.
-        option: the attribute of `jacaros.ros.address.GraphAddress` that selects one of its graphs.
+        option: the attribute of `jacaros.ros.open.GraphAddress` that selects one of its graphs.
         keyword: the parameter of the class for this option.
         variable: environment variable that selects the graph if no option does.
         default: the graph without both.

@@ -5,11 +5,11 @@ declared, and "a node's parameters" are those below its name.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from jacaros.ros.errors import ParameterRefused
+from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 
 ParameterValue = bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | bytes
 """The values that a parameter can have everywhere; ROS 1 also has mappings, which `Parameters.get` returns by their
@@ -117,7 +117,7 @@ class Parameters(Protocol):
         """Declare a parameter of our own node and return its value (that of the launch file, if given).
 
         Raises:
-            CapabilityMissing: the backend does not declare parameters (`DECLARED_PARAMETERS`), or the node is
+            CapabilityMissing: the backend does not declare parameters (`Capability.DECLARED_PARAMETERS`), or the node is
                 another.
             ParameterRefused: it is already declared, or the default violates the declaration.
         """
@@ -158,11 +158,11 @@ class Parameters(Protocol):
             A function that removes the callback.
 
         Raises:
-            CapabilityMissing: the middleware does not report changes (`PARAMETER_EVENTS`).
+            CapabilityMissing: the middleware does not report changes (`Capability.PARAMETER_EVENTS`).
         """
 
 
-class GivenParameters:
+class GivenParameters(dict[str, ParameterValue]):
     """Values of parameters from outside, and which of them are declared.
 
     As in other nodes of ROS 2, a value takes effect when its parameter is declared; an undeclared one does not exist.
@@ -172,26 +172,108 @@ class GivenParameters:
     """
 
     def __init__(self, values: Mapping[str, ParameterValue]) -> None:
-        self._values = dict(values)
+        super().__init__(values)
         self._taken: set[str] = set()
-
-    def value(self, name: str) -> ParameterValue | None:
-        """Return the value for a parameter; None if none exists."""
-        return self._values.get(name)
 
     def take(self, name: str) -> ParameterValue | None:
         """Return the value for a parameter that is being declared; None if none exists."""
         self._taken.add(name)
-        return self._values.get(name)
-
-    def items(self) -> Iterator[tuple[str, ParameterValue]]:
-        """Return all names and values."""
-        yield from self._values.items()
+        return self.get(name)
 
     def untaken(self) -> list[str]:
         """Return the names of undeclared parameters, sorted."""
-        return sorted(set(self._values) - self._taken)
+        return sorted(set(self) - self._taken)
 
     def known(self) -> list[str]:
         """Return the names of all declared parameters, sorted."""
         return sorted(self._taken)
+
+
+class DeclaredParameters:
+    """The declarations and values of a node.
+
+    Args:
+        node: its absolute name, for messages.
+        given: values from outside, in place of defaults.
+        changed: called after every declaration and change.
+        log: called with one line about a failed check.
+    """
+
+    def __init__(
+        self,
+        node: str,
+        given: GivenParameters,
+        changed: Callable[[Mapping[str, ParameterValue]], None],
+        log: Callable[[str], None],
+    ) -> None:
+        self._node = node
+        self._given = given
+        self._changed = changed
+        self._log = log
+        self._declarations: dict[str, Declaration] = {}
+        self._values: dict[str, ParameterValue] = {}
+
+    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+        """Declare a parameter and return its value; see `Parameters.declare`."""
+        if name in self._declarations:
+            raise ParameterRefused(f"parameter {name} of {self._node} is already declared")
+        if not name:
+            raise ParameterRefused(f"a parameter of {self._node} has an empty name")
+        value = default = checked_value(declaration.default)
+        if (given := self._given.take(name)) is not None:
+            value = checked_value(given)
+        for candidate in (default, value):
+            self._require(name, declaration, candidate)
+        self._declarations[name] = declaration
+        self._values[name] = value
+        self._changed({name: value})
+        return value
+
+    def withdraw(self, name: str) -> None:
+        """Undeclare a parameter. Raises `ParameterUnknown`."""
+        self.get(name)
+        del self._declarations[name], self._values[name]
+
+    def names(self) -> list[str]:
+        """Return all names, sorted."""
+        return sorted(self._values)
+
+    def get(self, name: str) -> ParameterValue:
+        """Return a value. Raises `ParameterUnknown`."""
+        if name not in self._values:
+            raise ParameterUnknown(self._unknown(name))
+        return self._values[name]
+
+    def set(self, name: str, value: ParameterValue) -> None:
+        """Change a value. Raises `ParameterUnknown` or `ParameterRefused`."""
+        declaration = self._declarations.get(name)
+        if declaration is None:
+            raise ParameterUnknown(self._unknown(name))
+        if declaration.read_only:
+            raise ParameterRefused(f"parameter {name} of {self._node} is read-only")
+        taken = checked_value(value)
+        self._require(name, declaration, taken)
+        self._values[name] = taken
+        self._changed({name: taken})
+
+    def _require(self, name: str, declaration: Declaration, value: ParameterValue) -> None:
+        what = f"parameter {name} of {self._node}"
+        if (fault := fault_of(value, declaration)) is not None:
+            raise ParameterRefused(f"{what} is {fault}")
+        reason = self._judged(declaration, value)
+        if reason is not None:
+            raise ParameterRefused(f"{what} cannot be {value!r}: {reason}")
+
+    def _judged(self, declaration: Declaration, value: ParameterValue) -> str | None:
+        if declaration.accept is None:
+            return None
+        try:
+            return declaration.accept(value)
+        except Exception as problem:  # the node keeps running, and the caller receives the reason
+            reason = f"{type(problem).__name__}: {problem}"
+            self._log(f"the check of a parameter of {self._node} failed: {reason}")
+            return reason
+
+    def _unknown(self, name: str) -> str:
+        known = f"it has {', '.join(self.names())}" if self._values else "it has none"
+        return f"node {self._node} has no parameter {name}; {known}"

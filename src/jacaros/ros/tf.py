@@ -4,11 +4,10 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.ros.backend import Backend, Publisher, Sample
 from jacaros.ros.errors import CapabilityMissing, TransformUnavailable, UnknownInterface
 from jacaros.ros.message import to_seconds
-from jacaros.ros.protocols.tf_buffer import TransformBuffer
-from jacaros.ros.protocols.transform import Transform
+from jacaros.ros.node import Node, Publisher, Sample
+from jacaros.ros.protocols.transform import Transform, TransformBuffer
 from jacaros.ros.qos import QoS
 from jacaros.ros.waiting import Waiting, within
 
@@ -31,7 +30,7 @@ class TransformBroadcaster:
         node: the backend.
     """
 
-    def __init__(self, node: Backend) -> None:
+    def __init__(self, node: Node) -> None:
         self._node = node
         self._publishers: dict[bool, Publisher] = {}
         self._static: dict[str, Any] = {}
@@ -59,13 +58,12 @@ class TransformListener:
 
     Args:
         node: the backend.
-        log: called with one line about waits and jumps of time.
     """
 
-    def __init__(self, node: Backend, log: Callable[[str], None]) -> None:
-        self._node, self._report = node, log
+    def __init__(self, node: Node) -> None:
+        self._node = node
         self._listening = False
-        self._buffer = TransformBuffer(self._log)
+        self._buffer = TransformBuffer(node.log)
         self._latest = 0.0
         self._reported: set[str] = set()
         self._waiting: list[Callable[[], None]] = []
@@ -93,7 +91,7 @@ class TransformListener:
                 raise
         what = f"transform from {source} to {target}"
         help = "is the node that publishes it running?"
-        with Waiting(self._node.clock, self._report, what, help, quiet=QUIET):
+        with Waiting(self._node.clock, self._node.log, what, help, QUIET).during():
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(
@@ -142,15 +140,12 @@ class TransformListener:
             )
             if fault is not None and fault not in self._reported:
                 self._reported.add(fault)
-                self._log(f"{sample.topic}: {fault}; transform ignored")
+                self._node.log(f"{sample.topic}: {fault}; transform ignored")
         for look_again in list(self._waiting):
             look_again()
 
-    def _log(self, text: str) -> None:
-        self._report(text)
 
-
-def _require_type(node: Backend) -> None:
+def _require_type(node: Node) -> None:
     try:
         node.message(MESSAGE)
     except UnknownInterface as problem:

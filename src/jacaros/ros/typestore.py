@@ -11,13 +11,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from jacaros.ros.definition_format import Definition, parse_definition
 from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.fields import FieldType
-from jacaros.ros.interfaces import BUILT_IN, definition, split_action, split_service
-from jacaros.ros.message import DEFAULTS
-from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.ros.values import zeros
+from jacaros.ros.fields import Definition, FieldType, parse_definition
+from jacaros.ros.interfaces import BUILT_IN, KINDS, PARTS, definition, how_to_define, split
+from jacaros.ros.message import DEFAULTS, Schema, zeros
 
 _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
 
@@ -83,7 +80,7 @@ def is_stored(type_name: str) -> bool:
     return type_name in _store()
 
 
-class DefinitionSchema:
+class DefinitionSchema(Schema):
     """Message classes of ROS 2 Jazzy, plus those defined in folders.
 
     Args:
@@ -91,22 +88,8 @@ class DefinitionSchema:
     """
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
-        self._roots = tuple(roots)
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
+        super().__init__(roots)
         self._makers: dict[str, Callable[[], Any]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """From now on, also look for definitions in *folder*."""
-        if folder not in self._roots:
-            self._roots = (*self._roots, folder)
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of the type with this full name; raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            self._require(type_name)
-            fields = self._fields[type_name] = _store().definition(type_name).fields
-        return fields
 
     def new(self, type_name: str) -> Any:
         """Create a message with zeros, empty strings and empty sequences; raises `UnknownInterface`."""
@@ -115,73 +98,54 @@ class DefinitionSchema:
             maker = self._makers[type_name] = self._compile(type_name)
         return maker()
 
-    def numbers(self, field: FieldType, values: Any) -> Any:
-        """Keep arrays as they are."""
-        return values
-
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Keep plain values as they are."""
-        return value
-
-    def service(self, type_name: str) -> None:
-        """Load the request and response types of a service; raises `UnknownInterface`."""
-        self._require_parts(type_name, "service", (request_type, response_type), split_service)
-
-    def action(self, type_name: str) -> None:
-        """Load the goal, result and feedback types of an action; raises `UnknownInterface`."""
-        self._require_parts(type_name, "action", (goal_type, result_type, feedback_type), split_action)
+    def load(self, type_name: str) -> None:
+        """Load the message types of a service or an action; raises `UnknownInterface`."""
+        kind = type_name.split("/")[1]
+        if not all(f"{type_name}_{part}" in _store() for part in PARTS[kind]):
+            text = self._definition(type_name)
+            try:
+                parts = split(type_name, text)
+            except ValueError as problem:
+                raise UnknownInterface(f"the definition of {type_name} is wrong: {problem}") from None
+            for part, its_text in parts.items():
+                self._register(part, its_text)
 
     def offered(self, type_name: str) -> None:
         """Raise `UnknownInterface` for a service or an action without a definition.
 
         The definition is parsed on the first request or goal: parsing takes milliseconds, and a robot serves many types.
         """
-        kind = type_name.split("/")[1]
-        part = request_type(type_name) if kind == "srv" else goal_type(type_name)
-        if part not in _store():
-            self._definition(type_name, "service" if kind == "srv" else "action", kind)
+        if f"{type_name}_{PARTS[type_name.split('/')[1]][0]}" not in _store():
+            self._definition(type_name)
+
+    def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        self._require(type_name)
+        return _store().definition(type_name).fields
+
+    def _find_class(self, type_name: str) -> Any:
+        self._require(type_name)
+        return _store().message_class(type_name)
 
     def _require(self, type_name: str) -> None:
         if type_name in _store():
             return
         whole, _, part = type_name.rpartition("_")
-        if "/srv/" in type_name and part in ("Request", "Response"):
-            self.service(whole)
-        elif "/action/" in type_name and part in ("Goal", "Result", "Feedback"):
-            self.action(whole)
-        elif (kind := type_name.split("/")[1]) in ("srv", "action"):
+        kind = type_name.split("/")[1]
+        if part in PARTS.get(kind, ()):
+            self.load(whole)
+        elif kind in PARTS:
             what = "a service" if kind == "srv" else "an action"
             raise UnknownInterface(
                 f"{type_name} is the type of {what}, not of messages; write package/msg/Name"
             )
         else:
-            self._register(type_name, self._definition(type_name, "message", "msg"))
+            self._register(type_name, self._definition(type_name))
 
-    def _require_parts(
-        self,
-        type_name: str,
-        what: str,
-        names: Sequence[Callable[[str], str]],
-        split: Callable[[str], Sequence[str]],
-    ) -> None:
-        types = [name(type_name) for name in names]
-        if all(part in _store() for part in types):
-            return
-        text = self._definition(type_name, what, type_name.split("/")[1])
-        try:
-            parts = split(text)
-        except ValueError as problem:
-            raise UnknownInterface(f"the definition of {type_name} is wrong: {problem}") from None
-        for part, definition_of_part in zip(types, parts, strict=True):
-            self._register(part, definition_of_part)
-
-    def _definition(self, type_name: str, what: str, ending: str) -> str:
+    def _definition(self, type_name: str) -> str:
         text = definition(type_name, self._roots)
         if text is None:
-            raise UnknownInterface(
-                f"{what} type {type_name} is not known here; put its definition into a folder and name that "
-                f"folder in interface_paths (in a mapping file: interfaces): {type_name}.{ending}"
-            )
+            kind = KINDS[type_name.split("/")[1]]
+            raise UnknownInterface(f"{kind} type {type_name} is not known here; {how_to_define(type_name)}")
         return text
 
     def _register(self, type_name: str, text: str) -> None:
@@ -204,20 +168,20 @@ class DefinitionSchema:
         """Return an expression that creates a message; add the objects it refers to to *names*."""
         defaults = DEFAULTS.get(type_name, {})
         values = [
-            repr(defaults[name]) if name in defaults else self._value(field, names)
+            repr(defaults[name]) if name in defaults else self._default(field, names)
             for name, field in self.fields(type_name).items()
         ]
         return f"{_named(_store().message_class(type_name), names)}({', '.join(values)})"
 
-    def _value(self, field: FieldType, names: dict[str, Any]) -> str:
+    def _default(self, field: FieldType, names: dict[str, Any]) -> str:
         if not field.array:
-            return self._single(field, names)
+            return self._single_default(field, names)
         length = field.length if field.fixed else 0
         if field.is_numeric:
             return f"{_named(zeros(field, length), names)}[:]"
-        return f"[{self._single(field, names)} for _ in range({length})]" if length else "[]"
+        return f"[{self._single_default(field, names)} for _ in range({length})]" if length else "[]"
 
-    def _single(self, field: FieldType, names: dict[str, Any]) -> str:
+    def _single_default(self, field: FieldType, names: dict[str, Any]) -> str:
         return self._message(field.base, names) if field.is_message else repr(_ZEROS.get(field.base, 0))
 
 

@@ -1,8 +1,10 @@
 """Logged waiting: the start, a message with help after a few seconds, and the end."""
 
 import asyncio
-from collections.abc import Callable
-from types import TracebackType
+import concurrent.futures
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from jacaros.files.texts import is_worth_a_line
@@ -16,40 +18,17 @@ RETRY = 0.1
 """Seconds between two attempts to call a missing service."""
 
 
-class Absence:
-    """Repeated waits for one thing that timed out: the 1st, 10th, 100th, … is logged."""
-
-    def __init__(self) -> None:
-        self._reported = False
-        self._waits = 0
-
-    def wait(self) -> bool:
-        """Count a wait. Return whether to log it."""
-        self._waits += 1
-        return is_worth_a_line(self._waits)
-
-    def report(self, log: Callable[[str], None], what: str) -> None:
-        """Log that it is awaited."""
-        self._reported = True
-        log(f"waiting for the {what}")
-
-    def end(self, log: Callable[[str], None], what: str) -> None:
-        """Log that it was found, if the wait was logged; the next wait is the first again."""
-        if self._reported:
-            log(f"found the {what}")
-        self._reported, self._waits = False, 0
-
-
 class Waiting:
-    """Logs the wait for something that is missing; a context manager around the wait.
+    """Logs waits for one thing: the start, a message with help after a few seconds, and the end.
+
+    Of waits one after another in which it was not found, the 1st, 10th, 100th, … is logged.
 
     Args:
-        clock: measures the wait.
+        clock: measures the waits.
         log: called with one line.
         what: the thing, as in ``service /add (example_interfaces/srv/AddTwoInts)``.
         help: what the user can do about it.
         quiet: seconds without a message: for repeated waits that usually end soon.
-        absence: earlier waits that timed out.
     """
 
     def __init__(
@@ -57,41 +36,86 @@ class Waiting:
         clock: Clock,
         log: Callable[[str], None],
         what: str,
-        help: str,
+        help: str = "is the node that offers it running?",
         quiet: float = 0.0,
-        absence: Absence | None = None,
     ) -> None:
-        self._clock = clock
+        self.clock = clock
+        self.what = what
         self._log = log
-        self._what = what
         self._help = help
         self._quiet = quiet
-        self._absence = absence if absence is not None else Absence()
-        self._timer: Timer | None = None
+        self._reported = False
+        self._waits = 0
 
-    def __enter__(self) -> "Waiting":
-        if not self._absence.wait():
-            return self
-        if self._quiet > 0.0:
-            self._timer = self._clock.call_later(self._quiet, self._report)
-        else:
-            self._report()
-        return self
+    def begin(self) -> Callable[[bool], None]:
+        """Begin a wait. Return a function that ends it; it takes whether the thing was found."""
+        self._waits += 1
+        timer: Timer | None = None
 
-    def __exit__(
-        self, kind: type[BaseException] | None, problem: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-        if kind is None:
-            self._absence.end(self._log, self._what)
+        def report() -> None:
+            nonlocal timer
+            self._reported = True
+            self._log(f"waiting for the {self.what}")
+            timer = self.clock.call_later(MISSING_AFTER, self._missing)
 
-    def _report(self) -> None:
-        self._absence.report(self._log, self._what)
-        self._timer = self._clock.call_later(MISSING_AFTER, self._missing)
+        def end(found: bool) -> None:
+            if timer is not None:
+                timer.cancel()
+            if found:
+                self.found()
+
+        if is_worth_a_line(self._waits):
+            if self._quiet > 0.0:
+                timer = self.clock.call_later(self._quiet, report)
+            else:
+                report()
+        return end
+
+    @contextmanager
+    def during(self) -> Iterator[None]:
+        """Wrap one wait, which fails with an exception."""
+        found, end = False, self.begin()
+        try:
+            yield
+            found = True
+        finally:
+            end(found)
+
+    def found(self) -> None:
+        """Log that the thing was found, if a wait was logged; the next wait is the first again."""
+        if self._reported:
+            self._log(f"found the {self.what}")
+        self._reported, self._waits = False, 0
 
     def _missing(self) -> None:
-        self._log(f"the {self._what} is missing; still trying; {self._help}")
+        self._log(f"the {self.what} is missing; still trying; {self._help}")
+
+
+class Deadline:
+    """The end of a wait.
+
+    Args:
+        clock: measures the time.
+        timeout: seconds from now; None: no limit.
+    """
+
+    def __init__(self, clock: Clock, timeout: float | None) -> None:
+        self.timeout = timeout
+        self._clock = clock
+        self._end = math.inf if timeout is None else clock.elapsed + timeout
+
+    @property
+    def left(self) -> float | None:
+        """The remaining seconds; None: no limit."""
+        return None if self.timeout is None else self._end - self._clock.elapsed
+
+    def comes_within(self, seconds: float) -> bool:
+        """Return whether the wait ends in less than *seconds*."""
+        return self._clock.elapsed + seconds > self._end
+
+    def postpone(self, seconds: float) -> None:
+        """Do not count *seconds* of the wait."""
+        self._end += seconds
 
 
 async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None) -> T:
@@ -113,7 +137,9 @@ async def within(clock: Clock, future: asyncio.Future[T], seconds: float | None)
             timer.cancel()
 
 
-def settle(future: asyncio.Future[Any], response: Any, problem: Exception | None) -> None:
+def settle(
+    future: asyncio.Future[Any] | concurrent.futures.Future[Any], response: Any, problem: BaseException | None
+) -> None:
     """Set the response or failure of a call, unless it has ended: timed out or cancelled."""
     if future.done():
         return

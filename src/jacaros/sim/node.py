@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from functools import cache, partial
 from typing import Any, cast
 
-from jacaros.ros.backend import Backend, Publisher
+from jacaros.ros.backend import Backend
 from jacaros.ros.message import stamp
+from jacaros.ros.node import Publisher
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.sim.data.grid import Grid
 from jacaros.sim.graph.faulty_graph import FaultyGraph

@@ -10,12 +10,11 @@ from typing import Any
 
 import aiomqtt
 
-from jacaros.ros.backend import DISCOVERY, TOPICS, TRANSFORMS
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import ServiceUnavailable
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings, Parts
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.typestore import DefinitionSchema
 from mqtt_driver.topics import MqttMultiplexer, MqttPublisher, MqttSubscription, parts_of
 
@@ -27,7 +26,7 @@ SENDING = 0.5
 """Seconds that closing waits for the messages published last to leave."""
 
 
-class MqttBackend(Node):
+class MqttBackend(Backend):
     """A node in a graph that consists of a broker's clients.
 
     Args:
@@ -36,7 +35,7 @@ class MqttBackend(Node):
     """
 
     name = "mqtt"
-    capabilities = frozenset({TOPICS, TRANSFORMS, DISCOVERY})
+    capabilities = frozenset({Capability.TOPICS, Capability.TRANSFORMS, Capability.DISCOVERY})
     parts = Parts(publisher=MqttPublisher, subscription=MqttSubscription)
 
     def __init__(self, settings: NodeSettings, broker: str | None = None) -> None:

@@ -5,9 +5,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from jacaros.ros.message import plain
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 if TYPE_CHECKING:
     from mqtt_driver.backend import MqttBackend

@@ -14,7 +14,8 @@ from jacaros.artifacts import (
     OperationOutcome,
     OperationRequest,
 )
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
+from jacaros.ros.node import Sample
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World

@@ -4,7 +4,7 @@ from robot_lab import Lab, in_lab
 
 from jacaros.artifacts import internal_operation
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 
 
 class Ears(RosArtifact):

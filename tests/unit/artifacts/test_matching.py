@@ -9,13 +9,14 @@ from jacaros.artifacts import Structure
 from jacaros.artifacts.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
 from jacaros.artifacts.robots.velocity import ArtCmdVel
 from jacaros.artifacts.thesis import ArtCleaning
-from jacaros.ros.backend import DISCOVERY, Publisher, Sample
+from jacaros.ros.backend import Sample
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.node import Capability, Publisher
 
 
 def on_a_graph(lab: Lab) -> None:
     """From now on a subscription that a test makes is like one that is matched late."""
-    lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+    lab.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
 
 
 def driving(lab: Lab) -> list[float]:

@@ -14,7 +14,7 @@ from jacaros.artifacts.robots.velocity import (
     ArtCmdVelMuxAndOdometry,
     ArtVelocity,
 )
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 
 pytestmark = pytest.mark.world("empty")
 

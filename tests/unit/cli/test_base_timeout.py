@@ -12,7 +12,7 @@ from jacaros.cli.graph.joining import Joined, NothingThere, clock_for, joined
 from jacaros.cli.main import call
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
-from jacaros.ros.backend import Sample
+from jacaros.ros.node import Sample
 from jacaros.runtime.clock import run
 
 TWIST = "geometry_msgs/msg/Twist"

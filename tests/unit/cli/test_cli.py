@@ -209,7 +209,7 @@ NOT_FOR_A_LONE_PROGRAM = (
     *("jacaros.mas.project.reading", "jacaros.mas.environment", "jacaros.sim", "jacaros.artifacts.streams"),
     *("jacaros.testing",),
     # of the middleware a run needs only the owner of its signals, jacaros.ros.lifetime
-    *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node", "jacaros.ros.open"),
+    *("jacaros.ros.backend", "jacaros.ros.message", "jacaros.ros.node"),
 )
 """Modules that a program without robots must not import at start."""
 

@@ -12,8 +12,8 @@ from jacaros.artifacts.mapping.manual import word_for_field
 from jacaros.cli.graph.standard_topics import robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.cli.graph.values import values_of
+from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.fields import FieldType
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.qos import QoS
 
 DEFINITIONS = {

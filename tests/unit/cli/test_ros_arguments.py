@@ -30,7 +30,7 @@ LAUNCHED = ("run", "guard.asl", "--ros-args")
         (("-r", "__node:=guard", "-r", "__ns:=/r1"), ["--node-name", "guard", "--namespace", "/r1"]),
         (("--remap", "odom:=/odometry/filtered"), ["--remap", "odom:=/odometry/filtered"]),
         (("-p", "use_sim_time:=true"), ["--param", "use_sim_time:=true"]),
-        (("--params-file", "f.yaml", "-p", "a.b:=[1]"), ["--param", "a.b:=[1]", "--params-file", "f.yaml"]),
+        (("--params-file", "f.yaml", "-p", "a.b:=[1]"), ["--params-file", "f.yaml", "--param", "a.b:=[1]"]),
         (("--log-level", "info", "-e", "/", "--disable-stdout-logs"), []),
         (("--disable-rosout-logs",), ["--no-rosout"]),
     ],

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from jacaros.mas.graph_warnings import EmptyGraph
+from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import CallFailed
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from jacaros.mas.graph_warnings import GraphTime
-from jacaros.ros.backend import PARAMETERS
 from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
+from jacaros.ros.node import Capability
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -16,7 +16,7 @@ class Graph:
     """A ROS 1 graph whose master may set ``use_sim_time``, and appears late."""
 
     ros_version = 1
-    capabilities = frozenset({PARAMETERS})
+    capabilities = frozenset({Capability.PARAMETERS})
     connected = False
 
     def __init__(self, simulated: bool | Exception) -> None:

@@ -7,17 +7,15 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.action import ActionPolicy, GoalStatus
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.action_serving import GoalUnderWay
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.drivers.memory.backend import MemoryBackend, MemoryGraph
+from jacaros.ros.action import ActionPolicy, GoalStatus, ServerGoal
+from jacaros.ros.action_client import ActionClient, OrphanPolicy
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
+from jacaros.ros.drivers.memory.backend import MemoryBackend
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import CallTimedOut, GoalRejected
 from jacaros.ros.open import open_backend
-from jacaros.ros.orphans import OrphanPolicy
 from jacaros.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
-from jacaros.ros.protocols.rosbridge_types import BridgeSchema
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema
 from jacaros.runtime.clock import VirtualClock, run
 
 COUNT = "jacaros_interfaces/action/Count"
@@ -42,7 +40,7 @@ class Actionlib:
         self.sent = 0
         self._nodes: list[MemoryBackend] = []
 
-    async def open(self) -> GoalSender:
+    async def open(self) -> ActionClient:
         graph = MemoryGraph()
         self.graph = graph
         schema = BridgeSchema((), lambda service, arguments: None, lambda: None)
@@ -51,7 +49,7 @@ class Actionlib:
         robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
         policy = ActionPolicy(lambda goal: None if goal.target >= 0 else "less than nothing")
         self.server = ActionlibServer(robot, "/count", COUNT, self._count, policy)
-        sender = GoalSender(self.clock, print, here.factory, "/count", COUNT)
+        sender = ActionClient(self.clock, print, here.factory, "/count", COUNT)
         sender.wire = ActionlibWire(here, sender)
         goals = sender.wire._goal
         deliver = goals.publish
@@ -63,14 +61,14 @@ class Actionlib:
             else:
                 deliver(message)
 
-        goals.publish = publish  # type: ignore[method-assign]
+        goals.publish = sender.wire._goals._send = publish  # type: ignore[method-assign]
         return sender
 
-    async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> GoalSender:
+    async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> ActionClient:
         """Kill the client, and give the one of the next run, with a node called *name*."""
         self.graph.vanish("/client")
         here = await self._node(self.graph, name, orphans)
-        sender = GoalSender(
+        sender = ActionClient(
             self.clock, self.logged.append, here.factory, "/count", COUNT, here.leaving_goals, here.orphans
         )
         sender.wire = ActionlibWire(here, sender)
@@ -87,7 +85,7 @@ class Actionlib:
         for node in self._nodes:
             await node.close()
 
-    async def _count(self, goal: GoalUnderWay) -> Any:
+    async def _count(self, goal: ServerGoal) -> Any:
         self.began.append(goal.request.target)
         try:
             await self.clock.sleep(goal.request.period)

@@ -2,16 +2,24 @@
 
 from typing import Any
 
-from jacaros.ros.action import GoalStatus
+from jacaros.ros.action import GoalStatus, Outcome
+from jacaros.ros.errors import ServiceError
 from jacaros.ros.protocols.actionlib import ENOUGH_NEWS, OVERTAKEN, SentGoal, SentGoals, State
 
 
 class Client:
-    """Notes what `SentGoals` tells and asks."""
+    """Notes what `SentGoals` tells and asks; takes the place of an `ActionClient`."""
+
+    name = "act"
 
     def __init__(self) -> None:
         self.told: list[tuple[Any, ...]] = []
-        self.goals = SentGoals(self)
+        self.goals = SentGoals(
+            self,  # type: ignore[arg-type]
+            lambda: "no result",
+            lambda message: self.told.append(("send again", message)),
+            lambda goal_id: self.told.append(("send cancel", goal_id)),
+        )
 
     def sends(self, goal_id: str, now: float = 0.0) -> None:
         self.goals[goal_id] = SentGoal(f"message of {goal_id}", now)
@@ -26,15 +34,12 @@ class Client:
     def accepted(self, goal_id: str) -> None:
         self.told.append(("accepted", goal_id))
 
-    def rejected(self, goal_id: str, reason: str) -> None:
-        self.told.append(("rejected", goal_id, reason))
-
-    def ended(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
-        self.told.append(("ended", goal_id, status, result, text))
+    def ended(self, goal_id: str, outcome: Outcome) -> None:
+        self.told.append(("ended", goal_id, outcome.status, outcome.result, outcome.text))
         del self.goals[goal_id]
 
-    def lost(self, goal_id: str, how: str) -> None:
-        self.told.append(("lost", goal_id, how))
+    def fail(self, goal_id: str, problem: ServiceError) -> None:
+        self.told.append(("lost", goal_id, str(problem)))
         del self.goals[goal_id]
 
     def cancel_answered(self, goal_id: str, agreed: bool) -> None:
@@ -42,12 +47,6 @@ class Client:
 
     def wants(self, goal_id: str) -> bool:
         return True
-
-    def send_again(self, message: Any) -> None:
-        self.told.append(("send again", message))
-
-    def send_cancel(self, goal_id: str) -> None:
-        self.told.append(("send cancel", goal_id))
 
 
 def test_a_goal_is_accepted_once_and_ends_with_its_result() -> None:
@@ -64,7 +63,7 @@ def test_a_result_that_was_lost_is_not_awaited_for_ever() -> None:
     client = Client()
     client.sends("a")
     assert client.hears(a=State.ABORTED, times=ENOUGH_NEWS - 1) == [("accepted", "a")]
-    assert client.hears(a=State.ABORTED) == [("ended", "a", GoalStatus.ABORTED, None, "")]
+    assert client.hears(a=State.ABORTED) == [("ended", "a", GoalStatus.ABORTED, "no result", "")]
 
 
 def test_a_goal_that_never_arrived_is_sent_again_but_not_immediately() -> None:
@@ -81,14 +80,15 @@ def test_a_replaced_goal_is_not_sent_again() -> None:
     client.sends("b")
     assert client.hears(1.0, b=State.ACTIVE) == [("accepted", "b")]
     told = client.hears(2.0, times=ENOUGH_NEWS, b=State.ACTIVE)
-    assert told == [("send cancel", "a"), ("ended", "a", GoalStatus.CANCELED, None, OVERTAKEN)]
+    assert told == [("send cancel", "a"), ("ended", "a", GoalStatus.CANCELED, "no result", OVERTAKEN)]
 
 
 def test_a_server_that_was_started_again_does_not_know_the_goal() -> None:
     client = Client()
     client.sends("a")
     client.hears(a=State.ACTIVE)
-    assert client.hears(5.0, times=ENOUGH_NEWS) == [("lost", "a", "was restarted and does not know")]
+    lost = "the server of action act was restarted and does not know goal a"
+    assert client.hears(5.0, times=ENOUGH_NEWS) == [("lost", "a", lost)]
 
 
 def test_a_request_for_cancelling_is_refused_by_silence() -> None:
@@ -110,4 +110,4 @@ def test_goals_without_an_answer_are_lost_with_their_server() -> None:
     client.hears(a=State.ACTIVE)
     client.told.clear()
     client.goals.lose_unanswered()
-    assert client.told == [("lost", "b", "went away before it accepted")]
+    assert client.told == [("lost", "b", "the server of action act went away before it accepted goal b")]

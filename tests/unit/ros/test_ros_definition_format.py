@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from jacaros.ros.definition_format import parse_definition
-from jacaros.ros.message import MessageFactory
+from jacaros.ros.fields import parse_definition
 from jacaros.ros.typestore import DefinitionSchema, stored_types
 
 ROOT = Path(__file__).parents[3]
@@ -28,13 +27,13 @@ def test_the_file_is_the_one_that_its_tool_writes() -> None:
 @pytest.mark.parametrize("type_name", sorted(REFERENCE.types))
 def test_a_type_equals_that_of_rosbags(type_name: str) -> None:
     schema = DefinitionSchema()
-    message = MessageFactory(schema).make(type_name)
+    message = schema.make(type_name)
     constants, fields = REFERENCE.fielddefs[type_name]
     assert {name: str(kind) for name, kind in schema.fields(type_name).items()} == as_written(fields)
     kind = type(message)
     assert {name: getattr(kind, name) for name, _, _ in constants} == {name: v for name, _, v in constants}
     assert kind.__msgtype__ == type_name
-    assert message == MessageFactory(schema).make(type_name)
+    assert message == schema.make(type_name)
 
 
 def test_no_type_of_rosbags_is_missing() -> None:

@@ -10,16 +10,23 @@ import hypothesis.strategies as st
 from hypothesis import settings
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, invariant, rule
 
-from jacaros.ros.action import SERVER_LOST_AFTER, Abort, ActionPolicy, GoalStatus, Outcome
-from jacaros.ros.action_calling import ENDING, GoalSender, PendingGoal
-from jacaros.ros.action_serving import CLOSED, PREEMPTED, ServedGoals
+from jacaros.ros.action import (
+    CLOSED,
+    PREEMPTED,
+    SERVER_LOST_AFTER,
+    Abort,
+    ActionPolicy,
+    GoalStatus,
+    Outcome,
+    ServedGoals,
+)
+from jacaros.ros.action_client import ENDING, ActionClient, GoalHandle
 from jacaros.ros.errors import CallTimedOut, ServiceError
-from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 COUNT = "jacaros_interfaces/action/Count"
-FACTORY = MessageFactory(DefinitionSchema())
+FACTORY = DefinitionSchema()
 
 
 class Loop:
@@ -214,10 +221,10 @@ class ClientLife(RuleBasedStateMachine):
         super().__init__()
         self.run = Loop()
         self.wire = _Wire()
-        self.sender = GoalSender(self.run.clock, lambda text: None, FACTORY, "/count", COUNT)
+        self.sender = ActionClient(self.run.clock, lambda text: None, FACTORY, "/count", COUNT)
         self.sender.wire = self.wire
-        self.tasks: list[asyncio.Task[PendingGoal]] = []
-        self.waits: list[tuple[PendingGoal, asyncio.Task[Any]]] = []
+        self.tasks: list[asyncio.Task[GoalHandle]] = []
+        self.waits: list[tuple[GoalHandle, asyncio.Task[Any]]] = []
         self.asks: list[asyncio.Task[bool]] = []
         self.given_up: set[int] = set()
         self.closed = False
@@ -312,7 +319,7 @@ class ClientLife(RuleBasedStateMachine):
             assert problem is None or isinstance(problem, ServiceError), problem
         assert not self.sender.busy
 
-    def _accepted(self, number: int) -> PendingGoal | None:
+    def _accepted(self, number: int) -> GoalHandle | None:
         task = self.tasks[number]
         ok = task.done() and not task.cancelled() and task.exception() is None
         return task.result() if ok else None

@@ -5,9 +5,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.action_client import ActionClient
 from jacaros.ros.errors import ServerUnavailable
-from jacaros.ros.message import MessageFactory
 from jacaros.ros.typestore import DefinitionSchema
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -28,7 +27,7 @@ class Carrier:
         self.sent: list[str] = []
         self._absent = absent
         self._loop = asyncio.get_running_loop()
-        self.sender = GoalSender(clock, print, MessageFactory(DefinitionSchema()), "/count", COUNT)
+        self.sender = ActionClient(clock, print, DefinitionSchema(), "/count", COUNT)
         self.sender.wire = self
 
     def new_id(self) -> str:

@@ -7,13 +7,11 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros import graph_heartbeat
-from jacaros.ros.backend import Publisher
-from jacaros.ros.graph_heartbeat import TEXT, GraphHeartbeat, topics_of
-from jacaros.ros.guard import NETWORK_TIMEOUT, Guard
+from jacaros.ros import heartbeat
+from jacaros.ros.guard import NETWORK_TIMEOUT, Guard, Watch
 from jacaros.ros.guarded import Guarded, guarded_by
-from jacaros.ros.guarding import Watch
-from jacaros.ros.heartbeat import Heartbeat
+from jacaros.ros.heartbeat import TEXT, GraphHeartbeat, Heartbeat, topics_of
+from jacaros.ros.node import Publisher
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import WallClock, run
 
@@ -256,7 +254,7 @@ def test_a_guard_that_is_ending_takes_no_agents(tmp_path: Path) -> None:
 def test_a_run_reports_a_guard_that_appears_and_one_that_disappears(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(graph_heartbeat, "LOST", 0.3)
+    monkeypatch.setattr(heartbeat, "LOST", 0.3)
 
     async def body(lab: Lab) -> None:
         await lab.heartbeat.wait_for_answer()

@@ -11,14 +11,11 @@ import pytest
 
 from jacaros.errors import UsageError
 from jacaros.mas.options import RunOptions
-from jacaros.ros.address import GraphAddress
 from jacaros.ros.backend import Backend
-from jacaros.ros.brakes import Brakes
-from jacaros.ros.guard import Guard
+from jacaros.ros.guard import LEAVING, Brakes, Guard, Watch
 from jacaros.ros.guarded import STAMPED, Guarded
-from jacaros.ros.guarding import LEAVING, Watch
 from jacaros.ros.heartbeat import LOCAL, Heartbeat, line
-from jacaros.ros.open import open_backend
+from jacaros.ros.open import GraphAddress, open_backend
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 
 TWIST = "geometry_msgs/msg/Twist"

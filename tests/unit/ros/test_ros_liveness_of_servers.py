@@ -5,9 +5,8 @@ import asyncio
 import pytest
 
 from jacaros.ros.action import SERVER_LOST_AFTER
-from jacaros.ros.calling import LOOK, ServerWatch
 from jacaros.ros.errors import ServerGone
-from jacaros.ros.waiting import Absence
+from jacaros.ros.services import LOOK, ServerWatch
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -38,11 +37,3 @@ def test_a_server_that_stays_away_is_lost() -> None:
 
 def test_a_server_that_was_never_seen_is_not_lost() -> None:
     assert ended([False], 30.0) is None
-
-
-def test_the_first_tenth_and_hundredth_wait_are_logged() -> None:
-    absence = Absence()
-    logged = [number for number in range(1, 1101) if absence.wait()]
-    assert logged == [1, 10, 100, 1000]
-    absence.end(logged.clear, "server")  # type: ignore[arg-type]
-    assert absence.wait(), "after an end, the next wait is the first again"

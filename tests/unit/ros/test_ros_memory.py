@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.backend import Backend, Sample
-from jacaros.ros.drivers.memory.backend import MemoryGraph
+from jacaros.ros.backend import Backend
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import CallFailed, CallTimedOut
+from jacaros.ros.node import Sample
 from jacaros.ros.open import open_backend
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, run

@@ -8,8 +8,7 @@ import pytest
 
 from jacaros.ros.action import SERVER_LOST_AFTER, GoalStatus
 from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.memory.backend import MemoryGraph
-from jacaros.ros.drivers.memory.graph import both, delayed, dropped, duplicated
+from jacaros.ros.drivers.memory.graph import MemoryGraph, both, delayed, dropped, duplicated
 from jacaros.ros.errors import CallFailed, RosError, ServerLost, ServiceUnavailable
 from jacaros.ros.open import open_backend
 from jacaros.ros.parameter import Declaration

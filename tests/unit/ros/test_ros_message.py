@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import MessageMismatch, NameInvalid, UnknownInterface
-from jacaros.ros.message import MessageFactory, constant, field_names, plain, stamp, to_seconds
+from jacaros.ros.message import constant, field_names, plain, stamp, to_seconds
 from jacaros.ros.typestore import DefinitionSchema
 
-factory = MessageFactory(DefinitionSchema())
+factory = DefinitionSchema()
 
 
 def make(type_name: str, **fields: Any) -> Any:
@@ -158,11 +158,11 @@ def test_definitions_in_folders_are_found(tmp_path: Path) -> None:
     (tmp_path / "shop_msgs" / "msg" / "Order.msg").write_text("geometry_msgs/Point where\nint32[<=3] items\n")
     (tmp_path / "shop_msgs" / "srv" / "Buy.srv").write_text("string what # the thing\n---\nfloat64 price\n")
     schema = DefinitionSchema([tmp_path])
-    order = MessageFactory(schema).make("shop_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
+    order = schema.make("shop_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
     assert (order.where.x, order.items.tolist()) == (2.0, [1, 2])
     with pytest.raises(MessageMismatch, match="4 elements"):
-        MessageFactory(schema).make("shop_msgs/msg/Order", {"items": [1, 2, 3, 4]})
-    schema.service("shop_msgs/srv/Buy")
+        schema.make("shop_msgs/msg/Order", {"items": [1, 2, 3, 4]})
+    schema.load("shop_msgs/srv/Buy")
     assert list(schema.fields("shop_msgs/srv/Buy_Request")) == ["what"]
     assert list(schema.fields("shop_msgs/srv/Buy_Response")) == ["price"]
 
@@ -172,7 +172,7 @@ def test_arrays_of_booleans_are_lists_and_others_have_the_items_of_their_type(tm
     (tmp_path / "shop_msgs" / "msg" / "Shelf.msg").write_text(
         "bool[] full\nbool[2] pair\nbyte[] marks\nint64[] ids\n"
     )
-    shelf = MessageFactory(DefinitionSchema([tmp_path])).make(
+    shelf = DefinitionSchema([tmp_path]).make(
         "shop_msgs/msg/Shelf", {"full": [True], "marks": b"\x07", "ids": [2**40, -1.0]}
     )
     assert (shelf.full, shelf.pair) == ([True], [False, False])

@@ -7,8 +7,14 @@ from typing import Any
 import pytest
 
 from jacaros.ros.errors import ParameterRefused, ParameterUnknown
-from jacaros.ros.parameter import Declaration, GivenParameters, ParameterValue, checked_value, kind_of
-from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.parameter import (
+    Declaration,
+    DeclaredParameters,
+    GivenParameters,
+    ParameterValue,
+    checked_value,
+    kind_of,
+)
 
 
 class Store:

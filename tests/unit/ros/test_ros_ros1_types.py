@@ -7,7 +7,7 @@ import pytest
 from jacaros.ros.drivers.ros1.types import GenpySchema
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import FieldType
-from jacaros.ros.message import MessageFactory, plain, to_seconds
+from jacaros.ros.message import plain, to_seconds
 
 pytest.importorskip(
     "genpy", reason="ROS 1 IS NOT TESTED: no genpy here; run tools/install_ros1.sh and use its venv"
@@ -42,7 +42,7 @@ def test_services_of_the_users_folders_are_generated(tmp_path: Path, monkeypatch
     (tmp_path / "shop" / "srv" / "Buy.srv").write_text("string what\nint32[] sizes\n---\nfloat64 price\n")
     schema = GenpySchema([tmp_path])
     assert schema.service_class("shop/srv/Buy")._type == "shop/Buy"
-    request = MessageFactory(schema).make("shop/srv/Buy_Request", {"what": "tea", "sizes": [1, 2]})
+    request = schema.make("shop/srv/Buy_Request", {"what": "tea", "sizes": [1, 2]})
     assert plain(request) == {"what": "tea", "sizes": [1, 2]}
     with pytest.raises(UnknownInterface, match="shop/srv/Sell"):
         schema.service_class("shop/srv/Sell")
@@ -50,7 +50,7 @@ def test_services_of_the_users_folders_are_generated(tmp_path: Path, monkeypatch
 
 def test_times_look_as_on_ros2() -> None:
     schema = GenpySchema()
-    factory = MessageFactory(schema)
+    factory = schema
     header = factory.make("std_msgs/msg/Header", {"stamp": {"sec": 3, "nanosec": 500_000_000}})
     assert to_seconds(header.stamp) == 3.5
     assert plain(header)["stamp"] == {"sec": 3, "nanosec": 500_000_000}
@@ -68,7 +68,7 @@ def test_a_missing_package_is_named_and_debians_only_where_debian_has_it() -> No
 
 
 def test_octets_are_bytes() -> None:
-    factory = MessageFactory(GenpySchema())
+    factory = GenpySchema()
     assert factory.make("sensor_msgs/msg/Image", {"data": [1, 255]}).data == b"\x01\xff"
     assert plain(factory.make("sensor_msgs/msg/Image", {"data": [7]}))["data"] == [7]
 
@@ -110,7 +110,7 @@ def test_a_generated_action_is_the_genuine_one(tmp_path: Path, monkeypatch: pyte
 
 def test_our_action_definitions_are_generated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JACAROS_CACHE", str(tmp_path))
-    factory = MessageFactory(GenpySchema())
+    factory = GenpySchema()
     goal = factory.make("nav2_msgs/action/NavigateToPose_Goal", {"pose": {"pose": {"position": {"x": 2}}}})
     assert goal.pose.pose.position.x == 2.0
     assert goal.pose.pose.orientation.w == 1.0
@@ -140,7 +140,7 @@ def test_definitions_of_ros2_are_read_as_ros1_would_write_them(
         "seen": "builtin_interfaces/msg/Time",
         "known": "bool",
     }
-    factory = MessageFactory(schema)
+    factory = schema
     spots = factory.make("lab_msgs/msg/Spots", {"spots": [{"name": "door", "place": [1, 2]}]})
     assert spots.spots[0].HERE == 1
     assert plain(spots)["best"]["place"] == []
@@ -155,7 +155,7 @@ def test_unknown_and_faulty_actions_are_reported(tmp_path: Path, monkeypatch: py
     with pytest.raises(UnknownInterface, match=r"no YActionAction\); is it x/action/Y\?; install"):
         schema.action_class("x/action/YAction", "Goal")
     with pytest.raises(
-        UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected an action def"
+        UnknownInterface, match="invalid definition of lab_msgs/action/Cut: expected goal, result"
     ):
         schema.new("lab_msgs/action/Cut_Goal")
     with pytest.raises(UnknownInterface, match="lab_msgs/msg/int33"):

@@ -1,4 +1,4 @@
-"""Messages and operations in the notation of the rosbridge protocol, without a connection."""
+"""Messages, types, requests and operations of the rosbridge protocol, without a connection."""
 
 import json
 import math
@@ -9,8 +9,9 @@ import pytest
 
 pytest.importorskip("websockets")
 
-from jacaros.ros.protocols.rosbridge_messages import Translator
-from jacaros.ros.protocols.rosbridge_wire import LONGEST, OPEN_AT_ONCE, Fragments, frames
+from jacaros.ros.errors import UnknownInterface
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema, Translator
+from jacaros.ros.protocols.rosbridge_wire import LONGEST, OPEN_AT_ONCE, Fragments, Polled, Requests, frames
 from jacaros.ros.typestore import DefinitionSchema
 
 SCAN, IMAGE, STAMP = (
@@ -124,3 +125,60 @@ def test_typed_arrays_of_all_kinds_are_read(
 def test_half_an_element_is_refused(translator: Translator, tag: int) -> None:
     with pytest.raises(ValueError, match="field ranges"):
         translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, b"\x00\x00\x00")})
+
+
+def test_a_server_that_has_not_answered_is_not_said_to_know_nothing_and_is_asked_again() -> None:
+    answers: list[Any] = [TimeoutError(), None]
+
+    def ask(service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
+        answer = answers.pop(0)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    schema = BridgeSchema((), ask, lambda: None)
+    with pytest.raises(UnknownInterface, match="has not answered yet"):
+        schema.fields("odd_msgs/msg/Thing")
+    with pytest.raises(UnknownInterface, match="the rosbridge server does not know it either"):
+        schema.fields("odd_msgs/msg/Thing")
+    assert answers == []
+
+
+class Rosapi:
+    """Answers requests when a test wants."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.requests = Requests(self._take, lambda question, seconds: None)
+        self.polled = Polled(
+            self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0
+        )
+
+    def _take(self, operation: dict[str, Any]) -> bool:
+        self.asked.append(operation["id"])
+        return True
+
+    def answer(self, *subscribers: str) -> None:
+        self.requests.answered({"id": self.asked[-1], "values": {"subscribers": list(subscribers)}})
+
+
+def test_values_of_a_lost_connection_are_forgotten_and_requested_immediately() -> None:
+    rosapi = Rosapi()
+    assert rosapi.polled.value == 0
+    rosapi.answer("/robot")
+    assert rosapi.polled.value == 1
+    rosapi.requests.fail_all()
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2
+    rosapi.answer("/robot", "/other")
+    assert rosapi.polled.value == 2
+
+
+def test_an_answer_lost_with_the_connection_is_requested_again_immediately() -> None:
+    rosapi = Rosapi()
+    assert rosapi.polled.value == 0
+    rosapi.requests.fail_all()
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2

@@ -2,9 +2,9 @@
 
 import pytest
 
-from jacaros.ros.calling import call_when_offered
 from jacaros.ros.errors import CallTimedOut, ServiceUnavailable
-from jacaros.ros.waiting import Absence
+from jacaros.ros.services import call_when_offered
+from jacaros.ros.waiting import Waiting
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -23,7 +23,7 @@ def end_of_call(takes: float, offered: bool) -> str:
 
     async def main() -> str:
         with pytest.raises((ServiceUnavailable, CallTimedOut)) as caught:
-            await call_when_offered(clock, print, "service /x", attempt, 1.0, lambda: offered)
+            await call_when_offered(Waiting(clock, print, "service /x"), attempt, 1.0, lambda: offered)
         assert clock.elapsed == pytest.approx(1.0, abs=0.11)
         return str(caught.value)
 
@@ -47,7 +47,7 @@ def test_the_1st_10th_and_100th_unsuccessful_wait_is_logged() -> None:
     clock = VirtualClock()
     said: list[str] = []
     there = False
-    absence = Absence()
+    waiting = Waiting(clock, said.append, "service /x")
 
     async def attempt(_: float | None) -> str:
         if not there:
@@ -55,7 +55,7 @@ def test_the_1st_10th_and_100th_unsuccessful_wait_is_logged() -> None:
         return "answer"
 
     async def call(seconds: float) -> None:
-        await call_when_offered(clock, said.append, "service /x", attempt, seconds, absence=absence)
+        await call_when_offered(waiting, attempt, seconds)
 
     async def in_vain(times: int) -> None:
         for _ in range(times):

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jacaros.ros.errors import TransformUnavailable
-from jacaros.ros.protocols.tf_buffer import TransformBuffer
-from jacaros.ros.protocols.transform import Quaternion, Transform, interpolate
+from jacaros.ros.protocols.transform import Quaternion, Transform, TransformBuffer, interpolate
 
 
 def buffer(lines: list[str] | None = None) -> TransformBuffer:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.memory.backend import MemoryGraph
+from jacaros.ros.drivers.memory.graph import MemoryGraph
 from jacaros.ros.errors import RosError, TransformUnavailable
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run

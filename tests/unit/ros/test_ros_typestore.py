@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.interfaces import split_action, split_service
-from jacaros.ros.message import MessageFactory, constant, plain
+from jacaros.ros.interfaces import split
+from jacaros.ros.message import constant, plain
 from jacaros.ros.typestore import DefinitionSchema
 
 
@@ -25,8 +25,8 @@ def test_an_action_has_three_parts_with_constants_and_other_types_of_ours(tmp_pa
         "wstring error_msg\n---\nfloat32 done 0.5\ngeometry_msgs/Pose pose\n",
     )
     schema = DefinitionSchema([tmp_path])
-    factory = MessageFactory(schema)
-    schema.action("kitchen_msgs/action/Cook")
+    factory = schema
+    schema.load("kitchen_msgs/action/Cook")
     fields = schema.fields("kitchen_msgs/action/Cook_Goal")
     assert {name: str(kind) for name, kind in fields.items()} == {
         "dish": "kitchen_msgs/msg/Dish",
@@ -63,13 +63,13 @@ def test_parts_are_known_without_asking_for_the_whole(tmp_path: Path) -> None:
 def test_unknown_types_are_reported(name: str, message: str) -> None:
     schema = DefinitionSchema()
     with pytest.raises(UnknownInterface, match=message):
-        schema.action(name) if name.endswith("action/Nothing") else schema.fields(name)
+        schema.load(name) if name.endswith("action/Nothing") else schema.fields(name)
 
 
 def test_a_definition_that_refers_to_an_unknown_type_is_reported(tmp_path: Path) -> None:
     write(tmp_path, "kitchen_msgs/action/Serve.action", "no_msgs/Table table\n---\n---\n")
     with pytest.raises(UnknownInterface, match="no_msgs/msg/Table"):
-        DefinitionSchema([tmp_path]).action("kitchen_msgs/action/Serve")
+        DefinitionSchema([tmp_path]).load("kitchen_msgs/action/Serve")
 
 
 def test_a_definition_without_its_lines_is_reported(tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_a_definition_without_its_lines_is_reported(tmp_path: Path) -> None:
     with pytest.raises(
         UnknownInterface, match=r"definition of kitchen_msgs/action/Half is wrong.*two lines ---"
     ):
-        DefinitionSchema([tmp_path]).action("kitchen_msgs/action/Half")
+        DefinitionSchema([tmp_path]).load("kitchen_msgs/action/Half")
     with pytest.raises(ValueError, match="a line ---"):
-        split_service("int32 a\n")
-    assert split_action("int32 a\n---\n---\n") == ("int32 a\n", "\n", "\n")
+        split("x/srv/X", "int32 a\n")
+    assert list(split("x/action/X", "int32 a\n---\n---\n").values()) == ["int32 a\n", "\n", "\n"]

@@ -9,8 +9,7 @@ import pytest
 from jacaros.cli.main import call
 from jacaros.errors import UsageError
 from jacaros.ros.action import GoalStatus
-from jacaros.ros.backend import Backend
-from jacaros.ros.graph import GraphContents
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.sim import SimNode, World, WorldError

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
 from jacaros.artifacts.env.artifact import Artifact
-from jacaros.ros.action import ActionClient, GoalHandle, GoalStatus, Outcome
-from jacaros.ros.action_calling import ENDING
+from jacaros.ros.action import GoalStatus, Outcome
+from jacaros.ros.action_client import ENDING, ActionClient, GoalHandle
 from jacaros.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
 from jacaros.runtime.clock import Clock
 

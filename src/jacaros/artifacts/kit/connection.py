@@ -11,11 +11,11 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.artifacts.kit.options import Reader, one_of, positive
 from jacaros.files.texts import did_you_mean
-from jacaros.ros.backend import Backend, Publisher, Subscription
+from jacaros.ros.backend import Backend, GraphContents, TopicInfo, latching
 from jacaros.ros.errors import RosError, ServiceUnavailable
-from jacaros.ros.graph import GraphContents, TopicInfo, latching
 from jacaros.ros.guarded import guarded_by, guards_of
 from jacaros.ros.names import message_type
+from jacaros.ros.node import Publisher, Subscription
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Clock
 

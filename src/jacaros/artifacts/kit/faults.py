@@ -29,8 +29,8 @@ from typing import Any
 
 from jacaros.artifacts.env.values import Structure
 from jacaros.files.texts import is_worth_a_line
-from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample
 from jacaros.runtime.clock import Clock
 
 Report = Callable[[Structure, str], None]

@@ -25,24 +25,16 @@ from jacaros.artifacts.kit.options import Reader, WrongOption, read_arguments, t
 from jacaros.artifacts.kit.reading import Reading, Values
 from jacaros.artifacts.kit.services import ServedOperation, failure_reason, refusal, succeeded
 from jacaros.artifacts.streams import ReadingPolicy
-from jacaros.ros.action import ActionClient, ActionPolicy, ActionServer
-from jacaros.ros.backend import (
-    DEFAULT_POLICY,
-    DISCOVERY,
-    Backend,
-    Client,
-    Closable,
-    Publisher,
-    Sample,
-    Service,
-    Subscription,
-    TopicEvent,
-)
+from jacaros.ros.action import ActionPolicy, ActionServer
+from jacaros.ros.action_client import ActionClient
+from jacaros.ros.backend import DEFAULT_POLICY, Backend, Sample
 from jacaros.ros.errors import MessageMismatch, RosError, ServiceError
 from jacaros.ros.guarded import VELOCITIES, guarded_by
 from jacaros.ros.names import message_type
+from jacaros.ros.node import Capability, Closable, Publisher, Subscription, TopicEvent
 from jacaros.ros.parameter import Declaration, ParameterValue
 from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.services import Client, Service
 from jacaros.runtime.trace import Cause
 
 C = TypeVar("C", bound=Closable)
@@ -224,7 +216,7 @@ class RosArtifact(Artifact):
 
         return Matching(
             publisher,
-            found if DISCOVERY in self.ros.capabilities else 0.0,
+            found if Capability.DISCOVERY in self.ros.capabilities else 0.0,
             missed,
             lambda count: guarded.covered(publisher.topic, count),
         )

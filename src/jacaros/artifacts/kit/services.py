@@ -39,7 +39,7 @@ from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import DeclaredOperation
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.ros.action import Abort, ServerGoal
-from jacaros.ros.backend import Backend, Client, Handler
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import (
     CallTimedOut,
     ParameterRefused,
@@ -52,6 +52,7 @@ from jacaros.ros.errors import (
 from jacaros.ros.message import field_names
 from jacaros.ros.names import response_type, result_type
 from jacaros.ros.parameter import Parameters, ParameterValue
+from jacaros.ros.services import Client, Handler
 
 ABORTED = "aborted"
 """Functor of the failure reason whose first argument is the result's ``error_code``."""

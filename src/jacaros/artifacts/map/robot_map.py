@@ -16,8 +16,8 @@ from jacaros.artifacts.map.slam_data import ArtSlamData
 from jacaros.artifacts.robots.odometry import Odometer, Odometry
 from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import ORIGIN, Pose
-from jacaros.ros.backend import Sample
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import LATCHED, SENSOR_DATA
 
 AMCL_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"

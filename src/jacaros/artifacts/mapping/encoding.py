@@ -12,8 +12,7 @@ from jacaros.artifacts.mapping.operations import ALL_OF_IT, OperationPart, Sourc
 from jacaros.files.yaml import Problem
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.fields import DURATION, INTEGER_RANGES, FieldType
-from jacaros.ros.message import TIMES
-from jacaros.ros.values import single_value
+from jacaros.ros.message import TIMES, single_value
 
 Fill = Callable[[Sequence[object], float], dict[str, Any]]
 """Takes the arguments of an operation and the time; returns the fields of a message as nested mappings.

@@ -10,10 +10,10 @@ from jacaros.artifacts.mapping.fields import Place, Written
 from jacaros.artifacts.mapping.file import ArtifactPart, MappingFile
 from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.files.yaml import Problem, shown
-from jacaros.ros.backend import TopicEvent, TopicTrouble
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.names import frame_name
+from jacaros.ros.node import TopicEvent, TopicTrouble
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.trace import Cause
 

@@ -25,7 +25,7 @@ from jacaros.files.yaml import Problem
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.ros.interfaces import BUILT_IN, installed
-from jacaros.ros.message import TIMES, MessageFactory
+from jacaros.ros.message import TIMES
 from jacaros.ros.typestore import DefinitionSchema, stored_types
 
 T = TypeVar("T")
@@ -46,7 +46,7 @@ class StoredInterfaces:
     """The definitions of the package and of this machine, for checks without a middleware."""
 
     def __init__(self, folders: tuple[FilePath, ...] = ()) -> None:
-        self._factory = MessageFactory(DefinitionSchema((*folders, *installed())))
+        self._factory = DefinitionSchema((*folders, *installed()))
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Fields of a type."""

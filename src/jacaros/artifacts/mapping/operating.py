@@ -23,11 +23,17 @@ from jacaros.artifacts.mapping.parameters import own_name, parameter_converter
 from jacaros.artifacts.mapping.topic_multiplexer import Updater
 from jacaros.artifacts.robots.motion_claim import Aborted, Driving, Motions, motions_of
 from jacaros.files.yaml import Problem
-from jacaros.ros.action import ActionClient
-from jacaros.ros.backend import Client, Publisher
-from jacaros.ros.errors import CapabilityMissing, MessageMismatch, NameInvalid, RosError
+from jacaros.ros.action_client import ActionClient
+from jacaros.ros.errors import (
+    CapabilityMissing,
+    MessageMismatch,
+    NameInvalid,
+    RosError,
+)
 from jacaros.ros.guarded import VELOCITIES
+from jacaros.ros.node import Publisher
 from jacaros.ros.qos import DEFAULT_QOS
+from jacaros.ros.services import Client
 
 
 class _Operation:

@@ -16,7 +16,7 @@ from jacaros.artifacts.mapping.fields import AS_IT_IS, Conversion
 from jacaros.artifacts.mapping.host import Host
 from jacaros.artifacts.mapping.properties import ParameterPart
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import DECLARED_PARAMETERS, PARAMETER_EVENTS, REGISTRATION, Backend
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import (
     CapabilityMissing,
     ParameterRefused,
@@ -24,6 +24,7 @@ from jacaros.ros.errors import (
     RosError,
     ServiceUnavailable,
 )
+from jacaros.ros.node import Capability
 from jacaros.ros.parameter import Declaration, ParameterValue, fault_of
 
 PATIENCE = 2.0
@@ -43,7 +44,9 @@ def own_name(host: Host, name: str) -> str:
 
 def kept_by_master(ros: Backend) -> bool:
     """Return whether parameters are not declared because a master stores those of all nodes, as on ROS 1."""
-    return DECLARED_PARAMETERS not in ros.capabilities and REGISTRATION in ros.capabilities
+    return (
+        Capability.DECLARED_PARAMETERS not in ros.capabilities and Capability.REGISTRATION in ros.capabilities
+    )
 
 
 class _Parameter:
@@ -112,7 +115,7 @@ class OwnParameter(_Parameter):
         return None
 
     def _cure(self) -> str:
-        given = self._host.ros.given_parameters.value(self._name)
+        given = self._host.ros.given_parameters.get(self._name)
         if given is None or fault_of(given, self._declaration) is None:
             return "give it another name: parameter: NAME"
         fitting = quote(f"{self._name}:={json.dumps(self._declaration.default)}")
@@ -223,7 +226,7 @@ class NodeParameter(_Parameter):
         self._vain = 0
         try:
             self._parameters = host.ros.parameters(self._node)
-            self._events = PARAMETER_EVENTS in host.ros.capabilities
+            self._events = Capability.PARAMETER_EVENTS in host.ros.capabilities
             if self._events:
                 host.at_dispose(self._parameters.on_change(self._changed))
         except CapabilityMissing as error:

@@ -17,10 +17,10 @@ from jacaros.artifacts.mapping.deriving import stamp_of
 from jacaros.artifacts.mapping.host import LOOK, Host, type_in
 from jacaros.artifacts.mapping.properties import TopicPart
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import Sample, Subscription
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.errors import CapabilityMissing, RosError
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample, Subscription
 from jacaros.ros.qos import SENSOR_DATA, STATE
 from jacaros.ros.waiting import MISSING_AFTER
 from jacaros.runtime.clock import Timer

@@ -9,8 +9,8 @@ from jacaros.artifacts.kit.options import not_negative, number, one_of, positive
 from jacaros.artifacts.kit.reading import Reading
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.streams import ReadingPolicy
-from jacaros.ros.backend import Sample
 from jacaros.ros.message import constant
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 FULL, MEDIUM, LOW = 100, 50, 20

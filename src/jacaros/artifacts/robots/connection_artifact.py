@@ -9,6 +9,7 @@ from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kit.options import positive
 from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.kit.services import failure_reason, set_parameter
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.errors import (
     ParameterRefused,
     ParameterUnknown,
@@ -16,7 +17,6 @@ from jacaros.ros.errors import (
     ServiceError,
     TransformUnavailable,
 )
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.parameter import Parameters, ParameterValue
 from jacaros.ros.ros_clock import RosClock
 

@@ -14,9 +14,10 @@ from jacaros.artifacts.kit.ros_artifact import RosArtifact
 from jacaros.artifacts.robots.drive_model import Velocity
 from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.plane.pose import Pose, normalised, yaw_of
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.errors import TransformUnavailable
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Sample
 from jacaros.ros.qos import SENSOR_DATA
 
 ODOMETRY = "nav_msgs/msg/Odometry"

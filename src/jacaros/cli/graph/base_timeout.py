@@ -4,13 +4,12 @@ import math
 from dataclasses import dataclass
 from functools import partial
 
-from jacaros.cli.graph.joining import Joined, NothingThere
-from jacaros.cli.graph.listening import hearing
+from jacaros.cli.graph.joining import Joined, NothingThere, hearing
 from jacaros.cli.usage import usage_error
-from jacaros.ros.backend import Publisher, Sample
-from jacaros.ros.graph import TopicInfo
+from jacaros.ros.backend import TopicInfo
 from jacaros.ros.guarded import VELOCITIES, velocity
 from jacaros.ros.names import near_names
+from jacaros.ros.node import Publisher, Sample
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 SPEED = 0.05
@@ -53,21 +52,6 @@ class Ceased:
     metres: float
 
 
-class Odometer:
-    """The newest odometry of a robot."""
-
-    def __init__(self) -> None:
-        self.count = 0
-        self.speed = self.x = self.y = 0.0
-
-    def take(self, sample: Sample) -> None:
-        """Store a message."""
-        position, twist = sample.message.pose.pose.position, sample.message.twist.twist
-        self.x, self.y = position.x, position.y
-        self.speed = math.hypot(twist.linear.x, twist.linear.y)
-        self.count += 1
-
-
 class Drive:
     """One drive of a robot.
 
@@ -80,9 +64,16 @@ class Drive:
         self._joined, self._clock = joined, joined.clock
         self._type = command.types[0]
         self._publisher: Publisher = joined.backend.publisher(command.name, self._type)
-        self._odometer = Odometer()
-        joined.backend.subscription(odometry.name, ODOMETRY, self._odometer.take, hearing(odometry))
+        self._heard = False
+        self._speed = self._x = self._y = 0.0
+        joined.backend.subscription(odometry.name, ODOMETRY, self._take, hearing(odometry))
         joined.backend.add_exit_hook(partial(self._command, 0.0))
+
+    def _take(self, sample: Sample) -> None:
+        position, twist = sample.message.pose.pose.position, sample.message.twist.twist
+        self._x, self._y = position.x, position.y
+        self._speed = math.hypot(twist.linear.x, twist.linear.y)
+        self._heard = True
 
     async def run(self) -> Ceased:
         """Drive, send no more commands, and watch the robot. Stop it, however this ends.
@@ -99,12 +90,12 @@ class Drive:
 
     async def _find(self) -> None:
         within = self._clock.elapsed + self._joined.timeout
-        while not (self._publisher.subscription_count and self._odometer.count):
+        while not (self._publisher.subscription_count and self._heard):
             if self._clock.elapsed > within:
                 raise NothingThere(f"no odometry or no base within {self._joined.timeout:g} s")
             await self._clock.sleep(LOOK)
         await self._clock.sleep(2.0 * PERIOD)  # the base may still be discovering our publisher
-        if self._odometer.speed > STILL:
+        if self._speed > STILL:
             raise NothingThere("the robot is already moving; stop it first")
 
     async def _drive(self) -> None:
@@ -112,7 +103,7 @@ class Drive:
         while self._clock.elapsed - moved < DRIVING:
             self._command(SPEED)
             await self._clock.sleep(PERIOD)
-            if self._odometer.speed <= STILL:
+            if self._speed <= STILL:
                 moved = self._clock.elapsed
             if moved - begun > STARTING:
                 raise NothingThere(
@@ -122,20 +113,19 @@ class Drive:
 
     async def _watch(self) -> Ceased:
         """Watch the robot until it has stood for a while."""
-        odometer, begun = self._odometer, self._clock.elapsed - PERIOD
-        x, y, stood = odometer.x, odometer.y, math.inf
+        begun = self._clock.elapsed - PERIOD
+        x, y, stood = self._x, self._y, math.inf
         while self._clock.elapsed - begun < WATCHED and self._clock.elapsed - stood < STANDING:
             await self._clock.sleep(LOOK)
-            moves = odometer.speed > STILL
-            stood = math.inf if moves else min(stood, self._clock.elapsed)
-        metres = math.hypot(odometer.x - x, odometer.y - y)
+            stood = math.inf if self._speed > STILL else min(stood, self._clock.elapsed)
+        metres = math.hypot(self._x - x, self._y - y)
         return Ceased(None if stood == math.inf else stood - begun, metres)
 
     async def _stop(self) -> None:
         """Send zero velocity until the robot stands, and a little longer: its odometry may be late."""
         begun = self._clock.elapsed
         while self._clock.elapsed - begun < 5.0 * PERIOD or (
-            self._odometer.speed > STILL and self._clock.elapsed - begun < STOPPING
+            self._speed > STILL and self._clock.elapsed - begun < STOPPING
         ):
             self._command(0.0)
             await self._clock.sleep(PERIOD)

@@ -1,12 +1,12 @@
 """``jacaros ros map``: a first mapping file for a graph, for you to edit."""
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
-from jacaros.cli.graph.joining import Joined, NothingThere
-from jacaros.cli.graph.kinds import Kind, Thing
-from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.joining import Joined, NothingThere, root
+from jacaros.cli.graph.listing import Kind, Thing
 from jacaros.cli.graph.standard_topics import robot_of, robots
 from jacaros.cli.graph.suggestions import Entry, acting, calling, looking, plain_name, property_of, publishing
 from jacaros.ros.guarded import VELOCITIES
@@ -35,9 +35,6 @@ class _Artifact:
     name: str
     namespace: str
     entries: list[Entry] = field(default_factory=list)
-
-    def add(self, entries: Iterable[Entry]) -> None:
-        self.entries.extend(entries)
 
     def free_name(self, ros_name: str) -> str:
         """Return a free name: the last part of the ROS name, with further parts in front or a number if that is taken."""
@@ -77,7 +74,7 @@ def mapping_for(
     Args:
         joined: the graph.
         things: topics, services and actions, see `find_mappable`.
-        frames: result of `listening.frames`; empty for no frames.
+        frames: result of `joining.frames`; empty for no frames.
         file: name of the file, for the comments.
         options: options of the commands in the comments, such as ``--ros ros2``.
         left: topics, services and actions that were left out, for a comment.
@@ -86,72 +83,56 @@ def mapping_for(
     Raises:
         UnknownInterface: the definition of a type is not available.
     """
-    artifacts = _artifacts(joined, things)
-    for artifact in artifacts:
-        for thing in things:
-            if _home(joined, artifacts, thing) is artifact:
-                _add(joined, artifact, thing)
-        artifact.add(_frame(artifact, frames))
-    return "\n".join([*_file(artifacts, file, options, interfaces), *_left(left, options)]) + "\n"
-
-
-def _artifacts(joined: Joined, things: Sequence[Thing]) -> list[_Artifact]:
-    """Return one artifact, or one for each robot and one for the rest."""
     spaces = robots(joined.contents)
-    used = sorted({robot_of(thing.name, spaces) for thing in things})
-    named = [space for space in used if space]
-    if len(named) <= 1:
-        return [_Artifact("robot", named[0] if named else "")]
-    return [_Artifact(plain_name(space) if space else "common", space) for space in used]
-
-
-def _home(joined: Joined, artifacts: list[_Artifact], thing: Thing) -> _Artifact:
-    space = robot_of(thing.name, robots(joined.contents))
-    return next((each for each in artifacts if each.namespace == space), artifacts[0])
+    homes = {thing: robot_of(thing.name, spaces) for thing in things}
+    used = sorted(set(homes.values()))
+    artifacts = [_Artifact(plain_name(space) if space else "common", space) for space in used]
+    if len(list(filter(None, used))) <= 1:  # one robot, which has the rest, too
+        artifacts = [_Artifact("robot", "".join(used))]
+    for artifact in artifacts:
+        for thing, space in homes.items():
+            if len(artifacts) == 1 or space == artifact.namespace:
+                _add(joined, artifact, thing)
+        artifact.entries += _frame(artifact, frames)
+    return "\n".join([*_file(artifacts, file, options, interfaces), *_left(left, options)]) + "\n"
 
 
 def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
     if not thing.type_name:
         raise NothingThere(f"unknown type of {thing.kind} `{thing.name}`\n  = help: write this entry by hand")
     types, name, written = joined.backend, artifact.free_name(thing.name), artifact.relative(thing.name)
-    if thing.kind is Kind.SERVICE:
-        artifact.add([calling(types, name, written, thing.type_name)])
-        return
-    if thing.kind is Kind.ACTION:
-        artifact.add([acting(types, name, written, thing.type_name)])
+    if thing.kind is not Kind.TOPIC:
+        suggest = calling if thing.kind is Kind.SERVICE else acting
+        artifact.entries.append(suggest(types, name, written, thing.type_name))
         return
     info = joined.contents.topics[thing.name]
     if info.subscriptions and (not info.publishers or thing.type_name in VELOCITIES):
-        artifact.add(publishing(types, name, written, info))
+        artifact.entries += publishing(types, name, written, info)
         return
     entry = property_of(types, name, written, info)
-    look = looking(entry)
-    artifact.add([entry, look] if look is not None else [entry])
+    artifact.entries += filter(None, (entry, looking(entry)))
 
 
 def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
     """Return an entry for the pose of the robot in the map, from tf; without a map, odometry gives the same pose."""
     prefix = f"{artifact.namespace}/" if artifact.namespace else ""
-    for body in _BODIES:
-        for inside in dict.fromkeys((prefix, "")):
-            source = f"{inside}{body}"
-            targets = dict.fromkeys(("map", f"{inside}map"))
-            target = next((each for each in targets if _joins(frames, each, source)), None)
-            if target is None:
-                continue
-            name = "pose" if all(entry.name != "pose" for entry in artifact.entries) else "pose_in_tf"
-            line = (
-                f"target: {target.removeprefix(inside)}",
-                f"source: {body}",
-                "fields: [{path: x, round: 2}, {path: y, round: 2}, {path: yaw, unit: degrees, round: 1}]",
-                "rate: 5",
-                "dead_band: [0.02, 0.02, 1]",
-            )
-            own = ('tf_prefix: ""',) if prefix and not inside else ()
-            return [
-                *(Entry("", "tf_prefix", "frames of this robot have no prefix", own) for _ in own),
-                Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", line),
-            ]
+    for body, inside in product(_BODIES, dict.fromkeys((prefix, ""))):
+        targets = dict.fromkeys(("map", f"{inside}map"))
+        target = next((each for each in targets if _joins(frames, each, f"{inside}{body}")), None)
+        if target is None:
+            continue
+        name = "pose" if all(entry.name != "pose" for entry in artifact.entries) else "pose_in_tf"
+        lines = (
+            f"target: {target.removeprefix(inside)}",
+            f"source: {body}",
+            "fields: [{path: x, round: 2}, {path: y, round: 2}, {path: yaw, unit: degrees, round: 1}]",
+            "rate: 5",
+            "dead_band: [0.02, 0.02, 1]",
+        )
+        pose = Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", lines)
+        if not prefix or inside:
+            return [pose]
+        return [Entry("", "tf_prefix", "frames of this robot have no prefix", ('tf_prefix: ""',)), pose]
     return []
 
 
@@ -163,18 +144,14 @@ def _file(artifacts: list[_Artifact], file: str, options: str, interfaces: Seque
     yield from _head(artifacts, file, options)
     if interfaces:
         yield f"interfaces: {json.dumps(list(interfaces))}"
-    if len(artifacts) == 1:
-        artifact = artifacts[0]
-        yield from _namespace(artifact)
-        yield from _connected(artifact)
-        yield from _body(artifact)
-        return
-    yield "artifacts:"
+    several = len(artifacts) > 1
+    if several:
+        yield "artifacts:"
     for artifact in artifacts:
-        yield f"  {artifact.name}:"
-        for line in (*_namespace(artifact), *_connected(artifact), *_body(artifact)):
-            yield f"    {line}" if line else ""
-        yield ""
+        lines = (*_namespace(artifact), *_connected(artifact), *_body(artifact))
+        if several:
+            lines = (f"  {artifact.name}:", *(f"    {line}".rstrip() for line in lines), "")
+        yield from lines
 
 
 def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:

@@ -8,14 +8,13 @@ from typing import Any
 
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants_by_field
 from jacaros.cli.graph.first_mapping import lines_for
-from jacaros.cli.graph.joining import Joined
-from jacaros.cli.graph.kinds import Kind, Thing
-from jacaros.cli.graph.listening import one_message
+from jacaros.cli.graph.joining import Joined, one_message
+from jacaros.cli.graph.listing import Kind, Thing
 from jacaros.cli.graph.values import Leaf, is_time, leaves, messages, parts, value_at
-from jacaros.ros.backend import PARAMETERS
+from jacaros.ros.backend import Endpoint
 from jacaros.ros.errors import RosError, UnknownInterface
-from jacaros.ros.graph import Endpoint
 from jacaros.ros.message import to_seconds
+from jacaros.ros.node import Capability
 
 FEW = 6
 """Number of list elements shown."""
@@ -79,7 +78,7 @@ async def _node(joined: Joined, name: str) -> dict[str, Any]:
         "publishes": [topic for topic, info in topics if any(e.node == name for e in info.publishers)],
         "subscribes": [topic for topic, info in topics if any(e.node == name for e in info.subscriptions)],
     }
-    if PARAMETERS in joined.backend.capabilities:
+    if Capability.PARAMETERS in joined.backend.capabilities:
         parameters = joined.backend.parameters(name)
         # Not every node replies: some ROS 2 nodes have no parameter services.
         with suppress(RosError):

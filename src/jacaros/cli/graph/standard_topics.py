@@ -1,25 +1,25 @@
-"""The usual topics, services and actions of a robot, found by their types and names."""
+"""The usual topics, services and actions of a robot, found by their types and names, and entries for some of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from jacaros.cli.graph.kinds import Kind, Thing, all_things
-from jacaros.ros.graph import GraphContents
+from jacaros.cli.graph.listing import Kind, Thing, all_things
+from jacaros.ros.backend import GraphContents
 from jacaros.ros.guarded import VELOCITIES
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
 """A namespace with one of these topics, or a subscription to ``cmd_vel``, belongs to a robot."""
-_SENSORS = (
-    "nav_msgs/msg/Odometry",
-    "sensor_msgs/msg/LaserScan",
-    "sensor_msgs/msg/BatteryState",
-    "sensor_msgs/msg/Range",
-    "sensor_msgs/msg/Imu",
-    "irobot_create_msgs/msg/DockStatus",
-)
-_BY_NAME = {
-    "map": ("nav_msgs/msg/OccupancyGrid",),
-    "amcl_pose": ("geometry_msgs/msg/PoseWithCovarianceStamped",),
+_USUAL = {
+    **dict.fromkeys(VELOCITIES, "cmd_vel"),
+    "nav_msgs/msg/OccupancyGrid": "map",
+    "geometry_msgs/msg/PoseWithCovarianceStamped": "amcl_pose",
+    "nav_msgs/msg/Odometry": "",
+    "sensor_msgs/msg/LaserScan": "",
+    "sensor_msgs/msg/BatteryState": "",
+    "sensor_msgs/msg/Range": "",
+    "sensor_msgs/msg/Imu": "",
+    "irobot_create_msgs/msg/DockStatus": "",
 }
+"""Types of usual topics, and the last part of the topic's name; empty for any."""
 _ROLES = (
     (
         "irobot_create_msgs/msg/HazardDetectionVector",
@@ -49,6 +49,74 @@ _INNER = (
 SERVICES_AT_MOST = 10
 _OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
 """Topics that agents use in other ways, or not at all."""
+
+
+Body = tuple[str, ...]
+"""Section, comment and lines of an entry."""
+_SIDES = "names: {0: left, 1: center, 2: right}"
+KNOWN: Mapping[str, Body] = {
+    "nav_msgs/msg/Odometry": (
+        "properties",
+        "NAME(X, Y, Yaw): metres, metres, degrees",
+        "fields:",
+        "  - {path: pose.pose.position.x, round: 2}",
+        "  - {path: pose.pose.position.y, round: 2}",
+        "  - {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}",
+        "rate: 5   # updates per second, at most",
+        "dead_band: [0.02, 0.02, 1]   # smaller changes are ignored",
+    ),
+    "sensor_msgs/msg/LaserScan": (
+        "properties",
+        "NAME(R0, R25, R50, R75, R100): metres, five ranges from the first to the last",
+        "fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]",
+        "rate: 2",
+        "dead_band: 0.02",
+    ),
+    "sensor_msgs/msg/BatteryState": (
+        "properties",
+        "NAME(Percent, Status): such as NAME(80, discharging)",
+        "fields:",
+        "  - {path: percentage, unit: percent, round: down}",
+        "  - {path: power_supply_status, as: name}",
+    ),
+    "sensor_msgs/msg/JointState": (
+        "properties",
+        "NAME(Joint, Position): one for each joint; radians, or metres for a prismatic joint",
+        "each: name",
+        'fields: [{path: ., name: joint}, {path: "/position[i]", round: 3}]',
+        "rate: 5",
+        "dead_band: 0.01",
+    ),
+    "diagnostic_msgs/msg/DiagnosticArray": (
+        "properties",
+        "NAME(Part, Level, Text): one for each part of the robot",
+        "each: status",
+        "key: name",
+        "fields: [name, {path: level, names: {0: ok, 1: warning, 2: error, 3: stale}}, message]",
+    ),
+    "irobot_create_msgs/msg/HazardDetectionVector": (
+        "signals",
+        "NAME(Kind, Where): such as NAME(bump, bump_front_left)",
+        "each: detections",
+        "fields: [{path: type, as: name}, {path: header.frame_id, as: atom}]",
+        "when_changed: true   # once, not repeatedly while it lasts",
+    ),
+    "kobuki_msgs/msg/BumperEvent": (
+        "signals",
+        "NAME(Where, State): such as NAME(left, pressed)",
+        "fields:",
+        f"  - {{path: bumper, {_SIDES}}}",
+        "  - {path: state, names: {0: released, 1: pressed}}",
+    ),
+    "kobuki_msgs/msg/CliffEvent": (
+        "signals",
+        "NAME(Where, State): such as NAME(left, cliff)",
+        "fields:",
+        f"  - {{path: sensor, {_SIDES}}}",
+        "  - {path: state, names: {0: floor, 1: cliff}}",
+    ),
+}
+"""Entries of a first mapping file for topics that most robots have; ``NAME`` stands for the name of the entry."""
 
 
 def usual_things(contents: GraphContents) -> list[Thing]:
@@ -97,16 +165,13 @@ def _is_there(thing: Thing, contents: GraphContents) -> bool:
 
 
 def _is_usual(thing: Thing, contents: GraphContents) -> bool:
-    last = thing.name.rpartition("/")[2]
-    match thing.kind:
-        case Kind.TOPIC:
-            if thing.type_name in VELOCITIES:
-                return last == "cmd_vel" and bool(contents.topics[thing.name].subscriptions)
-            wanted = thing.type_name in _SENSORS or thing.type_name in _BY_NAME.get(last, ())
-            return wanted and _is_there(thing, contents)
-        case Kind.SERVICE:
-            return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
-    return False
+    if thing.kind is Kind.SERVICE:
+        return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
+    wanted = _USUAL.get(thing.type_name)
+    if thing.kind is not Kind.TOPIC or wanted not in ("", thing.name.rpartition("/")[2]):
+        return False
+    info = contents.topics[thing.name]
+    return bool(info.subscriptions if thing.type_name in VELOCITIES else info.publishers)
 
 
 def robots(contents: GraphContents) -> list[str]:
@@ -118,9 +183,9 @@ def robots(contents: GraphContents) -> list[str]:
     found: dict[str, set[str]] = {}
     for name, info in contents.topics.items():
         space, _, last = name.strip("/").rpartition("/")
-        kinds = set(info.types) & set(_BASE) | (
-            {last} if last == "cmd_vel" and set(info.types) & set(VELOCITIES) else set()
-        )
+        kinds = set(info.types).intersection(_BASE)
+        if last == "cmd_vel" and not set(VELOCITIES).isdisjoint(info.types):
+            kinds.add(last)
         if kinds:
             found.setdefault(space, set()).update(kinds)
     return sorted(space for space, kinds in found.items() if space and (len(kinds) > 1 or "" not in found))

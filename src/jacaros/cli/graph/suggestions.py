@@ -1,17 +1,27 @@
 """Entries of a first mapping file: useful fields, rates and parameters, and a comment."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from jacaros.artifacts.mapping.fields import RESERVED
 from jacaros.artifacts.mapping.interfaces import Interfaces, constants
-from jacaros.cli.graph.known_topics import KNOWN, Body
-from jacaros.cli.graph.values import HEADER, MANY, Unit, Value, list_of, lists_of, values_of
+from jacaros.cli.graph.standard_topics import KNOWN, Body
+from jacaros.cli.graph.values import (
+    HEADER,
+    MANY,
+    Unit,
+    Value,
+    leaves,
+    list_of,
+    lists_of,
+    messages,
+    values_of,
+)
+from jacaros.ros.backend import TopicInfo
 from jacaros.ros.fields import FieldType
-from jacaros.ros.graph import TopicInfo
 from jacaros.ros.guarded import VELOCITIES
-from jacaros.ros.names import feedback_type, goal_type, request_type, result_type
+from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
 _BIG = (
     "sensor_msgs/msg/Image",
@@ -47,18 +57,19 @@ class Entry:
 def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> Entry:
     """Return a property that follows a topic, or a signal if its messages are events. Raises `UnknownInterface`."""
     type_name = info.types[0]
-    known = KNOWN.get(type_name)
-    section, comment, body = known(name) if known is not None else _property(types, name, type_name)
+    section, comment, *body = KNOWN.get(type_name) or _property(types, name, type_name)
     kept = _kept(info, type_name)
     if type_name == _WORDS and not kept:
         section = "signals"  # two equal messages are two events, but one belief
-    return Entry(section, name, comment, (f"topic: {topic}", f"type: {type_name}", *body, *kept))
+    return Entry(
+        section, name, comment.replace("NAME", name), (f"topic: {topic}", f"type: {type_name}", *body, *kept)
+    )
 
 
 def _property(types: Interfaces, name: str, type_name: str) -> Body:
     if type_name in _BIG:
         comment = f"{name}(Object), for Python code; get_{name} reads the newest message"
-        return "properties", comment, ["fields: [{path: ., as: object}]", "mode: on_demand"]
+        return "properties", comment, "fields: [{path: ., as: object}]", "mode: on_demand"
     values = values_of(types, type_name)
     if not values:
         return _only_lists(types, name, type_name)
@@ -66,7 +77,7 @@ def _property(types: Interfaces, name: str, type_name: str) -> Body:
     others += [field for field, _ in lists_of(types, type_name) if not field.endswith("covariance")]
     more = [f"# further fields: {_some(others)}"] if others else []
     shown = values[:MANY]
-    return "properties", _call(name, shown), [*_fields(shown), *more, *_calm(shown)]
+    return "properties", _call(name, shown), *_fields(shown), *more, *_calm(shown)
 
 
 _MOST_NAMES = 8
@@ -81,22 +92,18 @@ def _some(names: Sequence[str]) -> str:
 def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
     lists = lists_of(types, type_name)
     if not lists:
-        return "signals", f"{name}, for each message (the type has no fields)", []
+        return "signals", f"{name}, for each message (the type has no fields)"
     field, kind = lists[0]
     if not kind.is_message:
-        value = list_of(field, kind)
-        return "properties", f"{name}(List)", [f"fields: [{value.as_field}]", "rate: 5"]
+        return "properties", f"{name}(List)", f"fields: [{list_of(field, kind).as_field}]", "rate: 5"
     elements = values_of(types, kind.base)
     key = _key(elements)
     if key is None:
         comment = f"{name}(N): number of {field}; `each: {field}` gives each of them"
-        return "properties", comment, [f"fields: [{{path: {field}, as: count}}]"]
+        return "properties", comment, f"fields: [{{path: {field}, as: count}}]"
     shown = [key, *(each for each in elements if each is not key)][:MANY]
-    return (
-        "properties",
-        f"{_call(name, shown)}, one for each element of {field}",
-        [f"each: {field}", *_fields(shown), *_calm(shown)],
-    )
+    comment = f"{_call(name, shown)}, one for each element of {field}"
+    return "properties", comment, f"each: {field}", *_fields(shown), *_calm(shown)
 
 
 def _key(elements: Sequence[Value]) -> Value | None:
@@ -143,13 +150,11 @@ def _variable(name: str) -> str:
 def _kept(info: TopicInfo, type_name: str) -> list[str]:
     """Return the quality of service that receives the latched messages of a publisher."""
     offers = [each.qos for each in info.publishers if each.qos is not None]
-    if offers and all(each.durability == "transient_local" for each in offers):
-        if all(each.reliability == "reliable" for each in offers):
-            return ["qos: latched"]
+    if any(each.durability != "transient_local" for each in offers):
+        return []
+    if any(each.reliability != "reliable" for each in offers):
         return ["qos: {durability: transient_local, reliability: best_effort}"]
-    if not offers and type_name == "nav_msgs/msg/OccupancyGrid":
-        return ["qos: latched"]
-    return []
+    return ["qos: latched"] if offers or type_name == "nav_msgs/msg/OccupancyGrid" else []
 
 
 def looking(entry: Entry) -> Entry | None:
@@ -199,9 +204,9 @@ def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
 def calling(types: Interfaces, name: str, service: str, type_name: str) -> Entry:
     """Return an operation that calls a service."""
     inputs, body = _filled(types, request_type(type_name), "request")
-    outputs = _results(types, f"{type_name}_Response")
-    lines = [*_parameters(inputs), f"service: {service}", f"type: {type_name}", *body, *_outputs(outputs)]
-    return Entry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
+    outputs = _results(types, response_type(type_name))
+    lines = (*_parameters(inputs), f"service: {service}", f"type: {type_name}", *body, *_outputs(outputs))
+    return Entry("operations", name, _call(name, [*inputs, *outputs]), lines)
 
 
 def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
@@ -231,22 +236,14 @@ def _code(types: Interfaces, result: str) -> list[str]:
 
 
 def _feedback(types: Interfaces, name: str, type_name: str) -> list[str]:
-    values = {value.path: value for value in values_of(types, feedback_type(type_name))}
-    if "distance_remaining" in values:
-        return [
-            "feedback:",
-            "  # distance_left(DistanceRemaining): metres",
-            "  distance_left: {fields: [{path: distance_remaining, round: 2}], rate: 2, dead_band: 0.1}",
-        ]
-    shown = list(values.values())[:3]
+    values = values_of(types, feedback_type(type_name))
+    way = [value for value in values if value.path == "distance_remaining"]
+    shown = way or values[:3]
     if not shown:
         return []
+    event, more = ("distance_left", ", dead_band: 0.1") if way else (f"{name}_feedback", "")
     items = ", ".join(value.as_field for value in shown)
-    return [
-        "feedback:",
-        f"  # {_call(f'{name}_feedback', shown)}",
-        f"  {name}_feedback: {{fields: [{items}], rate: 2}}",
-    ]
+    return ["feedback:", f"  # {_call(event, shown)}", f"  {event}: {{fields: [{items}], rate: 2{more}}}"]
 
 
 _TOLD_ANYWAY = (
@@ -269,9 +266,7 @@ def _results(types: Interfaces, type_name: str) -> list[Value]:
 
 
 def _outputs(values: Sequence[Value]) -> list[str]:
-    if not values:
-        return []
-    return [f"outputs: [{', '.join(value.as_field for value in values)}]"]
+    return [f"outputs: [{', '.join(value.as_field for value in values)}]"] if values else []
 
 
 def _parameters(inputs: Sequence[Value]) -> list[str]:
@@ -344,34 +339,19 @@ def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str
     return ", ".join([*headers, *parts])
 
 
+_IN_A_FRAME = {f"geometry_msgs/msg/{name}" for name in ("Point", "Point32", "Pose2D", "Transform")}
+
+
 def _headers(types: Interfaces, type_name: str) -> list[str]:
     """Return lines that stamp headers with the current time, and put poses into the map frame."""
-    has_place = any(each in _IN_A_FRAME for each in _parts(types, type_name))
+    has_place = not _IN_A_FRAME.isdisjoint(messages(types.fields, type_name))
     lines = []
-    for path in _header_paths(types, type_name):
-        lines += [f"  {path}.frame_id: map"] if has_place else []
-        lines.append(f"  {path}.stamp: now")
+    for leaf in leaves(types.fields, type_name):
+        path, _, last = leaf.path.rpartition(".")
+        if leaf.owner == HEADER and last == "frame_id" and path and "[" not in path:
+            lines += [f"  {path}.frame_id: map"] if has_place else []
+            lines.append(f"  {path}.stamp: now")
     return lines
-
-
-_IN_A_FRAME = tuple(f"geometry_msgs/msg/{name}" for name in ("Point", "Point32", "Pose2D", "Transform"))
-
-
-def _parts(types: Interfaces, type_name: str) -> Iterator[str]:
-    """Yield the types of all messages in a message."""
-    for kind in types.fields(type_name).values():
-        if kind.is_message:
-            yield kind.base
-            yield from _parts(types, kind.base)
-
-
-def _header_paths(types: Interfaces, type_name: str, path: str = "") -> Iterator[str]:
-    for name, kind in types.fields(type_name).items():
-        here = f"{path}.{name}" if path else name
-        if kind.base == HEADER and not kind.array:
-            yield here
-        elif kind.is_message and not kind.array:
-            yield from _header_paths(types, kind.base, here)
 
 
 def plain_name(name: str) -> str:

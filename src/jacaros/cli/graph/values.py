@@ -14,7 +14,6 @@ from jacaros.artifacts.mapping.interfaces import (
     words_of,
 )
 from jacaros.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
-from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
 
 HEADER = "std_msgs/msg/Header"
 _LAYOUT = "std_msgs/msg/MultiArrayLayout"
@@ -197,16 +196,12 @@ def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path:
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
         return Value(path, word, conversion, _shown(unit))
-    if kind.base in INTEGER_RANGES and _is_named(types, type_name, name):
-        names = list(chosen(constants(types, type_name), name, ""))
-        return Value(path, word, "as: name", limits=", ".join(names[:_FEW]) + ", ..." * (len(names) > _FEW))
+    if kind.base in INTEGER_RANGES and name in constants_by_field(types, type_name):
+        named = chosen(constants(types, type_name), name, "")
+        if len(set(named.values())) == len(named):  # otherwise two constants name the same value
+            limits = ", ".join(list(named)[:_FEW]) + ", ..." * (len(named) > _FEW)
+            return Value(path, word, "as: name", limits=limits)
     return Value(path, word, limits=f"at most {kind.bound} characters" if kind.bound else "")
-
-
-def _is_named(types: Interfaces, type_name: str, name: str) -> bool:
-    """Return whether constants name the values of a field, without two names for a value."""
-    meant = list(chosen(constants(types, type_name), name, "").values())
-    return name in constants_by_field(types, type_name) and len(set(meant)) == len(meant)
 
 
 def _with_own_names(values: list[Value]) -> list[Value]:
@@ -279,18 +274,13 @@ def is_time(kind: FieldType) -> bool:
     return kind.base in (TIME, DURATION)
 
 
+_PARTS = {"srv": ("request", "response"), "action": ("goal", "result", "feedback")}
+
+
 def parts(type_name: str) -> dict[str, str]:
     """Return the message types of an interface: the message, or request and response, or goal, result and feedback."""
-    kind = type_name.split("/")[1]
-    if kind == "srv":
-        return {"request": request_type(type_name), "response": response_type(type_name)}
-    if kind == "action":
-        return {
-            "goal": goal_type(type_name),
-            "result": result_type(type_name),
-            "feedback": feedback_type(type_name),
-        }
-    return {"message": type_name}
+    names = _PARTS.get(type_name.split("/")[1], ())
+    return {name: f"{type_name}_{name.capitalize()}" for name in names} or {"message": type_name}
 
 
 def value_at(message: Any, path: str) -> Any:

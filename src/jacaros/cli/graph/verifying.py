@@ -8,15 +8,14 @@ from jacaros.artifacts.mapping.fields import Place, Written
 from jacaros.artifacts.mapping.file import ArtifactPart
 from jacaros.artifacts.mapping.operations import OperationKind, OperationPart
 from jacaros.artifacts.mapping.properties import FramePart, TopicPart
-from jacaros.cli.graph.joining import Joined
-from jacaros.cli.graph.listening import root
+from jacaros.cli.graph.joining import Joined, root
 from jacaros.files.texts import did_you_mean
 from jacaros.files.yaml import Problem
-from jacaros.ros.backend import PARAMETERS
+from jacaros.ros.backend import Endpoint, alike, latching
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, TopicInfo, alike, latching
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.names import frame_name, near_names
+from jacaros.ros.node import Capability
 from jacaros.ros.qos import DEFAULT_QOS, SENSOR_DATA, STATE, QoS, incompatibility
 
 MOST_NAMES = 8
@@ -89,7 +88,7 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         if each.kind in (OperationKind.SET, OperationKind.GET) and each.node
     ]
     for node, parameter, place in nodes:
-        found += await _of_parameter(names, node, parameter, place)
+        found += filter(None, [await _of_parameter(names, node, parameter, place)])
     return sorted(set(found), key=lambda problem: (problem.line, problem.column, problem.message))
 
 
@@ -102,7 +101,7 @@ def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
         info = joined.contents.topics.get(names.resolve(operation.target.text))
         if info is not None and info.publishers and any(each in VELOCITIES for each in info.types):
             yield operation.target.place.problem(
-                f"{_nodes(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
+                f"{nodes_of(info.publishers)} also publishes on {info.name}: the robot follows whichever command came last",
                 "give every source a topic of its own, and let twist_mux choose between them",
             )
 
@@ -117,7 +116,7 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
         yield _absent(names, written, f"no node publishes `{name}`", near)
         return
     if not info.publishers:
-        who = _nodes(info.subscriptions)
+        who = nodes_of(info.subscriptions)
         yield written.place.problem(
             f"no node publishes `{name}`; it has only subscriptions, by {who}",
             "start the node that publishes it, or replace the property by an operation with `publish`",
@@ -129,29 +128,28 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
         found: list[Problem] = []
         try:
             check_topic(topic, info.types[0], names.joined.backend, found)
+            yield from found
         except RosError as error:
-            found.append(written.place.problem(str(error), "install the package of this type"))
-        yield from found
+            yield written.place.problem(str(error), "install the package of this type")
     requested = topic.qos or (SENSOR_DATA if topic.signal else STATE)
-    yield from _of_qos(written.place, info, requested)
+    for end in info.publishers:
+        help = "" if end.qos is None else _suiting(end.qos, requested)
+        yield from _of_qos(written.place, name, end, end.qos, requested, help)
     nodes = latching(info)
     if nodes and requested.durability == "volatile" and not topic.signal:
         text = f"{nodes} latches its messages on {name}, and earlier ones are not requested"
         yield written.place.problem(text, "write qos: latched")
 
 
-def _of_qos(place: Place, info: TopicInfo, requested: QoS) -> Iterator[Problem]:
-    """Yield a problem for each publisher with incompatible quality of service."""
-    for publisher in info.publishers:
-        if publisher.qos is None:
-            continue
-        why = incompatibility(publisher.qos, requested)
-        if why is not None:
-            node = publisher.node or "a publisher"
-            yield place.problem(
-                f"incompatible QoS with {node} on {info.name}: {why}",
-                f"write {_suiting(publisher.qos, requested)}",
-            )
+def _of_qos(
+    place: Place, topic: str, end: Endpoint, offered: QoS | None, requested: QoS | None, help: str
+) -> Iterator[Problem]:
+    """Yield a problem if the quality of service is incompatible with that of *end*; None: unknown."""
+    why = None if offered is None or requested is None else incompatibility(offered, requested)
+    if why is not None:
+        yield place.problem(
+            f"incompatible QoS with {end.node or 'an unknown node'} on {topic}: {why}", f"write {help}"
+        )
 
 
 def _suiting(offered: QoS, requested: QoS) -> str:
@@ -178,20 +176,19 @@ def _of_type(written: Written | None, found: Iterable[str], place: Place) -> lis
 
 
 def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
-    contents = names.joined.contents
-    written = operation.target
-    match operation.kind:
-        case OperationKind.PUBLISH:
-            yield from _of_publishing(names, operation)
-        case OperationKind.SERVICE | OperationKind.ACTION:
-            things = contents.services if operation.kind is OperationKind.SERVICE else contents.actions
-            name = names.resolve(written.text)
-            if name in things:
-                yield from _of_type(operation.type_name, [things[name]], written.place)
-            else:
-                types = {each: (type_name,) for each, type_name in things.items()}
-                near = near_names(name, things, alike(_text(operation.type_name), types))
-                yield _absent(names, written, f"no node {_VERBS[operation.kind]} `{name}`", near)
+    if operation.kind is OperationKind.PUBLISH:
+        yield from _of_publishing(names, operation)
+    if operation.kind not in _VERBS:
+        return
+    contents, written = names.joined.contents, operation.target
+    things = contents.services if operation.kind is OperationKind.SERVICE else contents.actions
+    name = names.resolve(written.text)
+    if name in things:
+        yield from _of_type(operation.type_name, [things[name]], written.place)
+    else:
+        types = {each: (type_name,) for each, type_name in things.items()}
+        near = near_names(name, things, alike(_text(operation.type_name), types))
+        yield _absent(names, written, f"no node {_VERBS[operation.kind]} `{name}`", near)
 
 
 def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
@@ -203,14 +200,10 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
         yield _absent(names, written, f"no node subscribes to `{name}`", near)
         return
     yield from _of_type(operation.type_name, info.types, written.place)
-    for subscription in info.subscriptions:
-        if subscription.qos is None:
-            continue
-        why = incompatibility(operation.qos or DEFAULT_QOS, subscription.qos)
-        if why is not None:
-            help = "qos: latched" if subscription.qos.durability == "transient_local" else "qos: default"
-            node = subscription.node or "a subscription"
-            yield written.place.problem(f"incompatible QoS with {node} on {name}: {why}", f"write {help}")
+    for end in info.subscriptions:
+        latched = end.qos is not None and end.qos.durability == "transient_local"
+        help = "qos: latched" if latched else "qos: default"
+        yield from _of_qos(written.place, name, end, operation.qos or DEFAULT_QOS, end.qos, help)
 
 
 def _absent(names: Names, written: Written, what: str, near: Iterable[str]) -> Problem:
@@ -250,35 +243,31 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
         )
 
 
-async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> list[Problem]:
+async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> Problem | None:
     joined = names.joined
-    if PARAMETERS not in joined.backend.capabilities:
-        return [place.problem("this graph has no parameters", "remove the entry")]
+    if Capability.PARAMETERS not in joined.backend.capabilities:
+        return place.problem("this graph has no parameters", "remove the entry")
     name = names.resolve(node)
-    known = joined.contents.nodes
-    if name not in known:
-        near = near_names(name, list(known))
-        return [
-            place.problem(f"unknown node `{name}`", did_you_mean(near, "`jacaros ros list` shows all nodes"))
-        ]
+    if name not in joined.contents.nodes:
+        near = near_names(name, joined.contents.nodes)
+        return place.problem(
+            f"unknown node `{name}`", did_you_mean(near, "`jacaros ros list` shows all nodes")
+        )
     try:
         there = await joined.backend.parameters(name).names(joined.timeout)
     except RosError as error:
-        return [
-            place.problem(
-                f"node `{name}` does not report its parameters: {error}", "check that it is running"
-            )
-        ]
+        text = f"node `{name}` does not report its parameters: {error}"
+        return place.problem(text, "check that it is running")
     if parameter in there:
-        return []
-    near = near_names(parameter, there)
-    help = did_you_mean(near) or f"its parameters: {_first(there) or 'none'}"
-    return [place.problem(f"unknown parameter `{parameter}` of node `{name}`", help)]
+        return None
+    help = did_you_mean(near_names(parameter, there)) or f"its parameters: {_first(there) or 'none'}"
+    return place.problem(f"unknown parameter `{parameter}` of node `{name}`", help)
 
 
 def _first(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + (", ..." if len(names) > MOST_NAMES else "")
 
 
-def _nodes(endpoints: Iterable[Endpoint]) -> str:
+def nodes_of(endpoints: Iterable[Endpoint]) -> str:
+    """Return the names of the nodes of some endpoints."""
     return ", ".join(sorted({each.node or "an unknown node" for each in endpoints}))

@@ -18,9 +18,8 @@ from jacaros.mas.history.records import Tell
 from jacaros.mas.options import RunOptions
 from jacaros.mas.ros_graph import RosGraph
 from jacaros.mas.scheduler import Scheduler
-from jacaros.ros.backend import Backend
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import GraphContents
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Tracer
 

@@ -11,6 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 BUILT_IN = Path(__file__).parent
+KINDS = {"msg": "message", "srv": "service", "action": "action"}
+"""Kinds of types, by the middle part of their names."""
+PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+"""The messages of services and actions, in the order of their definitions."""
 
 
 def definition(type_name: str, roots: Sequence[Path] = ()) -> str | None:
@@ -51,29 +55,31 @@ def _package_roots(entry: Path) -> list[Path]:
     return [entry, *(each for each in folders if not (each / "package.xml").is_file())]
 
 
-def split_service(text: str) -> tuple[str, str]:
-    """Split a service definition at its line ``---`` into request and response."""
-    parts = _split(text)
-    if len(parts) != 2:
-        raise ValueError("expected a service definition with a line --- between request and response")
-    return parts[0], parts[1]
+def split(type_name: str, text: str) -> dict[str, str]:
+    """Split the definition of a service or an action at its lines ``---``.
 
+    Returns:
+        The definition of each of its message types, by full name.
 
-def split_action(text: str) -> tuple[str, str, str]:
-    """Split an action definition at its two lines ``---`` into goal, result and feedback."""
-    parts = _split(text)
-    if len(parts) != 3:
-        raise ValueError(
-            "expected an action definition with two lines ---, after the goal and after the result"
-        )
-    return parts[0], parts[1], parts[2]
-
-
-def _split(text: str) -> list[str]:
+    Raises:
+        ValueError: it has another number of parts.
+    """
+    names = PARTS[type_name.split("/")[1]]
     parts: list[list[str]] = [[]]
     for line in text.splitlines():
         if line.strip() == "---":
             parts.append([])
         else:
             parts[-1].append(line)
-    return ["\n".join(lines) + "\n" for lines in parts]
+    if len(parts) != len(names):
+        lines = "a line ---" if len(names) == 2 else "two lines ---"
+        raise ValueError(f"expected {', '.join(names).lower()}, with {lines} between them")
+    return {f"{type_name}_{name}": "\n".join(part) + "\n" for name, part in zip(names, parts, strict=True)}
+
+
+def how_to_define(type_name: str) -> str:
+    """Return what to do about a missing definition."""
+    return (
+        "put its definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): "
+        f"{type_name}.{type_name.split('/')[1]}"
+    )

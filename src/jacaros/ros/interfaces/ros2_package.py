@@ -21,21 +21,11 @@ from pathlib import Path
 PACKAGE = "jacaros_interfaces"
 """The package of the substitutes."""
 BUILT_IN = Path(__file__).parent
-COMMON = frozenset(
-    {
-        *(
-            "actionlib_msgs",
-            "diagnostic_msgs",
-            "geometry_msgs",
-            "nav_msgs",
-            "sensor_msgs",
-            "shape_msgs",
-            "std_msgs",
-        ),
-        *("std_srvs", "stereo_msgs", "trajectory_msgs", "visualization_msgs"),
-        *("action_msgs", "builtin_interfaces", "lifecycle_msgs", "rcl_interfaces", "rosgraph_msgs"),
-    }
-)
+COMMON = {
+    *("action_msgs", "actionlib_msgs", "builtin_interfaces", "diagnostic_msgs", "geometry_msgs"),
+    *("lifecycle_msgs", "nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "shape_msgs"),
+    *("std_msgs", "std_srvs", "stereo_msgs", "trajectory_msgs", "visualization_msgs"),
+}
 """Packages that every ROS 2 has; their definitions are here for the backends that have no packages."""
 ROS1_ONLY = frozenset({"kobuki_msgs", "move_base_msgs", "perception_msgs"})
 """Packages of robots and stacks that stayed with ROS 1: no node in a ROS 2 graph uses these types."""

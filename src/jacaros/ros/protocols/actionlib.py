@@ -5,12 +5,14 @@ below the action's name. It needs only topics, so every backend that reaches a R
 """
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, Protocol
+from typing import Any
 
-from jacaros.ros.action import GoalStatus
+from jacaros.ros.action import GoalStatus, Outcome
+from jacaros.ros.action_client import ActionClient
+from jacaros.ros.errors import ServerLost
 from jacaros.ros.qos import QoS
 
 STATUS_PERIOD = 0.2
@@ -107,57 +109,41 @@ class SentGoal:
     unmoved: int = 0
 
 
-class Listener(Protocol):
-    """Receives the events of goals from `SentGoals`, and sends messages for it."""
-
-    def accepted(self, goal_id: str) -> None:
-        """Note that the server has accepted a goal."""
-
-    def rejected(self, goal_id: str, reason: str) -> None:
-        """Note that the server has rejected a goal."""
-
-    def ended(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
-        """Note the outcome of a goal; *result* is None if the message with it was lost."""
-
-    def lost(self, goal_id: str, how: str) -> None:
-        """Note that the server does not know a goal; *how* goes between "the server" and "goal"."""
-
-    def cancel_answered(self, goal_id: str, agreed: bool) -> None:
-        """Note the answer to a request to cancel."""
-
-    def wants(self, goal_id: str) -> bool:
-        """Return whether a caller still needs a goal to begin."""
-
-    def send_again(self, message: Any) -> None:
-        """Send a goal once more."""
-
-    def send_cancel(self, goal_id: str) -> None:
-        """Send a request to cancel a goal."""
-
-
 class SentGoals(dict[str, SentGoal]):
     """The goals of a client, the oldest first, tracked by the status messages of their server.
 
     Args:
-        listener: receives the events.
+        sender: is informed of what becomes of them.
+        make_result: makes an empty result, for a goal whose own was lost.
+        send: sends the message of a goal once more.
+        cancel: sends a request to cancel a goal.
     """
 
-    def __init__(self, listener: Listener) -> None:
+    def __init__(
+        self,
+        sender: ActionClient,
+        make_result: Callable[[], Any],
+        send: Callable[[Any], None],
+        cancel: Callable[[str], None],
+    ) -> None:
         super().__init__()
-        self._listener = listener
+        self._sender = sender
+        self._make_result = make_result
+        self._send = send
+        self._cancel = cancel
 
     def ask_to_cancel(self, goal_id: str, now: float) -> None:
         """Send a request to cancel; the answer shows in the goal's state."""
         goal = self.get(goal_id)
         if goal is not None and goal.cancelling is None:
             goal.cancelling, goal.unmoved = now, 0
-        self._listener.send_cancel(goal_id)
+        self._cancel(goal_id)
 
     def lose_unanswered(self) -> None:
         """Lose the goals that were not accepted: a new server has never received them."""
         for goal_id, goal in list(self.items()):
             if not goal.accepted:
-                self._listener.lost(goal_id, "went away before it accepted")
+                self._lose(goal_id, "went away before it accepted")
 
     def take_status(self, told: Iterable[tuple[str, int, str]], now: float) -> None:
         """Handle a status message: id, state and text of each goal; *now* in seconds of a monotonic clock."""
@@ -172,7 +158,7 @@ class SentGoals(dict[str, SentGoal]):
             if goal.missing < ENOUGH_NEWS:
                 continue
             if goal.accepted:
-                self._listener.lost(goal_id, "was restarted and does not know")
+                self._lose(goal_id, "was restarted and does not know")
             elif not goal.heard_of:
                 self._see_lost(goal_id, goal, now)
 
@@ -189,29 +175,38 @@ class SentGoals(dict[str, SentGoal]):
         if goal is None:
             return
         if state is State.REJECTED:
-            self._listener.rejected(goal_id, text)
+            self._sender.rejected(goal_id, text)
         elif state in ENDS:
             self._accept(goal_id, goal)
-            self._listener.ended(goal_id, ENDS[state], result, text)
+            self._end(goal_id, ENDS[state], result, text)
+
+    def _end(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
+        given = self._make_result() if result is None else result
+        self._sender.ended(goal_id, Outcome(status, given, text))
+
+    def _lose(self, goal_id: str, how: str) -> None:
+        self._sender.fail(
+            goal_id, ServerLost(f"the server of action {self._sender.name} {how} goal {goal_id}")
+        )
 
     def _see_lost(self, goal_id: str, goal: SentGoal, now: float) -> None:
         """Handle a goal that seems to be lost on its way: send it again, unless a newer one has replaced it."""
-        if now - goal.sent < SENT_AGAIN_AFTER or not self._listener.wants(goal_id):
+        if now - goal.sent < SENT_AGAIN_AFTER or not self._sender.wants(goal_id):
             return
         # A server with a single goal would replace the newer goal by the older, or begin the older after it.
         if goal.overtaken:
             self.ask_to_cancel(goal_id, now)
-            self._listener.ended(goal_id, GoalStatus.CANCELED, None, OVERTAKEN)
+            self._end(goal_id, GoalStatus.CANCELED, None, OVERTAKEN)
         elif not any(newer.heard_of for newer in self._newer_than(goal)):
             goal.sent, goal.missing = now, 0
-            self._listener.send_again(goal.message)
+            self._send(goal.message)
 
     def _newer_than(self, goal: SentGoal) -> Iterator[SentGoal]:
         return itertools.islice(itertools.dropwhile(lambda each: each is not goal, self.values()), 1, None)
 
     def _advance(self, goal_id: str, goal: SentGoal, state: State, text: str, now: float) -> None:
         if state is State.REJECTED:
-            self._listener.rejected(goal_id, text)
+            self._sender.rejected(goal_id, text)
             return
         if state not in (State.PENDING, State.RECALLING):
             self._accept(goal_id, goal)
@@ -220,21 +215,21 @@ class SentGoals(dict[str, SentGoal]):
         if state in ENDS:
             goal.ended += 1
             if goal.ended >= ENOUGH_NEWS:  # the result was lost, so do not wait for it
-                self._listener.ended(goal_id, ENDS[state], None, text)
+                self._end(goal_id, ENDS[state], None, text)
 
     def _accept(self, goal_id: str, goal: SentGoal) -> None:
         if not goal.accepted:
             goal.accepted = True
             for older in itertools.takewhile(lambda each: each is not goal, self.values()):
                 older.overtaken = not older.heard_of and not older.accepted
-            self._listener.accepted(goal_id)
+            self._sender.accepted(goal_id)
 
     def _see_cancelling(self, goal_id: str, goal: SentGoal, asked: float, state: State, now: float) -> None:
         if state in CANCELLING:
             goal.cancelling = None
-            self._listener.cancel_answered(goal_id, True)
+            self._sender.cancel_answered(goal_id, True)
         elif state is State.ACTIVE:
             goal.unmoved += 1
             if goal.unmoved >= ENOUGH_NEWS and now - asked >= REFUSED_AFTER:
                 goal.cancelling = None
-                self._listener.cancel_answered(goal_id, False)
+                self._sender.cancel_answered(goal_id, False)

@@ -93,8 +93,7 @@ class FailureDetector:
             if self._suspected:
                 self.heard()
         elif self._look_began is not None and self._heard < self._look_began and not self._suspected:
-            self._suspected = True
-            self._report(False)
+            self._suspect()
 
     def goal_begins(self) -> None:
         """Note that the server has accepted a goal."""
@@ -125,10 +124,11 @@ class FailureDetector:
             self._waiting_since = now
         if under_way and not self._misleading:
             self._check_answers(now)
+        since = self._waiting_since
         if under_way and (self._misleading or not self._answers):
-            self._suspect(now, self._goal_began + GETTING_GOING)
-        elif self._waiting_since is not None:
-            self._suspect(now, self._waiting_since)
+            since = self._goal_began + GETTING_GOING
+        if since is not None and now > max(self._heard, since) + SILENCE:
+            self._check_again(now)
 
     def _check_answers(self, now: float) -> None:
         if self._answered is not None and now > self._answered + GETTING_GOING:
@@ -142,14 +142,13 @@ class FailureDetector:
                 self._ask(now)
             elif now > self._probed + SILENCE:
                 if not self._suspected:
-                    self._suspected = True
-                    self._report(False)
+                    self._suspect()
                     self._check_again(now)
                 self._ask(now)
 
-    def _suspect(self, now: float, since: float) -> None:
-        if now > max(self._heard, since) + SILENCE:
-            self._check_again(now)
+    def _suspect(self) -> None:
+        self._suspected = True
+        self._report(False)
 
     def _check_again(self, now: float) -> None:
         if self._look_began is None or now > self._look_began + LOOKED:

@@ -1,4 +1,4 @@
-"""Messages in the notation of the rosbridge protocol, from and to the message objects of `DefinitionSchema`.
+"""Messages in the notation of the rosbridge protocol, and definitions of types that the server knows.
 
 The notation is that of ``rosbridge_library.internal.message_conversion``: arrays of octets in base64, times as
 ``secs`` and ``nsecs`` on ROS 1 and ``sec`` and ``nanosec`` on ROS 2, and ``null`` for the floating-point numbers that
@@ -12,21 +12,27 @@ message with an array of fixed length, for instance, is lost.
 import base64
 import binascii
 import math
+import re
 import struct
 import sys
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, FLOATS, TIME, FieldType
-from jacaros.ros.typestore import DefinitionSchema
-from jacaros.ros.values import array_of_numbers
+from jacaros.ros.message import array_of_numbers
+from jacaros.ros.names import message_type
+from jacaros.ros.typestore import DefinitionSchema, is_stored
 
 _OCTETS = ("uint8", "char")
 _ONE_OCTET = (*_OCTETS, "byte", "int8", "bool")
 _ROS1_FIELDS: Mapping[str, Mapping[str, str]] = {
-    "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"}
+    TIME: {"sec": "secs", "nanosec": "nsecs"},
+    DURATION: {"sec": "secs", "nanosec": "nsecs"},
+    "sensor_msgs/msg/CameraInfo": {"d": "D", "k": "K", "r": "R", "p": "P"},
 }
 """Fields with other names in ROS 1's definitions."""
 
@@ -88,8 +94,6 @@ class Translator:
         return decoder(value)
 
     def _message_encoder(self, type_name: str) -> Encoder:
-        if type_name in (TIME, DURATION):
-            return _ros1_time if self._version == 1 else _ros2_time
         renamed = _ROS1_FIELDS.get(type_name, {}) if self._version == 1 else {}
         fields = [
             (name, renamed.get(name, name), self._field_encoder(field))
@@ -118,8 +122,6 @@ class Translator:
         return _plain
 
     def _message_decoder(self, type_name: str) -> Decoder:
-        if type_name in (TIME, DURATION):
-            return self._time_decoder(type_name)
         renamed = _ROS1_FIELDS.get(type_name, {})
         fields = [
             (name, renamed.get(name), self._field_decoder(type_name, name, field))
@@ -169,27 +171,6 @@ class Translator:
             return bool
         return int
 
-    def _time_decoder(self, type_name: str) -> Decoder:
-        new = self._schema.new
-
-        def decode(value: Any) -> Any:
-            if not isinstance(value, dict):
-                raise ValueError(f"expected a {type_name}, found {value!r:.60}")
-            time = new(type_name)
-            time.sec = int(value.get("sec") or value.get("secs") or 0)
-            time.nanosec = int(value.get("nanosec") or value.get("nsecs") or 0)
-            return time
-
-        return decode
-
-
-def _ros1_time(time: Any) -> dict[str, int]:
-    return {"secs": int(time.sec), "nsecs": int(time.nanosec)}
-
-
-def _ros2_time(time: Any) -> dict[str, int]:
-    return {"sec": int(time.sec), "nanosec": int(time.nanosec)}
-
 
 def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
@@ -232,22 +213,8 @@ def _numbers(field: FieldType) -> Decoder:
     return decode
 
 
-_LITTLE = {
-    64: "B",
-    68: "B",
-    69: "H",
-    70: "I",
-    71: "Q",
-    72: "b",
-    77: "h",
-    78: "i",
-    79: "q",
-    84: "e",
-    85: "f",
-    86: "d",
-}
-_BIG = {65: "H", 66: "I", 67: "Q", 73: "h", 74: "i", 75: "q", 80: "e", 81: "f", 82: "d"}
-"""Tags of typed arrays, and the `struct` codes of their elements."""
+_TYPED_ARRAYS = range(64, 88)
+"""Tags of typed arrays; their bits mean: floats, signed integers, little-endian, and the size of an element."""
 
 
 def unpacked(value: Any) -> "array[Any] | None":
@@ -257,10 +224,12 @@ def unpacked(value: Any) -> "array[Any] | None":
         ValueError: its octets are not a whole number of elements.
     """
     tag = getattr(value, "tag", -1)
-    kind = _LITTLE.get(tag) or _BIG.get(tag)
-    if kind is None or not isinstance(value.value, bytes):
+    if tag not in _TYPED_ARRAYS or not isinstance(value.value, bytes):
         return None
-    order = "big" if tag in _BIG else "little"
+    kind = ("efd" if tag & 16 else "bhiq" if tag & 8 else "BHIQ")[tag & 3 :][:1]
+    order = "little" if tag & 4 else "big"
+    if not kind:  # floats of 128 bits
+        return None
     if kind == "e":  # 16 bits, a type that Python arrays lack
         if len(value.value) % 2:
             raise ValueError(f"{len(value.value)} octets of numbers with 2 are given")
@@ -274,23 +243,155 @@ def unpacked(value: Any) -> "array[Any] | None":
 
 def worth_packing(schema: DefinitionSchema, type_name: str) -> bool:
     """Return whether CBOR is worthwhile for a type, and servers can encode all its fields."""
-    fields = list(_all_fields(schema, type_name, set()))
+    types = [type_name]
+    fields: list[FieldType] = []
+    for each in types:
+        own = schema.fields(each).values()
+        fields += own
+        types += {field.base for field in own if field.is_message}.difference(types)
     return all(_can_be_packed(field) for field in fields) and any(
         field.array and field.is_numeric for field in fields
     )
-
-
-def _all_fields(schema: DefinitionSchema, type_name: str, seen: set[str]) -> list[FieldType]:
-    if type_name in seen:
-        return []
-    seen.add(type_name)
-    fields = list(schema.fields(type_name).values())
-    return fields + [
-        inner for field in fields if field.is_message for inner in _all_fields(schema, field.base, seen)
-    ]
 
 
 def _can_be_packed(field: FieldType) -> bool:
     if field.base == "byte":
         return False
     return not field.array or (not field.length and field.base != "string")
+
+
+Ask = Callable[[str, dict[str, Any]], dict[str, Any] | None]
+"""Calls a service of rosapi and waits for the fields of its response; None if it fails, `TimeoutError` if there is no
+answer."""
+
+_DETAILS = {
+    "msg": ("message_details",),
+    "srv": ("service_request_details", "service_response_details"),
+    "action": ("action_goal_details", "action_result_details", "action_feedback_details"),
+}
+"""Services of rosapi that return the parts of a definition, in the order of the file."""
+_BASES = {"double": "float64", "float": "float32", "boolean": "bool", "octet": "byte"}
+_ROS1_BASES = {
+    "char": "uint8",
+    "byte": "int8",
+    "time": "builtin_interfaces/Time",
+    "duration": "builtin_interfaces/Duration",
+}
+_OWN = {
+    "rosgraph_msgs/msg/Log": "std_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
+    "string function\nuint32 line\nstring[] topics\n",
+    "rcl_interfaces/srv/GetParameters": "string[] names\n---\nParameterValue[] values\n",
+    "rcl_interfaces/srv/GetParameterTypes": "string[] names\n---\nuint8[] types\n",
+    "rcl_interfaces/srv/SetParameters": "Parameter[] parameters\n---\nSetParametersResult[] results\n",
+    "rcl_interfaces/srv/ListParameters": "string[] prefixes\nuint64 depth\n---\nListParametersResult result\n",
+}
+"""Definitions that the backend itself needs: ROS 1's log, and the services of ROS 2's nodes."""
+_ACTIONLIB = {
+    "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{action}_Goal goal\n",
+    "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Result result\n",
+    "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{action}_Feedback feedback\n",
+}
+"""The wrappers that actionlib adds to the three parts of an action."""
+_NO_FIELD = "structure_needs_at_least_one_member"
+_SEQUENCE = re.compile(r"sequence<(?P<base>.+?)(?:,\s*\d+)?>")
+_INTEGER = re.compile(r"-?\d+")
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]*")
+
+
+class BridgeSchema(DefinitionSchema):
+    """Message classes of `DefinitionSchema`, plus those whose definitions the server knows.
+
+    Args:
+        roots: the user's own definition folders.
+        ask: asks the server; it blocks the calling thread, but once per otherwise unknown type.
+        describe: returns why the server cannot be asked, None if it can.
+    """
+
+    def __init__(self, roots: Sequence[Path], ask: Ask, describe: Callable[[], str | None]) -> None:
+        super().__init__(roots)
+        self._ask = ask
+        self._describe = describe
+        self._reported: dict[str, str] = {}
+
+    def _require(self, type_name: str) -> None:
+        action, _, part = type_name.rpartition("_")
+        if part not in _ACTIONLIB or "/action/" not in action:
+            super()._require(type_name)
+        elif not is_stored(type_name):
+            self._register(type_name, _ACTIONLIB[part].format(action=action))
+
+    def _definition(self, type_name: str) -> str:
+        try:
+            return super()._definition(type_name)
+        except UnknownInterface as unknown:
+            # The second: parts of types that the server has described.
+            known = _OWN.get(type_name) or self._reported.get(type_name)
+            if known is not None:
+                return known
+            reason = self._describe()
+            if reason is None:
+                try:
+                    text = self._fetch(type_name)
+                    if text is not None:
+                        return text
+                    reason = "the rosbridge server does not know it either"
+                except TimeoutError:
+                    reason = "the rosbridge server was asked for it, but has not answered yet"
+            raise UnknownInterface(f"{unknown} ({reason})") from None
+
+    def _fetch(self, type_name: str) -> str | None:
+        """Return the definition of a type in the form of a file, and store those of its parts."""
+        parts = []
+        for service in _DETAILS[type_name.split("/")[1]]:
+            answer = self._ask(f"/rosapi/{service}", {"type": type_name})
+            typedefs = None if answer is None else answer.get("typedefs")
+            if not typedefs:
+                return None
+            whole, *others = typedefs
+            parts.append(definition_text(whole))
+            for other in others:
+                self._reported.setdefault(message_type(other["type"]), definition_text(other))
+        return "---\n".join(parts)
+
+
+def written_on_ros1(type_name: str) -> str:
+    """Return a type in ROS 1's form: ``std_msgs/String``, ``nav2_msgs/NavigateToPoseActionGoal``."""
+    package, kind, name = type_name.split("/")
+    if kind == "action":  # one of the messages of an action
+        name = "".join(name.rsplit("_", 1))
+    return f"{package}/{name}"
+
+
+def definition_text(typedef: Mapping[str, Any]) -> str:
+    """Convert a ``rosapi_msgs/msg/TypeDef`` to the text of a definition.
+
+    Args:
+        typedef: its fields; the length of an array is -1 for a single value and 0 for no limit.
+    """
+    ros1 = "/msg/" not in "".join(typedef["fieldtypes"]) and not _BASES.keys() & set(typedef["fieldtypes"])
+    lines = list(_constants(typedef))
+    lengths = typedef.get("fieldarraylen") or [-1] * len(typedef["fieldnames"])
+    for name, kind, length in zip(typedef["fieldnames"], typedef["fieldtypes"], lengths, strict=True):
+        if name != _NO_FIELD:
+            sequence = _SEQUENCE.fullmatch(kind)
+            if sequence is not None:  # this is how bounded sequences of bounded strings are described
+                kind, length = sequence["base"], 0
+            array = "" if length < 0 else f"[{length or ''}]"
+            lines.append(f"{_base(kind, ros1)}{array} {name}")
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _base(kind: str, ros1: bool) -> str:
+    kind = re.sub(r",\s*\d+$", "", kind)  # this is how bounded sequences are described
+    kind = re.sub(r"^(w?string)<\d+>$", "string", kind).replace("/msg/", "/")
+    if ros1 and kind in _ROS1_BASES:
+        return _ROS1_BASES[kind]
+    return _BASES.get(kind, kind)
+
+
+def _constants(typedef: Mapping[str, Any]) -> Iterator[str]:
+    # rosapi reports their values as texts, together with class attributes that are not constants.
+    pairs = zip(typedef.get("constnames") or (), typedef.get("constvalues") or (), strict=False)
+    for name, value in pairs:
+        if _CONSTANT.fullmatch(name) and name != "SLOT_TYPES" and _INTEGER.fullmatch(str(value)):
+            yield f"int64 {name}={value}"

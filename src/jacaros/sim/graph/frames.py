@@ -9,8 +9,8 @@ from contextlib import suppress
 from typing import Any
 
 from jacaros.plane.pose import Placement, distance
-from jacaros.ros.backend import TRANSFORMS, Publisher
 from jacaros.ros.errors import CapabilityMissing, RosError, TransformUnavailable, UnknownInterface
+from jacaros.ros.node import Capability, Publisher
 from jacaros.ros.qos import QoS
 from jacaros.sim.graph.on_graph import LATCHED, RobotOnGraph
 from jacaros.sim.physics.perception import FOUND
@@ -103,7 +103,7 @@ class RobotTransforms:
 
     def _join(self) -> Publisher | None:
         backend = self._at.backend
-        if TRANSFORMS not in backend.capabilities:
+        if Capability.TRANSFORMS not in backend.capabilities:
             return None
         # Not `tf_broadcast`, which does not report subscriptions.
         try:

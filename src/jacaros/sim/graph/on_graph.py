@@ -6,11 +6,13 @@ from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar, cast
 
 from jacaros.ros.action import Abort, Accept, ActionPolicy, GoalStatus, ServerGoal
-from jacaros.ros.backend import ACTIONS, Backend, Closable, Handler, Publisher, Sample
+from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.errors import RosError, UnknownInterface
 from jacaros.ros.message import stamp
 from jacaros.ros.names import result_type
+from jacaros.ros.node import Capability, Closable, Publisher
 from jacaros.ros.qos import DEFAULT_QOS, QoS
+from jacaros.ros.services import Handler
 from jacaros.runtime.clock import Clock
 from jacaros.sim.physics.perception import Localisation
 from jacaros.sim.physics.robot import Robot
@@ -183,7 +185,7 @@ class OnGraph:
                 goal.abort(str(overtaken), success=False)
 
         policy = ActionPolicy(accept=accept, preempt=True, overtaken=overtaken)
-        if ACTIONS in self.backend.capabilities:
+        if Capability.ACTIONS in self.backend.capabilities:
             self._offer(
                 "action",
                 name,

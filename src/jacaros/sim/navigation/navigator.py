@@ -9,7 +9,7 @@ from typing import Any
 from jacaros.plane.pose import Placement, Point, clamp, distance, wrap
 from jacaros.plane.shapes import Circle
 from jacaros.ros.action import Accept, GoalStatus
-from jacaros.ros.backend import Publisher
+from jacaros.ros.node import Publisher
 from jacaros.sim.data.grid import Grid
 from jacaros.sim.graph.frames import ODOMETRY, stamped_pose
 from jacaros.sim.graph.on_graph import Execute, Goal, Overtaken, RobotOnGraph

@@ -10,8 +10,8 @@ from robot_lab import STANDSTILL, Lab, in_lab
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.artifacts.mapping.file import MappingError, read_mapping
 from jacaros.artifacts.robots.motion_claim import motions_of
-from jacaros.ros.backend import DISCOVERY
 from jacaros.ros.guarded import guarded_by
+from jacaros.ros.node import Capability
 from jacaros.ros.parameter import Declaration
 
 DRIVE = """
@@ -216,7 +216,7 @@ def on_a_graph(text: str, body: Callable[[Lab, ArtifactId], Awaitable[None]], *a
     """Run *body* where a subscription that a test makes later is like one that is matched late."""
 
     async def in_it(lab: Lab) -> None:
-        lab.backend.capabilities |= {DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+        lab.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
         await body(lab, await lab.make(mapped(text), *arguments))
 
     return in_lab(in_it, world=None)

@@ -9,79 +9,22 @@ Tests inject faults: `MemoryGraph.disturb`, `vanish`, `interrupt` and `restore`.
 import asyncio
 import itertools
 import random
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Literal
 
-from jacaros.ros.action_calling import GoalSender
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.errors import RosError
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import M, Node, NodeSettings, Wanted
-from jacaros.ros.parameter import ParameterValue
-from jacaros.ros.parameter_store import DeclaredParameters
+from jacaros.ros.node import M, NodeSettings, TopicPublisher, TopicSubscription, Wanted
+from jacaros.ros.parameter import DeclaredParameters, ParameterValue
+from jacaros.ros.parameter_services import ParameterListeners
 from jacaros.ros.qos import QoS, incompatibility
-from jacaros.ros.topics import TopicPublisher, TopicSubscription
 from jacaros.ros.typestore import DefinitionSchema
+from jacaros.ros.waiting import settle
 from jacaros.runtime.clock import Timer
-
-
-class GraphEntity(Protocol):
-    """An entity that can disappear without notice."""
-
-    def vanish(self) -> None:
-        """Disappear without notice."""
-        ...
-
-
-class GraphService(GraphEntity, Protocol):
-    """A service."""
-
-    name: str
-    type_name: str
-
-    def handle(self, request: Any, answer: asyncio.Future[Any]) -> None:
-        """Answer one call."""
-        ...
-
-
-class GoalLine(Protocol):
-    """An action client's connection to the servers."""
-
-    name: str
-    sender: GoalSender
-
-    @property
-    def offered(self) -> bool:
-        """Whether a server offers the action."""
-        ...
-
-    def server_came(self) -> None:
-        """Note that there is a server."""
-        ...
-
-    def server_went(self) -> None:
-        """Note that there is no server."""
-        ...
-
-
-class GraphActionServer(GraphEntity, Protocol):
-    """An action server."""
-
-    name: str
-    type_name: str
-    vanished: bool
-
-    def take(self, goal_id: str, request: Any, wire: GoalLine) -> None:
-        """Accept a goal and begin it, or reject it."""
-        ...
-
-    def cancel(self, goal_id: str, wire: GoalLine) -> None:
-        """Handle a request to cancel."""
-        ...
-
 
 Disturbance = Callable[[Any], Sequence[float]]
 """Takes a message; returns the delays in seconds after which copies of it arrive: none if it is lost."""
@@ -149,52 +92,72 @@ class Topic:
         )
 
 
+Kind = Literal["node", "service", "action"]
+"""What can be in a graph besides topics."""
+
+
 class MemoryGraph:
     """Topics, services, actions and parameters shared by the nodes of one process."""
 
     def __init__(self) -> None:
         self.up = True
+        self.parameter_listeners = ParameterListeners()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._topics: dict[str, Topic] = {}
-        self._services: dict[str, GraphService] = {}
-        self._actions: dict[str, GraphActionServer] = {}
-        self._wires: dict[str, list[GoalLine]] = {}
-        self._nodes: dict[str, MemoryNode] = {}
-        self._awaited: dict[str, list[asyncio.Future[None]]] = {}
+        self._members: dict[Kind, dict[str, Any]] = {"node": {}, "service": {}, "action": {}}
+        self._watchers: dict[tuple[Kind, str], list[Callable[[bool], None]]] = defaultdict(list)
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
-        self._parameter_listeners: dict[str, list[Callable[[Mapping[str, ParameterValue]], None]]] = {}
-
-    # Nodes
 
     def join(self, node: "MemoryNode") -> None:
-        """Add *node*; a newer node of the same name replaces it."""
+        """Add *node*."""
         self._loop = node.loop
-        self._nodes[node.node_name] = node
-        self._arrived(f"node {node.node_name}")
+        self.offer("node", node.node_name, node)
 
-    def leave(self, node: "MemoryNode") -> None:
-        """Remove *node*."""
-        if self._nodes.get(node.node_name) is node:
-            del self._nodes[node.node_name]
+    def offer(self, kind: Kind, name: str, member: Any) -> None:
+        """Make *member* reachable; a newer one of the same name replaces it, as on ROS 1."""
+        self._members[kind][name] = member
+        if self.up:
+            self._report(kind, name, True)
 
-    def node(self, name: str) -> "MemoryNode | None":
-        """Return the node *name*, if it can be reached."""
-        return self._nodes.get(name) if self.up else None
+    def withdraw(self, kind: Kind, name: str, member: Any) -> None:
+        """Remove *member*."""
+        if self._members[kind].get(name) is member:
+            del self._members[kind][name]
+            self._report(kind, name, False)
+
+    def find(self, kind: Kind, name: str) -> Any:
+        """Return the node, service or action server *name*, if it can be reached; otherwise None."""
+        return self._members[kind].get(name) if self.up else None
+
+    def watch(self, kind: Kind, name: str, told: Callable[[bool], None]) -> Callable[[], None]:
+        """Call *told* with whether a member can be reached, when it comes or goes. Return a function that ends this."""
+        watchers = self._watchers[kind, name]
+        watchers.append(told)
+        return lambda: watchers.remove(told) if told in watchers else None
+
+    def arrival(self, kind: Kind, name: str) -> asyncio.Future[None]:
+        """Return a future that is done when a member has appeared."""
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        end = self.watch(kind, name, lambda present: settle(future, None, None) if present else None)
+        future.add_done_callback(lambda _: end())
+        return future
+
+    def _report(self, kind: Kind, name: str, present: bool) -> None:
+        for told in list(self._watchers[kind, name]):
+            told(present)
 
     def contents(self) -> GraphContents:
         """Return everything in the graph."""
-        return GraphContents(
-            {
-                name: topic.info(name)
-                for name, topic in sorted(self._topics.items())
-                if name not in HIDDEN and (topic.publishers or topic.subscriptions)
-            },
-            {name: service.type_name for name, service in sorted(self._services.items())},
-            {name: server.type_name for name, server in sorted(self._actions.items())},
-            tuple(sorted(self._nodes)),
+        services, actions = (
+            {name: member.type_name for name, member in sorted(self._members[kind].items())}
+            for kind in ("service", "action")
         )
-
-    # Topics
+        topics = {
+            name: topic.info(name)
+            for name, topic in sorted(self._topics.items())
+            if name not in HIDDEN and (topic.publishers or topic.subscriptions)
+        }
+        return GraphContents(topics, services, actions, tuple(sorted(self._members["node"])))
 
     def topic(self, name: str) -> Topic:
         """Return the topic *name*."""
@@ -204,74 +167,6 @@ class MemoryGraph:
         """Names of all topics in use with their types."""
         return {name: topic.types[0] for name, topic in self.contents().topics.items()}
 
-    # Services
-
-    def offer(self, service: GraphService) -> None:
-        """Make *service* reachable; a newer one of the same name replaces it, as on ROS 1."""
-        self._services[service.name] = service
-        self._arrived(f"service {service.name}")
-
-    def withdraw(self, service: GraphService) -> None:
-        """Remove *service*."""
-        if self._services.get(service.name) is service:
-            del self._services[service.name]
-
-    def server(self, name: str) -> GraphService | None:
-        """Return the service *name*, if it is offered."""
-        return self._services.get(name) if self.up else None
-
-    # Actions
-
-    def offer_action(self, server: GraphActionServer) -> None:
-        """Make an action reachable; a newer server of the same name replaces it."""
-        self._actions[server.name] = server
-        for wire in self._wires.get(server.name, []):
-            wire.server_came()
-
-    def withdraw_action(self, server: GraphActionServer) -> None:
-        """Remove an action."""
-        if self._actions.get(server.name) is server:
-            del self._actions[server.name]
-            for wire in list(self._wires.get(server.name, [])):
-                wire.server_went()
-
-    def action_server(self, name: str) -> GraphActionServer | None:
-        """Return the action *name*, if it is offered."""
-        return self._actions.get(name) if self.up else None
-
-    def connect(self, wire: GoalLine) -> None:
-        """Report to an action client when servers come and go."""
-        self._wires.setdefault(wire.name, []).append(wire)
-
-    def disconnect(self, wire: GoalLine) -> None:
-        """Stop reporting to an action client."""
-        if wire in self._wires.get(wire.name, []):
-            self._wires[wire.name].remove(wire)
-
-    # Parameters
-
-    def listen_to_parameters(
-        self, node: str, callback: Callable[[Mapping[str, ParameterValue]], None]
-    ) -> Callable[[], None]:
-        """Call *callback* with the changed parameters of *node*. Return a function that removes it."""
-        listeners = self._parameter_listeners.setdefault(node, [])
-        listeners.append(callback)
-        return lambda: listeners.remove(callback) if callback in listeners else None
-
-    def parameters_changed(self, node: str, changed: Mapping[str, ParameterValue]) -> None:
-        """Report changes to the listeners, in a later turn of the loop."""
-        if self.up:
-            for callback in self._parameter_listeners.get(node, []):
-                self.tell(callback, changed)
-
-    # Waiting and callbacks
-
-    def arrival(self, what: str) -> asyncio.Future[None]:
-        """Return a future that is done when an entity (``service /add``, ``node /sim``) has appeared."""
-        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._awaited.setdefault(what, []).append(future)
-        return future
-
     def tell(self, callback: Callable[..., None], *arguments: Any) -> None:
         """Call *callback* in a later turn of the loop; while the graph is interrupted, after the interruption."""
         if self.up and self._loop is not None:
@@ -279,12 +174,6 @@ class MemoryGraph:
                 self._loop.call_soon(callback, *arguments)
         else:
             self._held.append((callback, arguments))
-
-    def _arrived(self, what: str) -> None:
-        if self.up:
-            for future in self._awaited.pop(what, []):
-                if not future.done():
-                    future.set_result(None)
 
     # Fault injection, for tests
 
@@ -318,8 +207,7 @@ class MemoryGraph:
         Raises:
             RosError: there is no entity of that name.
         """
-        tables: tuple[Mapping[str, GraphEntity], ...] = (self._nodes, self._services, self._actions)
-        found = [table[name] for table in tables if name in table]
+        found = [members[name] for members in self._members.values() if name in members]
         if not found:
             raise RosError(f"unknown node, service or action: {name}")
         for member in found:
@@ -333,10 +221,10 @@ class MemoryGraph:
         self.up = False
         for topic in self._topics.values():
             for publisher in topic.publishers:
-                publisher.disconnect_all()
-        for wire in self._all_wires():
-            wire.server_went()
-        for node in list(self._nodes.values()):
+                publisher.receivers = []
+        for kind, name in list(self._watchers):
+            self._report(kind, name, False)
+        for node in list(self._members["node"].values()):
             node.set_connected(False)
 
     def restore(self) -> None:
@@ -350,21 +238,14 @@ class MemoryGraph:
                 for subscription in topic.subscriptions:
                     if subscription.fits(publisher):
                         publisher.connect(subscription)
-        for name in self._services:
-            self._arrived(f"service {name}")
-        for name in self._nodes:
-            self._arrived(f"node {name}")
-        for wire in self._all_wires():
-            if wire.offered:
-                wire.server_came()
-        for node in list(self._nodes.values()):
+        for kind, name in list(self._watchers):
+            if name in self._members[kind]:
+                self._report(kind, name, True)
+        for node in list(self._members["node"].values()):
             node.set_connected(True)
 
-    def _all_wires(self) -> list[GoalLine]:
-        return [wire for wires in self._wires.values() for wire in wires]
 
-
-class MemoryNode(Node):
+class MemoryNode(Backend):
     """The part of `jacaros.ros.drivers.memory.backend.MemoryBackend` that its entities use.
 
     Args:
@@ -379,7 +260,7 @@ class MemoryNode(Node):
         self.declared = DeclaredParameters(
             self.node_name,
             self.given_parameters,
-            lambda changed: self.graph.parameters_changed(self.node_name, changed),
+            self._parameters_changed,
             self.log,
         )
         self.vanished = False
@@ -396,13 +277,18 @@ class MemoryNode(Node):
         """Return a numbered id for a goal of this node."""
         return f"{self.node_name}-{next(self._goal_numbers)}"
 
+    def _parameters_changed(self, changed: Mapping[str, ParameterValue]) -> None:
+        if self.graph.up:
+            for callback in self.graph.parameter_listeners.of(self.node_name):
+                self.graph.tell(callback, changed)
+
     def vanish(self) -> None:
         """Disappear without notice, as a killed process does; see `MemoryGraph.vanish`."""
         self.vanished = True
         for member in list(self.members):
             getattr(member, "vanish", member.close)()
         self.members.clear()
-        self.graph.leave(self)
+        self.graph.withdraw("node", self.node_name, self)
 
 
 class MemoryPublisher(TopicPublisher[MemoryNode]):
@@ -410,7 +296,7 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
 
     def __init__(self, node: MemoryNode, topic: str, type_name: str, qos: QoS) -> None:
         super().__init__(node, topic, type_name, qos)
-        self._receivers: list[MemorySubscription] = []
+        self.receivers: list[MemorySubscription] = []
         self.kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
         self._shared = node.graph.topic(topic)
         self._shared.publishers.append(self)
@@ -420,28 +306,19 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
     @property
     def subscription_count(self) -> int:
         """Number of connected subscriptions."""
-        return len(self._receivers)
+        return len(self.receivers)
 
     def _send(self, message: Any) -> None:
         self.kept.append(message)
-        for subscription in self._receivers:
+        for subscription in self.receivers:
             subscription.arrive(message)
 
     def connect(self, subscription: "MemorySubscription") -> None:
         """Send to a new subscription from now on, and send it the latched messages immediately."""
-        self._receivers.append(subscription)
+        self.receivers.append(subscription)
         if subscription.qos.durability != "volatile":
             for message in self.kept:
                 subscription.arrive(message)
-
-    def disconnect(self, subscription: "MemorySubscription") -> None:
-        """Stop sending to a subscription."""
-        if subscription in self._receivers:
-            self._receivers.remove(subscription)
-
-    def disconnect_all(self) -> None:
-        """Stop sending to all subscriptions."""
-        self._receivers = []
 
     def refused(self, subscription: "MemorySubscription") -> None:
         """Report that a subscription expects another type; one of our own reports it itself."""
@@ -453,7 +330,7 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
 
     def _leave(self) -> None:
         self._shared.publishers.remove(self)
-        self._receivers = []
+        self.receivers = []
 
 
 class MemorySubscription(TopicSubscription[MemoryNode]):
@@ -529,7 +406,8 @@ class MemorySubscription(TopicSubscription[MemoryNode]):
     def _leave(self) -> None:
         self._shared.subscriptions.remove(self)
         for publisher in self._shared.publishers:
-            publisher.disconnect(self)
+            if self in publisher.receivers:
+                publisher.receivers.remove(self)
         if self._deadline is not None:
             self._deadline.stop()
 

@@ -1,7 +1,7 @@
 """ROS 1 through rospy: one node per process, callbacks on the loop, registrations kept up to date.
 
 Nothing here waits on the loop: joining, registering and calling services happen in threads, see
-`jacaros.ros.drivers.ros1.master`. The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``, ``ROS_HOSTNAME``; if
+`jacaros.ros.drivers.ros1.node`. The addresses are rospy's: ``ROS_MASTER_URI``, ``ROS_IP``, ``ROS_HOSTNAME``; if
 none is given and the master runs on this machine, all traffic stays on the loopback interface.
 """
 
@@ -13,36 +13,23 @@ from typing import Any
 
 import rosgraph.network  # type: ignore[import-not-found]
 
-from jacaros.ros.action_calling import GoalSender
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.backend import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    REGISTRATION,
-    SERVICE_ERRORS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
-from jacaros.ros.drivers.ros1.master import PATIENCE, Master
-from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.action_client import ActionClient
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
+from jacaros.ros.drivers.ros1.node import PATIENCE, Master, Ros1Node
 from jacaros.ros.drivers.ros1.services import Ros1Client, Ros1Parameters, Ros1Service, give
 from jacaros.ros.drivers.ros1.topics import Ros1Publisher, Ros1Subscription
 from jacaros.ros.drivers.ros1.types import ROS1_PACKAGES
 from jacaros.ros.errors import CallTimedOut, ServiceError
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.handoff import in_thread
-from jacaros.ros.names import message_type
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.waiting import within
 
 
-def _action_client(node: Ros1Node, name: str, type_name: str) -> GoalSender:
-    sender = GoalSender(node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans)
+def _action_client(node: Ros1Node, name: str, type_name: str) -> ActionClient:
+    sender = ActionClient(
+        node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
+    )
     sender.wire = ActionlibWire(node, sender)
     return sender
 
@@ -54,19 +41,12 @@ class Ros1Backend(Ros1Node):
         settings: names, clock and log; the default namespace is ``ROS_NAMESPACE``.
     """
 
-    capabilities = frozenset(
-        {
-            TOPICS,
-            SERVICES,
-            SERVICE_ERRORS,
-            TRANSFORMS,
-            ACTIONS,
-            DISCOVERY,
-            REGISTRATION,
-            PARAMETERS,
-            PARAMETER_EVENTS,
-        }
-    )
+    capabilities = frozenset(Capability) - {
+        Capability.QOS,
+        Capability.GRAPH_QOS,
+        Capability.DEADLINES,
+        Capability.DECLARED_PARAMETERS,
+    }
 
     parts = Parts(
         publisher=Ros1Publisher,
@@ -80,21 +60,6 @@ class Ros1Backend(Ros1Node):
     def __init__(self, settings: NodeSettings) -> None:
         super().__init__(settings)
         give(self)
-
-    def types_changed(self, types: Mapping[str, str]) -> None:
-        """Report to subscriptions that their topic has another type."""
-        self.types = {topic: message_type(kind) for topic, kind in types.items() if kind != "*"}
-        for topic, multiplexer in self.multiplexers.items():
-            multiplexer.see_type(self.types.get(topic))
-
-    def definition_differs(self, topic: str, kind: str, theirs: str, ours: str) -> None:
-        """Report to subscriptions that a publisher has another definition of the type: another md5 sum."""
-        if topic in self.multiplexers:
-            package, _, name = kind.partition("/")
-            self.multiplexers[topic].report(
-                f"topic {topic}: a publisher has another definition of {package}/msg/{name} (md5 sum {theirs}, here "
-                f"{ours}): nothing will be received from it; install its version of {package} here"
-            )
 
     def parameters(self, node: str | None = None) -> Ros1Parameters:
         """Return the parameters below a node's name."""

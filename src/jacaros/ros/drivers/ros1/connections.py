@@ -148,46 +148,6 @@ class OutboxConnection:
         return True
 
 
-def connect_streams(handlers: MessageHandlers) -> None:
-    """Make rospy use these connections; before ``init_node``."""
-    InletTransport.handlers = handlers
-    rospy.impl.tcpros_pubsub.TCPROSTransport = InletTransport
-    rospy.topics.QueuedConnection = OutboxConnection
-
-
-def deliver_before_ready() -> None:
-    """Ignore a deprecation of Python 3.10 in rospy: with warnings as errors its subscribers would receive nothing."""
-    warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
-
-
-def print_to_standard_error() -> None:
-    """Redirect rospy's output to standard error: standard output belongs to the agents. Before ``init_node``."""
-    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
-        module.print = partial(print, file=sys.stderr)  # pyright: ignore[reportAttributeAccessIssue]
-
-
-def log_to_standard_error() -> None:
-    """Redirect rospy's log to standard error, too. After ``init_node``, which sets up the log."""
-    for handler in logging.getLogger("rosout").handlers:
-        if hasattr(handler, "_stdout"):
-            handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]
-
-
-def report_parameter_changes(listener: Callable[[str, Any], None]) -> None:
-    """Call *listener*, on a thread of rospy's, with changed parameters that the master reports.
-
-    rospy itself stores such changes in a cache without callbacks, and ignores parameters that are not in it.
-    """
-
-    def parameter_update(_: Any, caller: str, name: str, value: Any) -> tuple[int, str, int]:
-        with suppress(KeyError):
-            get_param_server_cache().update(name, value)
-        listener(name, value)
-        return 1, "", 0
-
-    rospy.impl.masterslave.ROSHandler.paramUpdate = parameter_update
-
-
 class EndingServer(rosgraph.xmlrpc.ThreadingXMLRPCServer):  # type: ignore[misc]
     """The server of a node's XML-RPC interface, whose thread ends when it is closed.
 
@@ -200,6 +160,35 @@ class EndingServer(rosgraph.xmlrpc.ThreadingXMLRPCServer):  # type: ignore[misc]
         threading.Thread(target=self.shutdown, name="XML-RPC server ends", daemon=True).start()
 
 
-def silence_closed_nodes() -> None:
-    """Use `EndingServer` for the node; before ``init_node``."""
+def mend_rospy(handlers: MessageHandlers, parameter_changed: Callable[[str, Any], object]) -> None:
+    """Make rospy use these connections, and repair it; before ``init_node``.
+
+    Args:
+        handlers: the handlers of topics.
+        parameter_changed: called, on a thread of rospy's, with changed parameters that the master reports.
+    """
+
+    # rospy stores such changes in a cache without callbacks, and ignores parameters that are not in it.
+    def parameter_update(_: Any, caller: str, name: str, value: Any) -> tuple[int, str, int]:
+        with suppress(KeyError):
+            get_param_server_cache().update(name, value)
+        parameter_changed(name, value)
+        return 1, "", 0
+
+    InletTransport.handlers = handlers
+    rospy.impl.tcpros_pubsub.TCPROSTransport = InletTransport
+    rospy.topics.QueuedConnection = OutboxConnection
+    rospy.impl.masterslave.ROSHandler.paramUpdate = parameter_update
     rosgraph.xmlrpc.ThreadingXMLRPCServer = EndingServer
+    # A deprecation of Python 3.10: with warnings as errors rospy's subscribers would receive nothing.
+    warnings.filterwarnings("ignore", "notifyAll", DeprecationWarning)
+    # Standard output belongs to the agents.
+    for module in (rospy.impl.masterslave, registration, rosgraph.xmlrpc):
+        module.print = partial(print, file=sys.stderr)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def log_to_standard_error() -> None:
+    """Redirect rospy's log to standard error, too. After ``init_node``, which sets up the log."""
+    for handler in logging.getLogger("rosout").handlers:
+        if hasattr(handler, "_stdout"):
+            handler._stdout = sys.stderr  # pyright: ignore[reportAttributeAccessIssue]

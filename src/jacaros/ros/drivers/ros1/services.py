@@ -8,10 +8,7 @@ from typing import Any, NoReturn
 
 import rospy  # type: ignore[import-not-found]
 
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, call_when_offered
-from jacaros.ros.drivers.ros1.master import Master, call_failure
-from jacaros.ros.drivers.ros1.node import Ros1Node
+from jacaros.ros.drivers.ros1.node import Master, Ros1Node, call_failure
 from jacaros.ros.errors import (
     CallFailed,
     CapabilityMissing,
@@ -22,29 +19,20 @@ from jacaros.ros.errors import (
 )
 from jacaros.ros.handoff import LoopEnded, ask, in_thread, post
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
-from jacaros.ros.serving import Responder
-from jacaros.ros.waiting import settle, within
+from jacaros.ros.services import Handler, ServiceClient, ServiceServer, call_when_offered
+from jacaros.ros.waiting import Waiting, settle, within
 
 
-class Ros1Service:
+class Ros1Service(ServiceServer[Ros1Node]):
     """Service of `Ros1Backend`."""
 
     def __init__(self, node: Ros1Node, name: str, type_name: str, handler: Handler) -> None:
-        self.name = name
-        self._node = node
+        super().__init__(node, name, type_name, handler)
         self._class = node.schema.service_class(type_name)
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
         self._service: Any = None
-        self._closed = False
         node.link.do(self._register)
 
-    def close(self) -> None:
-        """Stop offering the service."""
-        if self._closed:
-            return
-        self._closed = True
-        self._node.forget(self)
-        self._responder.close()
+    def _leave(self) -> None:
         self._node.link.do(self._unregister)
 
     def _register(self) -> None:
@@ -58,19 +46,15 @@ class Ros1Service:
         """Let the loop answer; on rospy's thread of this connection."""
         node = self._node
         try:
-            return ask(
-                node.loop, lambda done: self._responder.answer(request, done), lambda: node.lifetime.leaving
-            )
+            return ask(node.loop, lambda done: self.answer(request, done), lambda: node.lifetime.leaving)
         except CallFailed as problem:
             raise rospy.ServiceException(str(problem)) from None
         except LoopEnded:
             raise rospy.ServiceException(f"service {self.name}: the node is shutting down") from None
 
 
-class Ros1Client(AttemptingClient):
+class Ros1Client(ServiceClient[Ros1Node]):
     """Client of `Ros1Backend`."""
-
-    _node: Ros1Node  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, node: Ros1Node, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)
@@ -85,7 +69,7 @@ class Ros1Client(AttemptingClient):
         return self.ready
 
     async def _attempt(self, message: Any, rest: float | None) -> Any:
-        answer = self._pending.new()
+        answer = self._new_answer()
 
         def finished(work: asyncio.Future[Any]) -> None:
             problem = work.exception()
@@ -106,11 +90,6 @@ class Ros1Client(AttemptingClient):
             return await within(self._node.clock, answer, rest)
         finally:
             proxy.close()
-
-    def close(self) -> None:
-        """Close the client."""
-        self._node.forget(self)
-        self._pending.close()
 
 
 WHOLE_NUMBERS = range(-(2**31), 2**31)
@@ -222,11 +201,11 @@ class Ros1Parameters:
             answer = in_thread(backend.loop, lambda: self._master.ask(method, *arguments), method)
             return await within(backend.clock, answer, rest)
 
-        what = f"ROS master at {self._master.uri}"
+        waiting = Waiting(backend.clock, backend.log, f"ROS master at {self._master.uri}")
         try:
-            return await call_when_offered(backend.clock, backend.log, what, attempt, timeout, lambda: False)
+            return await call_when_offered(waiting, attempt, timeout, lambda: False)
         except ServiceUnavailable:
-            raise ServiceUnavailable(f"the {what} did not answer within {timeout:g} s") from None
+            raise ServiceUnavailable(f"the {waiting.what} did not answer within {timeout:g} s") from None
 
 
 def give(node: Ros1Node) -> None:

@@ -11,9 +11,8 @@ from jacaros.ros.drivers.ros1.node import Ros1Node, wait_until_sent
 from jacaros.ros.errors import MessageMismatch
 from jacaros.ros.handoff import Handoff, post
 from jacaros.ros.names import message_type
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
 from jacaros.ros.qos import QoS
-from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
 
 
 class Ros1Publisher(TopicPublisher[Ros1Node]):

@@ -14,7 +14,8 @@ from typing import Any
 from jacaros.files.texts import kept_files
 from jacaros.ros.errors import UnknownInterface
 from jacaros.ros.fields import DURATION, TIME, FieldType, from_ros1
-from jacaros.ros.interfaces import definition, split_action
+from jacaros.ros.interfaces import definition, how_to_define, split
+from jacaros.ros.message import DEFAULTS, Schema
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 """Types that are in another package on ROS 1 than on ROS 2."""
@@ -22,19 +23,11 @@ ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
 ACTION_SUFFIXES = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
 """Suffixes of the messages of an action, longer ones first."""
 
-_ON_DEBIAN = (
-    *(
-        "actionlib_msgs",
-        "diagnostic_msgs",
-        "geometry_msgs",
-        "map_msgs",
-        "move_base_msgs",
-        "nav_msgs",
-        "pcl_msgs",
-    ),
-    *("rosgraph_msgs", "sensor_msgs", "shape_msgs", "std_msgs", "stereo_msgs", "tf2_msgs", "trajectory_msgs"),
-    "visualization_msgs",
-)
+_ON_DEBIAN = {
+    *("actionlib_msgs", "diagnostic_msgs", "geometry_msgs", "map_msgs", "move_base_msgs", "nav_msgs"),
+    *("pcl_msgs", "rosgraph_msgs", "sensor_msgs", "shape_msgs", "std_msgs", "stereo_msgs", "tf2_msgs"),
+    *("trajectory_msgs", "visualization_msgs"),
+}
 """Packages of messages that Debian has, as ``python3-NAME``."""
 
 _TIME_FIELDS = {
@@ -43,7 +36,7 @@ _TIME_FIELDS = {
 }
 
 
-class GenpySchema:
+class GenpySchema(Schema):
     """Classes of the installed ROS 1 packages, and of definitions.
 
     Args:
@@ -51,48 +44,28 @@ class GenpySchema:
     """
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
-        self._roots = tuple(roots)
-        self._classes: dict[str, Any] = {}
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """Search *folder* for definitions, too, from now on."""
-        if folder not in self._roots:
-            self._roots = (*self._roots, folder)
-
-    def fields(self, type_name: str) -> Mapping[str, FieldType]:
-        """Return the fields of a type in full form. Raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            fields = self._fields[type_name] = _TIME_FIELDS.get(type_name) or self._read_fields(type_name)
-        return fields
+        super().__init__(roots)
+        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
 
     def new(self, type_name: str) -> Any:
-        """Make a message with genpy's defaults. Raises `UnknownInterface`."""
-        return self.message_class(type_name)()
+        """Make a message with the defaults of ROS 2, which genpy does not know. Raises `UnknownInterface`."""
+        message = super().new(type_name)
+        setters = self._setters.get(type_name)
+        if setters is None:
+            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
+        for set_default in setters:
+            set_default(message)
+        return message
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert an array to ``bytes`` for octets, otherwise to a list, which genpy serialises."""
         return values.tobytes() if field.base == "uint8" else list(values)
 
-    def single(self, field: FieldType, value: Any) -> Any:
-        """Return plain values unchanged."""
-        return value
-
-    def message_class(self, type_name: str) -> Any:
-        """Return the class of a message, or of a part of a service or action, in full form. Raises
-        `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find_message(type_name)
-        return found
-
     def service_class(self, type_name: str) -> Any:
         """Return the class of a service type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find_service(type_name)
-        return found
+        if type_name not in self._classes:
+            self._classes[type_name] = self._find_service(type_name)
+        return self._classes[type_name]
 
     def action_class(self, type_name: str, part: str) -> Any:
         """Return the class of one of actionlib's messages of an action.
@@ -106,33 +79,32 @@ class GenpySchema:
             UnknownInterface: the action is neither installed nor defined.
         """
         key = f"{type_name}_{part}"
-        found = self._classes.get(key)
-        if found is None:
-            found = self._classes[key] = self._find_action(type_name, part)
-        return found
+        if key not in self._classes:
+            self._classes[key] = self._find_action(type_name, part)
+        return self._classes[key]
 
     def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
+        if type_name in _TIME_FIELDS:
+            return _TIME_FIELDS[type_name]
         kind = self.message_class(type_name)
         return {name: from_ros1(text) for name, text in zip(kind.__slots__, kind._slot_types, strict=True)}
 
-    def _find_message(self, type_name: str) -> Any:
+    def _find_class(self, type_name: str) -> Any:
         if type_name in (TIME, DURATION):
             return getattr(import_module("genpy"), type_name.rsplit("/", 1)[1])
         package, kind, name = type_name.split("/")
+        whole, _, part = type_name.rpartition("_")
         if kind == "srv":
-            service, _, part = type_name.rpartition("_")
-            return getattr(self.service_class(service), f"_{part.lower()}_class")
+            return getattr(self.service_class(whole), f"_{part.lower()}_class")
         if kind == "action":
-            action, _, part = type_name.rpartition("_")
-            return self.action_class(action, part)
+            return self.action_class(whole, part)
         found = _imported(package, kind, name) or self._generated_message(package, name)
         if found is None:
             help = f"install {package}"
             if package in _ON_DEBIAN:
                 help += f" (on Debian: apt-get install python3-{package.replace('_', '-')})"
             raise UnknownInterface(
-                f"message type {type_name} is not installed for ROS 1; {help}, or put its definition into a folder and "
-                f"name that folder in interface_paths (in a mapping file: interfaces): {type_name}.msg"
+                f"message type {type_name} is not installed for ROS 1; {help}, or {how_to_define(type_name)}"
             )
         return found
 
@@ -148,6 +120,14 @@ class GenpySchema:
                 return self._generated_part(package, name.removesuffix(suffix), suffix, action_text)
         return None
 
+    def _find_defaults(self, type_name: str, path: tuple[str, ...]) -> Iterator[Callable[[Any], None]]:
+        for name, value in DEFAULTS.get(type_name, {}).items():
+            yield _setter(path, name, value)
+        if type_name not in _TIME_FIELDS:
+            for name, field in self.fields(type_name).items():
+                if field.is_message and not field.array:
+                    yield from self._find_defaults(field.base, (*path, name))
+
     def _find_service(self, type_name: str) -> Any:
         package, kind, name = type_name.split("/")
         ros1_package = ROS1_PACKAGES.get(type_name, package)
@@ -157,9 +137,8 @@ class GenpySchema:
         text = definition(type_name, self._roots)
         if text is None:
             raise UnknownInterface(
-                f"service type {type_name} is not installed for ROS 1; install its package, or put its "
-                "definition into a folder and name that folder in interface_paths (in a mapping file: interfaces): "
-                f"{type_name}.srv"
+                f"service type {type_name} is not installed for ROS 1; install its package, or "
+                f"{how_to_define(type_name)}"
             )
         return self._generate(generated_service, f"{ros1_package}/{name}", text)
 
@@ -173,16 +152,17 @@ class GenpySchema:
             help = "" if guess == name else f"; is it {package}/action/{guess}?"
             raise UnknownInterface(
                 f"action type {type_name} is not installed for ROS 1 ({package}.msg has no {name}Action){help}; "
-                "install its package, or put its definition into a folder and name that folder in "
-                f"interface_paths (in a mapping file: interfaces): {type_name}.action"
+                f"install its package, or {how_to_define(type_name)}"
             )
         return self.message_class(f"{package}/msg/{name}{part}")
 
     def _generated_part(self, package: str, name: str, part: str, text: str) -> Any:
+        action = f"{package}/action/{name}"
         try:
-            texts = action_texts(name, text)
+            texts = {full.removeprefix(f"{action}_"): each for full, each in split(action, text).items()}
         except ValueError as problem:
-            raise UnknownInterface(f"invalid definition of {package}/action/{name}: {problem}") from None
+            raise UnknownInterface(f"invalid definition of {action}: {problem}") from None
+        texts |= {wrapper: wrapping.format(name=name) for wrapper, wrapping in ACTION_PARTS.items()}
         return self._generate(generated_message, f"{package}/{name}{part}", texts[part])
 
     def _generate(self, generate: Callable[..., Any], full_name: str, text: str) -> Any:
@@ -194,6 +174,15 @@ class GenpySchema:
     def _named_as_on_ros1(self, full_name: str) -> Any:
         package, name = full_name.split("/")
         return self.message_class(f"{package}/msg/{name}")
+
+
+def _setter(path: tuple[str, ...], name: str, value: object) -> Callable[[Any], None]:
+    def set_default(message: Any) -> None:
+        for step in path:
+            message = getattr(message, step)
+        setattr(message, name, value)
+
+    return set_default
 
 
 def _imported(package: str, kind: str, name: str) -> Any:
@@ -250,22 +239,6 @@ def generated_service(full_name: str, text: str, find: FindClass) -> Any:
         return _joined(import_module("genpy.generator").srv_generator(context, service, {}))
 
     return getattr(_module(full_name, _digest(text, classes), source, classes), full_name.split("/")[1])
-
-
-def action_texts(name: str, text: str) -> dict[str, str]:
-    """Split an action's definition into those of its seven messages, by the suffix of their names.
-
-    Args:
-        name: name of the action without its package.
-        text: the three parts of the definition.
-    """
-    goal, result, feedback = split_action(text)
-    return {
-        "Goal": goal,
-        "Result": result,
-        "Feedback": feedback,
-        **{part: wrapping.format(name=name) for part, wrapping in ACTION_PARTS.items()},
-    }
 
 
 _FIELD = re.compile(r"^(?P<base>[\w/]+)(?P<bound><=\d+)?(?P<array>\[[^\]]*\])?\s+(?P<name>\w+)(?P<rest>.*)$")

@@ -3,52 +3,24 @@
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from jacaros.ros.backend import (
-    ACTIONS,
-    DEADLINES,
-    DECLARED_PARAMETERS,
-    DISCOVERY,
-    GRAPH_QOS,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    QOS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
+from jacaros.ros.backend import Backend, GraphContents
 from jacaros.ros.drivers.ros2 import graph as ros2_graph
-from jacaros.ros.drivers.ros2.actions import Ros2ActionServer
-from jacaros.ros.drivers.ros2.goals import Ros2GoalWire
+from jacaros.ros.drivers.ros2.actions import Ros2ActionServer, Ros2GoalWire
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.drivers.ros2.parameters import OtherParameters, OwnParameters, read_value
+from jacaros.ros.drivers.ros2.parameters import OwnParameters
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.drivers.ros2.services import Ros2Client, Ros2Service
 from jacaros.ros.drivers.ros2.topics import Ros2Publisher, Ros2Subscription
 from jacaros.ros.errors import CallFailed, CallTimedOut, RosError, UnknownInterface
-from jacaros.ros.graph import GraphContents
 from jacaros.ros.handoff import in_thread
-from jacaros.ros.node import NodeSettings, Parts
+from jacaros.ros.node import Capability, NodeSettings, Parts
 from jacaros.ros.parameter import Parameters
-from jacaros.ros.parameter_events import ParameterEvents
+from jacaros.ros.parameter_services import NodeParameters, ParameterEvents, read_value
 from jacaros.ros.tf import MESSAGE as TRANSFORM_MESSAGE
 from jacaros.ros.waiting import within
 
 T = TypeVar("T")
-CAPABILITIES = frozenset(
-    {
-        TOPICS,
-        SERVICES,
-        QOS,
-        ACTIONS,
-        DISCOVERY,
-        PARAMETERS,
-        DECLARED_PARAMETERS,
-        PARAMETER_EVENTS,
-        DEADLINES,
-        GRAPH_QOS,
-    }
-)
+CAPABILITIES = frozenset(Capability) - {Capability.SERVICE_ERRORS, Capability.REGISTRATION}
 
 
 def _joining(what: str, make: Callable[..., T]) -> Callable[..., T]:
@@ -88,13 +60,13 @@ class Ros2Backend(Ros2Node):
         self._parameters: dict[str, Parameters] = {}
 
     @property
-    def capabilities(self) -> frozenset[str]:  # type: ignore[override]
+    def capabilities(self) -> frozenset[Capability]:  # type: ignore[override]
         """The capabilities; transforms only if ``tf2_msgs`` is installed."""
         try:
             self.schema.message_class(TRANSFORM_MESSAGE)
         except UnknownInterface:
-            return CAPABILITIES
-        return CAPABILITIES | {TRANSFORMS}
+            return CAPABILITIES - {Capability.TRANSFORMS}
+        return CAPABILITIES
 
     async def start(self) -> None:
         """Join the graph."""
@@ -105,8 +77,13 @@ class Ros2Backend(Ros2Node):
         """Return the parameters of our own node, or of another."""
         name = self.node_name if node is None else self.resolve(node)
         if name not in self._parameters:
-            self._parameters[name] = OtherParameters(self, name, self._parameter_events)
+            self._parameters[name] = NodeParameters(
+                self.clock, name, self._parameter_client, self._parameter_events
+            )
         return self._parameters[name]
+
+    def _parameter_client(self, name: str, type_name: str) -> Ros2Client:
+        return self.keep(Ros2Client(self, name, type_name, repeatable=True))
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Return the contents of the graph."""

@@ -5,24 +5,13 @@ from typing import Any
 import rclpy.duration  # type: ignore[import-not-found]
 import rclpy.qos  # type: ignore[import-not-found]
 
+from jacaros.ros.backend import Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
+from jacaros.ros.parameter_services import NODE_SERVICES
 from jacaros.ros.protocols.ros2_actions import ACTION, FEEDBACK, SEND_GOAL
 from jacaros.ros.qos import QoS
 
 INFRASTRUCTURE = frozenset({"/rosout", "/parameter_events"})
-NODE_SERVICES = frozenset(
-    {
-        "describe_parameters",
-        "get_parameter_types",
-        "get_parameters",
-        "get_type_description",
-        "list_parameters",
-        "set_parameters",
-        "set_parameters_atomically",
-    }
-)
-"""Services that every node offers, below its name."""
 
 
 def absolute(namespace: str, name: str) -> str:
@@ -45,40 +34,28 @@ def foreign_types(node: Ros2Node, topic: str, type_name: str) -> dict[str, str]:
     }
 
 
-def own_types(node: Ros2Node, topic: str) -> list[list[str]]:
-    """Return the types with which our own node uses a topic."""
-    names = node.names
-    told = [
-        *node.rcl.get_publisher_names_and_types_by_node(names.node_name, names.namespace or "/"),
-        *node.rcl.get_subscriber_names_and_types_by_node(names.node_name, names.namespace or "/"),
-    ]
-    return [types for name, types in told if name == topic]
+_OFFERED = {"service": ("", ""), "action": (SEND_GOAL, "_SendGoal")}
+"""What follows the name and the type in the service that shows that something is offered."""
 
 
-def service_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
-    """Return a problem if a service exists with another type only; None if none exists, or nothing is known."""
-    return _mismatch(node, "service", name, name, type_name, "")
+def mismatch(node: Ros2Node, what: str, name: str, type_name: str) -> str | None:
+    """Return a problem if a service or action (*what*) exists with another type only.
 
-
-def action_mismatch(node: Ros2Node, name: str, type_name: str) -> str | None:
-    """Return a problem if an action exists with another type only; None if none exists, or nothing is known."""
-    return _mismatch(node, "action", name, name + SEND_GOAL, type_name, "_SendGoal")
-
-
-def _mismatch(node: Ros2Node, what: str, name: str, service: str, type_name: str, ending: str) -> str | None:
-    ours = node.schema.graph_type(type_name) + ending
-    told = _offered_types(node, service)
+    None if none exists, or nothing is known.
+    """
+    suffix, ending = _OFFERED[what]
+    ours = node.schema.graph_type(type_name)
+    told = [each.removesuffix(ending) for each in _offered_types(node, name + suffix)]
     if not told or ours in told:
         return None
-    theirs = told[0].removesuffix(ending)
-    text = f"{what} {name} is of type {node.schema.usual_type(theirs)}, not {type_name}"
-    if node.schema.usual_type(ours.removesuffix(ending)) == theirs != ours.removesuffix(ending):
+    theirs = told[0]
+    if node.schema.usual_type(ours) == theirs != ours:
         package = theirs.split("/")[0].replace("_", "-")
-        text = (
+        return (
             f"{what} {name} has the original type {theirs}, but only a substitute is installed here: "
             f"install ros-<distribution>-{package}"
         )
-    return text
+    return f"{what} {name} is of type {node.schema.usual_type(theirs)}, not {type_name}"
 
 
 def _offered_types(node: Ros2Node, name: str) -> list[str]:
@@ -105,9 +82,13 @@ def contents(node: Ros2Node) -> GraphContents:
             topics[name] = _topic(node, name, types)
     services: dict[str, str] = {}
     for name, types in rcl.get_service_names_and_types():
-        if ACTION not in name and not _belongs_to_node(name, nodes) and rcl.count_services(name):
+        owner, _, last = name.rpartition("/")
+        of_node = last in NODE_SERVICES and owner in nodes
+        if ACTION not in name and not of_node and rcl.count_services(name):
             services[name] = node.schema.usual_type(sorted(types)[0]) if types else ""
-    return GraphContents(topics, services, actions, tuple(node for node in nodes if _is_shown(node)))
+    # Names of tools begin with an underscore; ROS 2's own lists do not show them either.
+    shown = (each for each in nodes if not each.rpartition("/")[2].startswith("_"))
+    return GraphContents(topics, services, actions, tuple(shown))
 
 
 def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
@@ -119,42 +100,21 @@ def _topic(node: Ros2Node, name: str, types: list[str]) -> TopicInfo:
     )
 
 
-def _belongs_to_node(service: str, nodes: list[str]) -> bool:
-    """Return whether a service is one that every node has."""
-    owner, _, last = service.rpartition("/")
-    return last in NODE_SERVICES and owner in nodes
-
-
-def _is_shown(node: str) -> bool:
-    """Return whether a node is shown: names of tools begin with an underscore, as in ROS 2's own lists."""
-    return not node.rpartition("/")[2].startswith("_")
-
-
 def publishers_in(rcl: Any, topic: str, no_mangle: bool = False) -> frozenset[bytes]:
     """Return the identities of a topic's publishers that a node of rclpy knows."""
     told = rcl.get_publishers_info_by_topic(topic, no_mangle=no_mangle)
     return frozenset(bytes(info.endpoint_gid) for info in told)
 
 
-def action_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
-    """Return the identities of an action's servers that a node of rclpy knows."""
+def action_servers(rcl: Any, name: str) -> frozenset[bytes]:
+    """Return the identities of an action's servers that a node of rclpy knows; a restarted server has a new one."""
     return publishers_in(rcl, name + FEEDBACK)
 
 
-def action_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
-    """Return the identities of an action's servers; a restarted server has a new one."""
-    return action_servers_in(node.rcl, name)
-
-
-def service_servers_in(rcl: Any, name: str) -> frozenset[bytes]:
-    """Return the identities of a service's servers that a node of rclpy knows."""
+def service_servers(rcl: Any, name: str) -> frozenset[bytes]:
+    """Return the identities of a service's servers that a node of rclpy knows, if the middleware builds services from
+    topics, as all DDS ones do."""
     return publishers_in(rcl, f"rr{name}Reply", no_mangle=True)
-
-
-def service_servers(node: Ros2Node, name: str) -> frozenset[bytes]:
-    """Return the identities of a service's servers, if the middleware builds services from topics, as all DDS ones
-    do."""
-    return service_servers_in(node.rcl, name)
 
 
 _FOREVER = 2**62

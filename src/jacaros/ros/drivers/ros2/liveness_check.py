@@ -9,6 +9,7 @@ import asyncio
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import rclpy  # type: ignore[import-not-found]
@@ -32,14 +33,16 @@ Find = Callable[[Any], frozenset[bytes]]
 """Returns identities from a node of rclpy, such as those of a topic's publishers."""
 
 
+Report = Callable[[frozenset[bytes]], None]
+"""Takes the missing ones of the identities that a caller has asked about."""
+
+
+@dataclass(eq=False)
 class _Question:
-    def __init__(
-        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
-    ) -> None:
-        self.find = find
-        self.suspects = suspects
-        self.report = report
-        self.missing: frozenset[bytes] = frozenset()
+    find: Find
+    suspects: frozenset[bytes]
+    report: Report
+    missing: frozenset[bytes] = frozenset()
 
 
 class LivenessCheck:
@@ -70,7 +73,7 @@ class LivenessCheck:
         """Whether it has begun so recently that its results are valid for a new caller."""
         return time.monotonic() < self._began + FRESH
 
-    def ask(self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]) -> None:
+    def ask(self, find: Find, suspects: frozenset[bytes], report: Report) -> None:
         """Find out which of the *suspects* are alive.
 
         Args:
@@ -107,9 +110,8 @@ class LivenessCheck:
             )
 
     def _joined(self, done: "asyncio.Future[None]") -> None:
-        if (
-            done.exception() is not None
-        ):  # for instance no further participants on this machine: then the lease decides
+        # For instance no further participants on this machine: then the lease decides.
+        if done.exception() is not None:
             self._end()
         else:
             self._began = time.monotonic()

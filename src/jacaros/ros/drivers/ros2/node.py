@@ -8,7 +8,7 @@ Domain, discovery range and the middleware are configured as usual in ROS 2: ``R
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
@@ -23,13 +23,14 @@ import rclpy.executors  # type: ignore[import-not-found]
 import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
-from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck
+from jacaros.ros.backend import Backend
+from jacaros.ros.drivers.ros2.liveness_check import Find, LivenessCheck, Report
 from jacaros.ros.drivers.ros2.receiving import Receiver
 from jacaros.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.ros.errors import ParameterRefused
 from jacaros.ros.handoff import in_thread, post
 from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Node, NodeSettings
+from jacaros.ros.node import NodeSettings
 from jacaros.ros.ros_clock import RosClock
 
 SENDING, STOPPING_ROBOTS = 0.5, 1.5
@@ -47,7 +48,7 @@ Until version 2.14.5 of Fast DDS, receivers learn only every 3 s that a message 
 """
 
 
-class Ros2Node(Node):
+class Ros2Node(Backend):
     """The base of publishers, services and actions of the ROS 2 backend.
 
     Args:
@@ -67,7 +68,8 @@ class Ros2Node(Node):
         self._executor: Any = None
         self._thread: threading.Thread | None = None
         self._stopped = threading.Event()
-        self._ended = False
+        self.ended = False
+        """Whether the node has left the graph, or is about to."""
         self._reported = ""
         self.rcl: Any = None
         self.receiver: Receiver
@@ -76,11 +78,6 @@ class Ros2Node(Node):
         """Functions that deliver again what was lost, and return whether all messages have arrived; on any thread. The end
         of the node waits for each at most this number of seconds."""
         self._sending_since = 0.0
-
-    @property
-    def ended(self) -> bool:
-        """Whether the node has left the graph, or is about to."""
-        return self._ended
 
     async def start(self) -> None:
         """Join the graph."""
@@ -108,7 +105,7 @@ class Ros2Node(Node):
             with suppress(Exception):  # it may already be destroyed with its node
                 destroy(thing)
 
-        if self._ended or self._executor is None:
+        if self.ended or self._executor is None:
             now()
         else:
             self._executor.create_task(now)
@@ -124,7 +121,7 @@ class Ros2Node(Node):
 
         def look() -> None:
             waited = time.monotonic() - began
-            if self._ended or (_arrived(sent) and waited >= LINGERING) or waited >= LINGERING_LONGEST:
+            if self.ended or (_arrived(sent) and waited >= LINGERING) or waited >= LINGERING_LONGEST:
                 self.unsent.pop(sent, None)
                 self.destroy_entity(destroy, thing)
             else:
@@ -132,11 +129,9 @@ class Ros2Node(Node):
 
         look()
 
-    def check_liveness(
-        self, find: Find, suspects: frozenset[bytes], report: Callable[[frozenset[bytes]], None]
-    ) -> None:
+    def check_liveness(self, find: Find, suspects: frozenset[bytes], report: Report) -> None:
         """Find out which of the *suspects* are alive; see `LivenessCheck.ask`."""
-        if self._ended:
+        if self.ended:
             return
         look = next((look for look in self._liveness_checks if look.fresh), None)
         if look is None:
@@ -157,7 +152,11 @@ class Ros2Node(Node):
                 namespace=self.names.namespace or "/",
                 context=self._context,
                 use_global_arguments=False,
-                parameter_overrides=[parameter(name, value) for name, value in self._overrides()],
+                # Values for rclpy's own parameters; ours get their values when they are declared.
+                parameter_overrides=[
+                    parameter(name, value)
+                    for name, value in (self._simulated | self.given_parameters).items()
+                ],
             )
         except ParameterException as problem:  # a value for one of rclpy's own parameters
             self._context.try_shutdown()
@@ -167,18 +166,11 @@ class Ros2Node(Node):
         self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.rcl)
         self.receiver = Receiver(self._context, self._report, self._executor)
-        self._take_clock()
-        self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
-        self._thread.start()
-
-    def _overrides(self) -> Iterator[tuple[str, Any]]:
-        """Yield values for rclpy's own parameters; ours get their values when they are declared."""
-        yield from (self._simulated | dict(self.given_parameters.items())).items()
-
-    def _take_clock(self) -> None:
-        """Read the messages of ``/clock`` that rclpy uses (`use_sim_time`); simulators may send a thousand a second."""
+        # The messages of ``/clock`` that rclpy uses (`use_sim_time`); simulators may send a thousand a second.
         for subscription in self.rcl.subscriptions:
             self.receiver.add(subscription, subscription.callback)
+        self._thread = threading.Thread(target=self._spin, name="rclpy executor", daemon=True)
+        self._thread.start()
 
     def _spin(self) -> None:
         while self._context.ok() and not self._stopped.is_set():
@@ -211,7 +203,7 @@ class Ros2Node(Node):
         self._executor.create_task(self._stopped.set)
         if self._thread is not None:
             self._thread.join(STOPPING)
-        self._ended = True
+        self.ended = True
         self._executor.shutdown(timeout_sec=0.0)
         self.rcl.destroy_node()
         self._context.try_shutdown()

@@ -1,5 +1,4 @@
-"""Parameters of ROS 2's nodes: our own through rclpy, others' through their services, changes on
-``/parameter_events``."""
+"""The parameters of our own node, which rclpy stores."""
 
 import math
 import threading
@@ -10,34 +9,23 @@ from rcl_interfaces.msg import (  # type: ignore[import-not-found]
     FloatingPointRange,
     IntegerRange,
     ParameterDescriptor,
-    ParameterType,
     SetParametersResult,
 )
 from rclpy.exceptions import (  # type: ignore[import-not-found]
-    InvalidParameterException,
-    InvalidParameterTypeException,
-    InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
+    ParameterException,
     ParameterNotDeclaredException,
 )
-from rclpy.parameter import Parameter, parameter_value_to_python  # type: ignore[import-not-found]
+from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.ros.drivers.ros2.node import Ros2Node
-from jacaros.ros.drivers.ros2.services import Ros2Client
-from jacaros.ros.drivers.ros2.types import parameter, plain_value
-from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
+from jacaros.ros.drivers.ros2.types import ARRAYS, parameter
+from jacaros.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.ros.handoff import LoopEnded, ask
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import ParameterServices
+from jacaros.ros.parameter_services import ParameterEvents
 
 _LARGEST = 2**63 - 1
-
-
-def read_value(told: Any) -> ParameterValue | None:
-    """Read a ``rcl_interfaces/msg/ParameterValue``; None for a parameter without a value."""
-    value: ParameterValue | None = plain_value(parameter_value_to_python(told))
-    return value
 
 
 class OwnParameters:
@@ -72,12 +60,7 @@ class OwnParameters:
             )
         except ParameterAlreadyDeclaredException:
             raise ParameterRefused(f"parameter {name} of {self.node} is already declared") from None
-        except (
-            InvalidParameterException,
-            InvalidParameterValueException,
-            InvalidParameterTypeException,
-            ValueError,
-        ) as problem:
+        except (ParameterException, ValueError) as problem:
             self._judges.pop(name, None)
             raise ParameterRefused(f"parameter {name} of {self.node}: {problem}") from None
         if value.value == [] and value.type_ != made.type_:
@@ -104,9 +87,6 @@ class OwnParameters:
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters."""
-        return self._names()
-
-    def _names(self) -> list[str]:
         return sorted(self._node.rcl.list_parameters([], 0).names)
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
@@ -131,13 +111,14 @@ class OwnParameters:
         return self._parameter_events.listen(self.node, callback)
 
     def _value(self, told: Any) -> ParameterValue:
-        value: ParameterValue = (
-            b"" if told.type_ == Parameter.Type.BYTE_ARRAY and not told.value else (plain_value(told.value))
-        )
-        return value
+        value: ParameterValue = told.value
+        if told.type_ == Parameter.Type.BYTE_ARRAY:
+            return b"".join(told.value)
+        return list(told.value) if told.type_ in ARRAYS else value
 
     def _unknown(self, name: str) -> str:
-        return f"node {self.node} has no parameter {name}; it has {', '.join(self._names())}"
+        known = sorted(self._node.rcl.list_parameters([], 0).names)
+        return f"node {self.node} has no parameter {name}; it has {', '.join(known)}"
 
     def _judge(self, changes: list[Any]) -> Any:
         """Decide about changes; called by rclpy on the thread that makes them."""
@@ -164,85 +145,6 @@ class OwnParameters:
             return ask(self._node.loop, judge, lambda: self._node.ended)
         except LoopEnded:
             return "the node is leaving"
-
-
-class OtherParameters:
-    """The parameters of another node, through the services of every node."""
-
-    def __init__(self, node: Ros2Node, name: str, events: ParameterEvents) -> None:
-        self.node = name
-        self._node = node
-        self._parameter_events = events
-        self._services = ParameterServices(name, self._client)
-
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
-        """Refuse: only the node itself can do that."""
-        raise self._not_ours()
-
-    def withdraw(self, name: str) -> None:
-        """Refuse: only the node itself can do that."""
-        raise self._not_ours()
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
-        answer = await self._read("ListParameters", {"depth": 0}, timeout)
-        return sorted(answer.result.names)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        answer = await self._read("GetParameters", {"names": [name]}, timeout)
-        value = plain_value(parameter_value_to_python(answer.values[0])) if len(answer.values) == 1 else None
-        if value is None:
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
-        if value == [] and answer.values[0].type == ParameterType.PARAMETER_BYTE_ARRAY:
-            return b""
-        return value  # type: ignore[no-any-return]
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        kind = None
-        if isinstance(value, list | tuple) and not value:
-            kind = Parameter.Type(await self._type(name, timeout) or ParameterType.PARAMETER_STRING_ARRAY)
-        wanted = parameter(name, value, kind).to_parameter_msg()
-        answer = await self._services.call("SetParameters", {"parameters": [wanted]}, timeout)
-        result = (
-            answer.results[0] if answer.results else SetParametersResult(reason="the node gave no reason")
-        )
-        if result.successful:
-            return
-        if not await self._type(name, timeout):
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
-        raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {result.reason}")
-
-    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Call *callback* with changed parameters."""
-        return self._parameter_events.listen(self.node, callback)
-
-    def _not_ours(self) -> CapabilityMissing:
-        return CapabilityMissing(
-            f"only {self.node} itself can declare its parameters; {self._node.node_name} can only get and set them"
-        )
-
-    async def _type(self, name: str, timeout: float | None) -> int:
-        """Return the number of a parameter's type; 0 if it does not exist."""
-        answer = await self._read("GetParameterTypes", {"names": [name]}, timeout)
-        return int(answer.types[0]) if len(answer.types) == 1 else ParameterType.PARAMETER_NOT_SET
-
-    async def _read(self, service: str, request: Mapping[str, Any], timeout: float | None) -> Any:
-        """Call a service, and call again if the node went away and is back: it was restarted without being noticed."""
-        clock = self._node.clock
-        deadline = None if timeout is None else clock.elapsed + timeout
-        while True:
-            try:
-                rest = None if deadline is None else deadline - clock.elapsed
-                return await self._services.call(service, request, rest)
-            except ServerGone:
-                late = deadline is not None and clock.elapsed >= deadline
-                if late or not self._services.client(service).ready:
-                    raise
-
-    def _client(self, name: str, type_name: str) -> Ros2Client:
-        return self._node.keep(Ros2Client(self._node, name, type_name, repeatable=True))
 
 
 def _descriptor(default: Any, declaration: Declaration) -> Any:

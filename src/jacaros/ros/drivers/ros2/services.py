@@ -5,13 +5,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch
-from jacaros.ros.drivers.ros2.graph import service_mismatch, service_servers, service_servers_in
+from jacaros.ros.drivers.ros2.graph import mismatch, service_servers
 from jacaros.ros.drivers.ros2.node import Ros2Node
 from jacaros.ros.errors import CallFailed, ServiceUnavailable
 from jacaros.ros.handoff import post
-from jacaros.ros.serving import Responder
+from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
 SETTLING = 0.5
@@ -34,38 +32,22 @@ class _AskedServers:
     def __init__(self, node: Ros2Node, name: str) -> None:
         self._node = node
         self._name = name
-        self._servers = service_servers(node, name)
         self._dead: frozenset[bytes] = frozenset()
-        self._timer = node.loop.call_later(DOUBTED, self._doubt)
+        self._doubt_at = time.monotonic() + DOUBTED
+        self.known = service_servers(node.rcl, name)
 
-    @property
-    def known(self) -> bool:
-        """Whether the servers are known."""
-        return bool(self._servers)
-
-    @property
     def there(self) -> bool:
-        """Whether one of them is there."""
-        return not self._servers.isdisjoint(service_servers(self._node, self._name) - self._dead)
+        """Return whether one of them is there, as far as is known; a long call starts liveness checks."""
+        now = time.monotonic()
+        if now >= self._doubt_at:
+            self._doubt_at = now + DOUBTED_AGAIN
+            self._node.check_liveness(
+                lambda rcl: service_servers(rcl, self._name), self.known, self._note_dead
+            )
+        return not self.known.isdisjoint(service_servers(self._node.rcl, self._name) - self._dead)
 
-    def close(self) -> None:
-        """End the call."""
-        self._timer.cancel()
-
-    def _doubt(self) -> None:
-        def report(missing: frozenset[bytes]) -> None:
-            self._dead = missing
-
-        if self._servers:
-            self._node.check_liveness(lambda rcl: service_servers_in(rcl, self._name), self._servers, report)
-        self._timer = self._node.loop.call_later(DOUBTED_AGAIN, self._doubt)
-
-
-class _Call:
-    """A request on its way through rclpy's executor; see `LateService`."""
-
-    def __init__(self, request: Any) -> None:
-        self.request = request
+    def _note_dead(self, missing: frozenset[bytes]) -> None:
+        self._dead = missing
 
 
 class LateService:
@@ -91,7 +73,7 @@ class LateService:
     ) -> None:
         self._node = node
         self._take = take
-        self._service: Any = node.rcl.create_service(service_class, name, lambda request, _: _Call(request))
+        self._service: Any = node.rcl.create_service(service_class, name, lambda request, _: request)
         self._send = self._service.send_response
         self._service.send_response = self._hand_over
         self._closed = False
@@ -103,7 +85,7 @@ class LateService:
             destroy_entity = self._node.destroy_entity_later if late else self._node.destroy_entity
             destroy_entity(self._node.rcl.destroy_service, self._service)
 
-    def _hand_over(self, call: _Call, header: Any) -> None:
+    def _hand_over(self, request: Any, header: Any) -> None:
         def respond(response: Any) -> None:
             if self._closed or self._node.ended:
                 return
@@ -112,23 +94,18 @@ class LateService:
             except Exception as problem:  # the client has gone, which is not our fault
                 self._node.log(f"a response could not be sent: {problem}")
 
-        post(self._node.loop, self._take, call.request, respond)
+        post(self._node.loop, self._take, request, respond)
 
 
-class Ros2Service:
+class Ros2Service(ServiceServer[Ros2Node]):
     """Service of the ``ros2`` backend."""
 
     def __init__(self, node: Ros2Node, name: str, type_name: str, handler: Handler) -> None:
-        self.name = name
-        self._node = node
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
+        super().__init__(node, name, type_name, handler)
         self._service = LateService(node, node.schema.message_class(type_name), name, self._answer)
 
-    def close(self) -> None:
-        """Stop offering the service."""
-        self._responder.close()
+    def _leave(self) -> None:
         self._service.close()
-        self._node.forget(self)
 
     def _answer(self, request: Any, respond: Callable[[Any], None]) -> None:
         def done(response: Any, problem: CallFailed | None) -> None:
@@ -136,7 +113,7 @@ class Ros2Service:
             if problem is None:
                 respond(response)
 
-        self._responder.answer(request, done)
+        self.answer(request, done)
 
 
 class _Requests:
@@ -167,7 +144,7 @@ class _Requests:
             self._client.remove_pending_request(future)
 
 
-class Ros2Client(AttemptingClient):
+class Ros2Client(ServiceClient[Ros2Node]):
     """Client of the ``ros2`` backend.
 
     Args:
@@ -177,8 +154,6 @@ class Ros2Client(AttemptingClient):
         repeatable: whether the server may receive a request twice.
     """
 
-    _node: Ros2Node  # pyright: ignore[reportIncompatibleVariableOverride]
-
     def __init__(self, node: Ros2Node, name: str, type_name: str, repeatable: bool = False) -> None:
         super().__init__(node, name, type_name)
         self._again_after = REPEATED if repeatable else None
@@ -186,7 +161,6 @@ class Ros2Client(AttemptingClient):
         self._servers: frozenset[bytes] = frozenset()
         self._compared = 0.0
         self._acquainted = False
-        self._closed = False
 
     @property
     def ready(self) -> bool:
@@ -199,17 +173,15 @@ class Ros2Client(AttemptingClient):
         if not self.ready:
             self._acquainted = False
             # A server of another type is never ready for us.
-            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
-                raise CallFailed(mismatch)
+            self._require_type()
             raise ServiceUnavailable(f"no node offers service {self.name}")
         if self._is_new():
             await clock.sleep(SETTLING if rest is None else min(SETTLING, rest / 4))
             if self._closed:
                 raise CallFailed(f"the client of service {self.name} was closed during the call")
-            if (mismatch := service_mismatch(node, self.name, self._type_name)) is not None:
-                raise CallFailed(mismatch)
+            self._require_type()
             self._acquainted = True
-        answer = self._pending.new()
+        answer = self._new_answer()
 
         def finished(future: Any) -> None:
             problem = future.exception()
@@ -223,14 +195,18 @@ class Ros2Client(AttemptingClient):
         def is_there() -> bool:
             if self._closed or node.ended:
                 return True  # then the call ends in another way
-            return asked.there if asked.known else self.ready
+            return asked.there() if asked.known else self.ready
 
         try:
             with ServerWatch(clock, self.name, answer, is_there):
                 return await within(clock, answer, None if deadline is None else deadline - clock.elapsed)
         finally:
-            asked.close()
             requests.close()
+
+    def _require_type(self) -> None:
+        problem = mismatch(self._node, "service", self.name, self.type_name)
+        if problem is not None:
+            raise CallFailed(problem)
 
     def _is_new(self) -> bool:
         """Return whether the server is new; after a crash, the next one takes over before the first counts as
@@ -239,15 +215,10 @@ class Ros2Client(AttemptingClient):
         if self._acquainted and now < self._compared + COMPARING:
             return False
         self._compared = now
-        servers = service_servers(self._node, self.name)
+        servers = service_servers(self._node.rcl, self.name)
         fresh = not self._acquainted or not servers <= self._servers
         self._servers |= servers
         return fresh
 
-    def close(self) -> None:
-        """Close the client."""
-        self._pending.close()
-        if not self._closed:
-            self._closed = True
-            self._node.destroy_entity_later(self._node.rcl.destroy_client, self._client)
-            self._node.forget(self)
+    def _leave(self) -> None:
+        self._node.destroy_entity_later(self._node.rcl.destroy_client, self._client)

@@ -12,15 +12,14 @@ from rclpy.event_handler import (  # type: ignore[import-not-found]
     SubscriptionEventCallbacks,
 )
 
-from jacaros.ros.drivers.ros2.graph import endpoint, foreign_types, own_types, profile, publishers_in
+from jacaros.ros.drivers.ros2.graph import endpoint, foreign_types, profile, publishers_in
 from jacaros.ros.drivers.ros2.node import AGAIN, SENDING, STOPPING_ROBOTS, Ros2Node
 from jacaros.ros.drivers.ros2.receiving import RCLError
 from jacaros.ros.errors import RosError
 from jacaros.ros.guarded import VELOCITIES
 from jacaros.ros.handoff import Handoff, post
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import TopicPublisher, TopicSubscription, Wanted
 from jacaros.ros.qos import QoS, available, incompatibility
-from jacaros.ros.topics import TopicPublisher, TopicSubscription
 
 NO_TIME = Duration()
 REPETITIONS = 4
@@ -40,10 +39,11 @@ def _at_topic(node: Ros2Node, topic: str, type_name: str) -> Iterator[None]:
     try:
         yield
     except RCLError as problem:
-        others = {kind for kinds in own_types(node, topic) for kind in kinds} - {type_name}
-        because = (
-            f"this node already uses it with type {', '.join(sorted(others))}" if others else str(problem)
-        )
+        ours = {
+            getattr(each, "type_name", "") for each in node.members if getattr(each, "topic", "") == topic
+        }
+        others = ", ".join(sorted(ours - {type_name}))
+        because = f"this node already uses it with type {others}" if others else str(problem)
         raise RosError(f"topic {topic} cannot be used with type {type_name}: {because}") from None
 
 

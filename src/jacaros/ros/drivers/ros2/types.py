@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy  # rclpy needs it, too
@@ -12,33 +11,18 @@ from rclpy.parameter import Parameter  # type: ignore[import-not-found]
 
 from jacaros.ros.errors import ParameterRefused, UnknownInterface
 from jacaros.ros.fields import FieldType, from_ros2
+from jacaros.ros.interfaces import PARTS
 from jacaros.ros.interfaces.ros2_package import PACKAGE, origin
+from jacaros.ros.message import Schema
+from jacaros.ros.parameter import checked_value
 
-_PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""The messages of services and actions."""
 
-
-class RosidlSchema:
+class RosidlSchema(Schema):
     """Classes of the installed ROS 2 packages."""
-
-    def __init__(self) -> None:
-        self._classes: dict[str, Any] = {}
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-
-    def look_in(self, folder: Path) -> None:
-        """Do nothing: ROS 2 needs installed packages."""
 
     def fields(self, type_name: str) -> Mapping[str, FieldType]:
         """Return the fields of a type in full form. Raises `UnknownInterface`."""
-        fields = self._fields.get(type_name)
-        if fields is None:
-            told = self.message_class(type_name).get_fields_and_field_types()
-            fields = self._fields[type_name] = {name: from_ros2(text) for name, text in told.items()}
-        return fields
-
-    def new(self, type_name: str) -> Any:
-        """Make a message with the definition's defaults. Raises `UnknownInterface`."""
-        return self.message_class(type_name)()
+        return _fields(type_name)
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert an array to the form that rclpy checks fastest: numpy for fixed lengths."""
@@ -52,10 +36,7 @@ class RosidlSchema:
 
     def message_class(self, type_name: str) -> Any:
         """Return the class of a message, request or response type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find(type_name)
-        return found
+        return _message_class(type_name)
 
     def graph_type(self, type_name: str) -> str:
         """Return the name of a type in the graph: a substitute has its own package. Raises `UnknownInterface`."""
@@ -73,21 +54,29 @@ class RosidlSchema:
         # If the original package is installed, the two differ, so the substitute must be recognised.
         return told if looks_like is None or _is_installed(looks_like) else f"{looks_like}/{kind}/{name}"
 
-    def _find(self, type_name: str) -> Any:
-        package, kind, name = type_name.split("/")
-        whole, _, part = name.rpartition("_")
-        if whole and part in _PARTS.get(kind, ()):
-            return getattr(self.message_class(f"{package}/{kind}/{whole}"), part)
-        found = _imported(package, kind, name)
-        if found is None and not _is_installed(package) and origin(kind, name) == package:
-            found = _imported(PACKAGE, kind, name)
-        if found is None:
-            raise UnknownInterface(
-                f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
-                f"install ros-<distribution>-{package.replace('_', '-')}, or build its package, source its "
-                "setup file"
-            )
-        return found
+
+@cache
+def _fields(type_name: str) -> Mapping[str, FieldType]:
+    told = _message_class(type_name).get_fields_and_field_types()
+    return {name: from_ros2(text) for name, text in told.items()}
+
+
+@cache
+def _message_class(type_name: str) -> Any:
+    package, kind, name = type_name.split("/")
+    whole, _, part = name.rpartition("_")
+    if whole and part in PARTS.get(kind, ()):
+        return getattr(_message_class(f"{package}/{kind}/{whole}"), part)
+    found = _imported(package, kind, name)
+    if found is None and not _is_installed(package) and origin(kind, name) == package:
+        found = _imported(PACKAGE, kind, name)
+    if found is None:
+        raise UnknownInterface(
+            f"{type_name} is not installed for ROS 2 (no {name} in a Python module {package}.{kind}); "
+            f"install ros-<distribution>-{package.replace('_', '-')}, or build its package, source its "
+            "setup file"
+        )
+    return found
 
 
 @cache
@@ -105,21 +94,13 @@ def _imported(package: str, kind: str, name: str) -> Any:
         return None
 
 
-_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
-    bytes: Parameter.Type.BYTE_ARRAY,
-}
-_LIST_KINDS: dict[type, Any] = {
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
-_ARRAYS = {*_LIST_KINDS.values(), Parameter.Type.BYTE_ARRAY}
-_WIDEST = 2**63
+ARRAYS = (
+    Parameter.Type.BYTE_ARRAY,
+    Parameter.Type.BOOL_ARRAY,
+    Parameter.Type.INTEGER_ARRAY,
+    Parameter.Type.DOUBLE_ARRAY,
+    Parameter.Type.STRING_ARRAY,
+)
 
 
 def parameter(name: str, value: Any, kind: Any = None) -> Any:
@@ -133,34 +114,12 @@ def parameter(name: str, value: Any, kind: Any = None) -> Any:
     Raises:
         ParameterRefused: a parameter cannot hold this value.
     """
-    if isinstance(value, list | tuple):
-        elements = list(value)
-        if not elements:
-            return Parameter(name, kind if kind in _ARRAYS else Parameter.Type.STRING_ARRAY, [])
-        if any(isinstance(element, int) and not -_WIDEST <= element < _WIDEST for element in elements):
-            raise ParameterRefused(
-                f"parameter {name}: {value!r} is too large for a parameter, which has 64 bits"
-            )
-        kinds = {_LIST_KINDS.get(type(element)) for element in elements}
-        if len(kinds) == 1 and (kind := kinds.pop()) is not None:
-            return Parameter(name, kind, elements)
-    elif isinstance(value, bytes | bytearray):
-        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in value])
-    elif isinstance(value, int) and not -_WIDEST <= value < _WIDEST:
-        raise ParameterRefused(f"parameter {name}: {value} is too large for a parameter, which has 64 bits")
-    else:
-        for python, kind in _KINDS.items():  # bool is a subclass of int, so it comes first
-            if isinstance(value, python):
-                return Parameter(name, kind, python(value))
-    raise ParameterRefused(
-        f"parameter {name}: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or "
-        f"texts, found {value!r}"
-    )
-
-
-def plain_value(told: Any) -> Any:
-    """Convert a value from rclpy; None for a parameter without one."""
-    if isinstance(told, str | bool | int | float) or told is None:
-        return told
-    elements = list(told)
-    return b"".join(elements) if elements and isinstance(elements[0], bytes) else elements
+    try:
+        plain = checked_value(value)
+    except ParameterRefused as problem:
+        raise ParameterRefused(f"parameter {name}: {problem}") from None
+    if isinstance(plain, bytes):
+        return Parameter(name, Parameter.Type.BYTE_ARRAY, [bytes([octet]) for octet in plain])
+    if plain == []:
+        return Parameter(name, kind if kind in ARRAYS else Parameter.Type.STRING_ARRAY, plain)
+    return Parameter(name, value=plain)

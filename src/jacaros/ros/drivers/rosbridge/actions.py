@@ -8,22 +8,20 @@ the bridge has already accepted each goal, so a rejected goal is aborted, with t
 """
 
 import uuid
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from jacaros.ros.action import ActionPolicy, Execute, GoalStatus, Outcome
-from jacaros.ros.action_calling import GoalSender, GoalWire
-from jacaros.ros.action_serving import TEXT_FIELDS, ServedGoals, text_of
-from jacaros.ros.actionlib_client import ActionlibWire
-from jacaros.ros.actionlib_server import ActionlibServer
-from jacaros.ros.backend import Sample
-from jacaros.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.ros.drivers.rosbridge.topics import ActionTopics, BridgeSubscription
+from jacaros.ros.action import TEXT_FIELDS, ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals, text_of
+from jacaros.ros.action_client import ActionClient
+from jacaros.ros.actionlib import ActionlibServer, ActionlibWire
+from jacaros.ros.drivers.rosbridge.node import BridgeNode, OperationHandler
+from jacaros.ros.drivers.rosbridge.topics import BridgeSubscription
 from jacaros.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.ros.names import feedback_type, goal_type, result_type
-from jacaros.ros.node import Wanted
+from jacaros.ros.node import Sample, Wanted
 from jacaros.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
-from jacaros.ros.protocols.rosbridge_requests import LOOK_AGAIN, Polled
+from jacaros.ros.protocols.rosbridge_wire import LOOK_AGAIN
 from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer
 
@@ -36,84 +34,51 @@ CANCELED_AFTER = 1.0
 """Seconds within which a server that accepts to cancel has changed the goal's status."""
 
 
+@dataclass(slots=True)
 class _Sent:
-    """A goal that was sent."""
+    """A goal that was sent; *key* is its id in the status topic."""
 
-    def __init__(self) -> None:
-        self.accepted = False
-        self.key: str | None = None
-        self.cancel_asked = False
-
-
-class PresenceWatch:
-    """Polls for the action's server while a caller waits for it or a goal is active.
-
-    Args:
-        node: sends the requests.
-        sender: informed when the server comes and goes.
-    """
-
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
-        self._node = node
-        self._sender = sender
-        # rosapi does not report publishers of the hidden topics of actions, nor servers of their services.
-        self._polled = Polled(
-            node.requests,
-            "/rosapi/action_servers",
-            {},
-            lambda seen: sender.name in seen["action_servers"],
-            False,
-        )
-        self._known = False
-        self._interruptions = node.requests.interruptions
-        self._timer: Timer | None = None
-
-    @property
-    def offered(self) -> bool:
-        """Whether there is a server, as far as is known."""
-        if (
-            self._interruptions != self._node.requests.interruptions
-        ):  # it may have been lost with the connection
-            self._interruptions, self._known = self._node.requests.interruptions, False
-        if self._timer is None:
-            self._timer = self._node.clock.call_later(0.0, self._look)
-        return self._known and self._node.connected
-
-    def stop(self) -> None:
-        """Stop polling."""
-        if self._timer is not None:
-            self._timer.cancel()
-
-    def _look(self) -> None:
-        self._timer = None
-        seen = self._node.connected and self._polled.value
-        if seen != self._known:
-            self._known = seen
-            self._sender.server_present(seen)
-        if self._sender.busy or self._polled.asking:
-            pause = LOOK_AGAIN / 4 if self._polled.asking else LOOK_AGAIN
-            self._timer = self._node.clock.call_later(pause, self._look)
+    accepted: bool = False
+    key: str | None = None
+    cancel_asked: bool = False
 
 
 class Ros2Goals:
-    """The `GoalWire` of an action client on a ROS 2 robot."""
+    """The `GoalWire` of an action client on a ROS 2 robot.
 
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
+    While a goal is active or a caller waits for the server, it polls rosapi, which reports neither publishers of the
+    hidden topics of actions nor servers of their services.
+    """
+
+    def __init__(self, node: BridgeNode, sender: ActionClient) -> None:
         self._node = node
         self._sender = sender
         self._goals: dict[str, _Sent] = {}
         self._known: set[str] = set()
-        self._watch = PresenceWatch(node, sender)
-        self._status = BridgeSubscription(
-            node, Wanted(f"{sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY)
+        self._present = False
+        self._polled = node.polled(
+            "action_servers", lambda seen: sender.name in seen["action_servers"], False
         )
-        node.keep(self._status)
+        self._timer: Timer | None = None
+        self._status: BridgeSubscription | None = None
         self._forget_hook = node.add_exit_hook(self._cancel_all)
+
+    def join(self) -> None:
+        """Follow the status of goals; on the first connection."""
+        if self._status is None:
+            wanted = Wanted(f"{self._sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY)
+            self._status = self._node.keep(BridgeSubscription(self._node, wanted))
 
     @property
     def offered(self) -> bool:
-        """Whether a server offers the action, as far as is known."""
-        return self._watch.offered
+        """Whether a server offers the action, as far as is known; reading it starts the polling."""
+        if self._timer is None:
+            self._timer = self._node.clock.call_later(0.0, self._look)
+        return self._present and self._node.connected
+
+    def lost(self) -> None:
+        """Handle that the link is down, and perhaps the server, too."""
+        self._present = False
 
     def new_id(self) -> str:
         """Return the id of a new goal; the bridge has one table of ids for all its clients."""
@@ -132,7 +97,7 @@ class Ros2Goals:
         }
         # Stored before it is sent: an exit hook in another thread must find it.
         self._goals[goal_id] = _Sent()
-        node.goals[goal_id] = self
+        node.handlers |= {(answer, goal_id): handler for answer, handler in self._handlers.items()}
         sent: list[bool] = []
         node.lifetime.send(lambda _: sent.append(node.send(operation)), None)
         if sent != [True]:
@@ -154,13 +119,16 @@ class Ros2Goals:
     def forget_goal(self, goal_id: str) -> None:
         """Stop reporting a goal: it has ended for this client."""
         self._goals.pop(goal_id, None)
-        self._node.goals.pop(goal_id, None)
+        for answer in self._handlers:
+            self._node.handlers.pop((answer, goal_id), None)
 
     def close(self) -> None:
         """Leave."""
         self._forget_hook()
-        self._watch.stop()
-        self._status.close()
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._status is not None:
+            self._status.close()
 
     def _cancel_all(self) -> None:
         """Exit hook: leave no robot driving towards its goal when the process ends."""
@@ -169,18 +137,26 @@ class Ros2Goals:
 
     # Messages of the bridge, on the loop:
 
-    def feedback(self, goal_id: str, values: Any) -> None:
-        """Pass on feedback of a goal."""
+    @property
+    def _handlers(self) -> dict[str, OperationHandler]:
+        return {
+            "action_feedback": self._take_feedback,
+            "action_result": self._take_result,
+            "status": self._take_refusal,
+        }
+
+    def _take_feedback(self, message: dict[str, Any]) -> None:
+        goal_id, values = message["id"], message.get("values")
         self._accept(goal_id)
         if isinstance(values, dict) and values.keys() == {"goal_id", "feedback"}:  # older servers
             values = values["feedback"]
-        message = self._decoded(feedback_type(self._sender.type_name), values)
-        if message is not None:
-            self._sender.feedback(goal_id, message)
+        feedback = self._decoded(feedback_type(self._sender.type_name), values)
+        if feedback is not None:
+            self._sender.feedback(goal_id, feedback)
 
-    def result(self, goal_id: str, message: dict[str, Any]) -> None:
+    def _take_result(self, message: dict[str, Any]) -> None:
         """Pass on the outcome of a goal, or why it did not begin."""
-        values, number = message.get("values"), message.get("status")
+        goal_id, values, number = message["id"], message.get("values"), message.get("status")
         if not message.get("result", True) and not (number in ENDS and isinstance(values, dict)):
             self._refused(goal_id, str(values))
             return
@@ -194,9 +170,11 @@ class Ros2Goals:
         else:
             self._sender.fail(goal_id, CallFailed(f"action {self._sender.name}: the result cannot be read"))
 
-    def refused(self, goal_id: str, text: str) -> None:
-        """Handle a refusal by the bridge itself, for instance because it is too old to support actions."""
-        self._refused(goal_id, text)
+    def _take_refusal(self, message: dict[str, Any]) -> None:
+        """Handle a refusal by the bridge itself, which is too old to support actions."""
+        text = str(message.get("msg"))
+        if "nknown operation" in text:
+            self._refused(message["id"], text)
 
     def _refused(self, goal_id: str, text: str) -> None:
         if "No action server" in text:
@@ -208,6 +186,16 @@ class Ros2Goals:
             self._sender.fail(goal_id, CallFailed(problem))
         else:
             self._sender.rejected(goal_id, text)
+
+    def _look(self) -> None:
+        self._timer = None
+        seen = self._node.connected and self._polled.value
+        if seen != self._present:
+            self._present = seen
+            self._sender.server_present(seen)
+        if self._sender.busy or self._polled.asking:
+            pause = LOOK_AGAIN / 4 if self._polled.asking else LOOK_AGAIN
+            self._timer = self._node.clock.call_later(pause, self._look)
 
     def _ask_to_cancel(self, goal_id: str) -> None:
         self._node.send({"op": "cancel_action_goal", "id": goal_id, "action": self._sender.name})
@@ -270,19 +258,26 @@ class Ros2GoalService:
         self._node = node
         self._type_name = type_name
         self._goals = ServedGoals(node.clock, node.factory, name, type_name, execute, policy, node.log)
+        node.handlers["send_action_goal", name] = self._goal
+        node.handlers["cancel_action_goal", name] = self._cancel
         node.send({"op": "advertise_action", "type": type_name, "action": name})
 
     def abandon(self) -> None:
         """The link is down: the bridge has reported the goals as aborted to the clients, so stop them."""
         self._goals.abandon()
+        self._unhandle()
 
     def close(self) -> None:
         """Stop offering the action."""
         self._goals.close()
+        self._unhandle()
         self._node.send({"op": "unadvertise_action", "action": self.name})
 
-    def goal(self, message: dict[str, Any]) -> None:
-        """Handle a goal from the bridge; on the loop."""
+    def _unhandle(self) -> None:
+        self._node.unhandle(self._goal, "send_action_goal", self.name)
+        self._node.unhandle(self._cancel, "cancel_action_goal", self.name)
+
+    def _goal(self, message: dict[str, Any]) -> None:
         goal_id = str(message.get("id"))
         try:
             request = self._node.translator.decode(goal_type(self._type_name), message.get("args") or {})
@@ -295,9 +290,9 @@ class Ros2GoalService:
         else:
             self._goals.begin(goal_id, request, partial(self._feedback, goal_id), partial(self._end, goal_id))
 
-    def cancel(self, goal_id: str) -> None:
+    def _cancel(self, message: dict[str, Any]) -> None:
         """Handle a request to cancel; the bridge has already accepted it."""
-        self._goals.cancel(goal_id)
+        self._goals.cancel(str(message.get("id")))
 
     def _feedback(self, goal_id: str, message: Any) -> None:
         values = self._node.translator.encode(feedback_type(self._type_name), message)
@@ -327,27 +322,35 @@ LOST_LINK = (
 )
 
 
-class BridgeActionClient(GoalSender):
+class BridgeActionClient(ActionClient):
     """Action client of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        node.schema.action(type_name)
+        node.schema.load(type_name)
         super().__init__(
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
         self._node = node
-        self._wire = _Wire(node, self)
-        self.wire = self._wire
+        self.wire: ActionlibWire | Ros2Goals = Ros2Goals(node, self)
         node.keep(self)
         if node.attached:
             self.join()
 
     def join(self) -> None:
-        """Handle that the link is up."""
-        self._wire.join()
+        """Handle that the link is up, to a robot of perhaps another version of ROS."""
+        version = 1 if isinstance(self.wire, ActionlibWire) else 2
+        if version != self._node.ros_version:
+            self.wire.close()
+            self.wire = Ros2Goals(self._node, self) if version == 1 else ActionlibWire(self._node, self)
+        if isinstance(self.wire, Ros2Goals):
+            self.wire.join()
+        if self.busy:
+            _ = self.wire.offered  # starts polling
 
     def lost(self) -> None:
         """Handle that the link is down: the outcome of active goals can no longer arrive."""
+        if isinstance(self.wire, Ros2Goals):
+            self.wire.lost()
         for goal_id in list(self._goals):
             self.fail(goal_id, ServerLost(LOST_LINK.format(goal_id)))
 
@@ -357,66 +360,13 @@ class BridgeActionClient(GoalSender):
         self._node.forget(self)
 
 
-class _Wire:
-    """The `GoalWire` for the robot's version of ROS."""
-
-    def __init__(self, node: BridgeNode, sender: GoalSender) -> None:
-        self._node = node
-        self._sender = sender
-        self._version = 0
-        self._fitting: GoalWire | None = None
-
-    def join(self) -> None:
-        if self._version != self._node.ros_version:
-            self.close()
-            self._version = self._node.ros_version
-            self._fitting = (
-                ActionlibWire(ActionTopics(self._node), self._sender)
-                if self._version == 1
-                else Ros2Goals(self._node, self._sender)
-            )
-        if self._sender.busy:
-            _ = self.offered  # starts polling
-
-    @property
-    def offered(self) -> bool:
-        return self._fitting is not None and self._node.connected and self._fitting.offered
-
-    def new_id(self) -> str:
-        return self._known.new_id()
-
-    def send_goal(self, goal_id: str, goal: Any) -> None:
-        self._known.send_goal(goal_id, goal)
-
-    def cancel_goal(self, goal_id: str) -> None:
-        self._known.cancel_goal(goal_id)
-
-    def adopt_goal(self, goal_id: str) -> None:
-        self._known.adopt_goal(goal_id)
-
-    def forget_goal(self, goal_id: str) -> None:
-        if self._fitting is not None:
-            self._fitting.forget_goal(goal_id)
-
-    def close(self) -> None:
-        if self._fitting is not None:
-            self._fitting.close()
-
-    @property
-    def _known(self) -> GoalWire:
-        if self._fitting is None or not self._node.attached:
-            raise CallFailed(f"action {self._sender.name}: no connection to the rosbridge server")
-        return self._fitting
-
-
 class BridgeActionServer:
     """Action server of `RosbridgeBackend`."""
 
     def __init__(
         self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> None:
-        node.schema.action(type_name)
-        node.action_servers[name] = self
+        node.schema.load(type_name)
         node.keep(self)
         self.name = name
         self._node = node
@@ -428,7 +378,7 @@ class BridgeActionServer:
     def join(self) -> None:
         """The link is up: offer the action."""
         if self._node.ros_version == 1:
-            self._service = ActionlibServer(ActionTopics(self._node), *self._offer)
+            self._service = ActionlibServer(self._node, *self._offer)
         else:
             self._service = Ros2GoalService(self._node, *self._offer)
 
@@ -444,13 +394,3 @@ class BridgeActionServer:
         if self._service is not None:
             self._service.close()
             self._service = None
-
-    def goal(self, message: dict[str, Any]) -> None:
-        """Handle a goal from the bridge (ROS 2)."""
-        if isinstance(self._service, Ros2GoalService):
-            self._service.goal(message)
-
-    def cancel(self, goal_id: str) -> None:
-        """Handle a request to cancel from the bridge (ROS 2)."""
-        if isinstance(self._service, Ros2GoalService):
-            self._service.cancel(goal_id)

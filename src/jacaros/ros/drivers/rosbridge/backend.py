@@ -7,19 +7,12 @@ ROS is requested at each connection. The message classes are those of the `memor
 Everything happens on the loop; only exit hooks may send from another thread (see `Link`).
 """
 
+import asyncio
 import os
+from collections.abc import Iterable
 from typing import Any
 
-from jacaros.ros.backend import (
-    ACTIONS,
-    DISCOVERY,
-    PARAMETER_EVENTS,
-    PARAMETERS,
-    SERVICES,
-    TOPICS,
-    TRANSFORMS,
-    Backend,
-)
+from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.ros.drivers.rosbridge.actions import BridgeActionClient, BridgeActionServer
 from jacaros.ros.drivers.rosbridge.link import checked_url
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
@@ -27,18 +20,106 @@ from jacaros.ros.drivers.rosbridge.services import (
     BridgeClient,
     BridgeParameters,
     BridgeService,
-    absolute,
-    look,
-    read,
 )
 from jacaros.ros.drivers.rosbridge.topics import BridgePublisher, BridgeSubscription
-from jacaros.ros.errors import CapabilityMissing
-from jacaros.ros.graph import GraphContents
-from jacaros.ros.node import NodeSettings, Parts
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.protocols.rosbridge_requests import PATIENCE
+from jacaros.ros.errors import CallFailed, CapabilityMissing, ServiceError
+from jacaros.ros.names import action_type, message_type, service_type
+from jacaros.ros.node import Capability, NodeSettings, Parts
+from jacaros.ros.parameter_services import NODE_SERVICES, ParameterEvents, read_value
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE
 
 DEFAULT_URL = "ws://127.0.0.1:9090"
+
+
+_ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
+_LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
+AT_ONCE = 8
+"""Number of concurrent requests; older servers answer them in turn anyway."""
+
+
+class _Look:
+    """One look at the graph according to rosapi."""
+
+    def __init__(self, backend: BridgeNode) -> None:
+        self._backend = backend
+        self._gate = asyncio.Semaphore(AT_ONCE)
+
+    async def contents(self) -> GraphContents:
+        topics, services, nodes, actions = await asyncio.gather(
+            self._ask("topics"),
+            self._ask("services"),
+            self._ask("nodes"),
+            self._known("action_servers", "action_servers", ()),
+        )
+        types = dict(zip(topics["topics"], topics["types"], strict=True))
+        hidden = {f"{action}/{part}" for action in actions for part in _ACTIONLIB}
+        shown = [
+            name for name in types if name not in _LOGS and name not in hidden and "/_action/" not in name
+        ]
+        infos = await asyncio.gather(*(self._topic(name, types[name]) for name in shown))
+        plain = [name for name in services["services"] if not _is_internal(name)]
+        kinds = await asyncio.gather(
+            *(self._known("service_type", "type", "", service=name) for name in plain)
+        )
+        found = await asyncio.gather(*(self._action(name, types) for name in actions))
+        return GraphContents(
+            {info.name: info for info in infos},
+            {name: _full(service_type, kind) for name, kind in zip(plain, kinds, strict=True)},
+            {name: kind for name, kind, served in found if served},
+            tuple(sorted(absolute(nodes["nodes"]))),
+        )
+
+    async def _topic(self, name: str, kind: str) -> TopicInfo:
+        publishers, subscribers = await asyncio.gather(
+            self._ask("publishers", topic=name), self._ask("subscribers", topic=name)
+        )
+        return TopicInfo(
+            name,
+            tuple(sorted(_full(message_type, each) for each in kind.split(",") if each)),
+            tuple(Endpoint(node) for node in absolute(publishers["publishers"])),
+            tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
+        )
+
+    async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
+        """Return an action's name, its type, and whether a server offers it."""
+        goal = types.get(f"{name}/goal", "")
+        if goal.endswith("ActionGoal"):  # ROS 1
+            # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
+            servers = await self._ask("publishers", topic=f"{name}/status")
+            return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
+        kind = await self._known("action_type", "type", "", action=name)
+        return name, _full(action_type, kind), True
+
+    async def _known(self, what: str, field: str, unknown: Any, **arguments: str) -> Any:
+        """Return a field of an answer, *unknown* if an older server has none."""
+        try:
+            return (await self._ask(what, **arguments)).get(field, unknown)
+        except ServiceError:
+            return unknown
+
+    async def _ask(self, what: str, **arguments: str) -> dict[str, Any]:
+        async with self._gate:
+            answer: dict[str, Any] = await self._backend.rosapi(what, arguments)
+            return answer
+
+
+def _full(form: Any, name: str) -> str:
+    return str(form(name)) if name else ""
+
+
+def absolute(names: Iterable[str]) -> list[str]:
+    """Return names with the slash that rosapi omits."""
+    return [name if name.startswith("/") else f"/{name}" for name in names]
+
+
+def _is_internal(name: str) -> bool:
+    last = name.rsplit("/", 1)[-1]
+    return (
+        "/_action/" in name
+        or last in NODE_SERVICES
+        or last in ("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels")
+        or name.startswith("/rosapi/")  # the services that we use
+    )
 
 
 class RosbridgeBackend(BridgeNode):
@@ -66,14 +147,24 @@ class RosbridgeBackend(BridgeNode):
                 "and so there are no parameters"
             )
         super().__init__(settings, checked_url(url or os.environ.get("ROSBRIDGE_URI") or DEFAULT_URL))
-        self._parameter_events = ParameterEvents(self.subscription, read)
+        self._parameter_events = ParameterEvents(self.subscription, read_value)
 
     @property
-    def capabilities(self) -> frozenset[str]:  # type: ignore[override]
+    def capabilities(self) -> frozenset[Capability]:  # type: ignore[override]
         """The capabilities with the robot's version of ROS."""
         # Only services of ROS 1 that are not served over a bridge report failed handlers.
-        events = {PARAMETER_EVENTS} if self.ros_version == 2 else set()
-        return frozenset({TOPICS, SERVICES, TRANSFORMS, ACTIONS, DISCOVERY, PARAMETERS, *events})
+        events = {Capability.PARAMETER_EVENTS} if self.ros_version == 2 else set()
+        return frozenset(
+            {
+                Capability.TOPICS,
+                Capability.SERVICES,
+                Capability.TRANSFORMS,
+                Capability.ACTIONS,
+                Capability.DISCOVERY,
+                Capability.PARAMETERS,
+                *events,
+            }
+        )
 
     def parameters(self, node: str | None = None) -> BridgeParameters:
         """Return the parameters of a node; our own exist on ROS 1 only, where the master stores them."""
@@ -83,67 +174,18 @@ class RosbridgeBackend(BridgeNode):
 
     async def contents(self, timeout: float = 5.0) -> GraphContents:
         """Return the contents of the graph."""
-        return await look(self, timeout)
+        try:
+            async with asyncio.timeout(timeout):
+                return await _Look(self).contents()
+        except TimeoutError:
+            raise CallFailed(
+                f"rosapi did not return the contents of the graph within {timeout:g} s"
+            ) from None
 
     async def _publishers(self, topic: str) -> list[str]:
         answer = await self.rosapi("publishers", {"topic": topic}, PATIENCE)
         # The server publishes for its clients, and does not tell which.
         return [name for name in absolute(answer["publishers"]) if "rosbridge" not in name]
-
-    # Messages of the server:
-
-    def _received(self, message: dict[str, Any]) -> None:
-        operation = message["op"]
-        if operation == "publish":
-            multiplexer = self.multiplexers.get(str(message.get("topic")))
-            if multiplexer is not None:
-                multiplexer.put(message.get("msg"))
-        else:  # in order, after earlier messages of topics
-            self.loop.call_soon(self._dispatch, operation, message)
-
-    def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
-        try:
-            self._do(operation, message)
-        except (TypeError, ValueError, KeyError, AttributeError) as problem:
-            self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
-
-    def _do(self, operation: str, message: dict[str, Any]) -> None:
-        number = str(message.get("id"))
-        if operation == "service_response":
-            self.requests.answered(message)
-        elif operation == "call_service":
-            service = self.services.get(str(message.get("service")))
-            if service is not None:
-                service.called(message)
-        elif operation == "status":
-            self._note_status(message, number)
-        elif operation in ("action_feedback", "action_result"):
-            goals = self.goals.get(number)
-            if goals is not None and operation == "action_feedback":
-                goals.feedback(number, message.get("values"))
-            elif goals is not None:
-                goals.result(number, message)
-        elif operation in ("send_action_goal", "cancel_action_goal"):
-            server = self.action_servers.get(str(message.get("action")))
-            if server is not None and operation == "send_action_goal":
-                server.goal(message)
-            elif server is not None:
-                server.cancel(number)
-
-    def _note_status(self, message: dict[str, Any], number: str) -> None:
-        """Handle a status message of the server, mostly that it refuses a request."""
-        text = str(message.get("msg"))
-        if message.get("level") not in ("error", "warning") or number.startswith("call_service:"):
-            return  # a failed call is answered as well
-        asked, _, topic = number.rpartition(":")[0].partition(":")
-        multiplexer = self.multiplexers.get(topic)
-        if asked == "subscribe" and multiplexer is not None:
-            multiplexer.report(f"topic {multiplexer.topic}: refused by the rosbridge server: {text}")
-        elif number in self.goals and "nknown operation" in text:
-            self.goals[number].refused(number, text)
-        elif text not in self._reported and not number.startswith("send_action_goal:"):
-            self._reported.add(text)
-            self.log(f"message of the rosbridge server: {text}")
 
 
 BACKEND: type[Backend] = RosbridgeBackend

@@ -197,14 +197,11 @@ class Connection(asyncio.Protocol):
                 self._lock.release()
             if not sent:
                 if not self._retrying:
-                    self._retrying = post(self._loop, self._push_later)
+                    self._retrying = post(self._loop, self._loop.call_later, TRY_AGAIN, self._push_again)
                 return False
             if not self._queued:
                 break
         return True
-
-    def _push_later(self) -> None:
-        self._loop.call_later(TRY_AGAIN, self._push_again)
 
     def _push_again(self) -> None:
         self._retrying = False

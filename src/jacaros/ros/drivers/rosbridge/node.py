@@ -6,23 +6,24 @@ The server forgets its clients when the connection is lost, so everything is ann
 import asyncio
 import contextlib
 import itertools
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
-from weakref import WeakValueDictionary
+from typing import Any, TypeVar
 
+from jacaros.ros.backend import Backend
 from jacaros.ros.drivers.rosbridge.link import Link
 from jacaros.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
 from jacaros.ros.handoff import post
 from jacaros.ros.lifetime import Lifetime
 from jacaros.ros.names import message_type
-from jacaros.ros.node import Node, NodeSettings
-from jacaros.ros.protocols.rosbridge_messages import Translator
-from jacaros.ros.protocols.rosbridge_requests import PATIENCE, Requests, greet
-from jacaros.ros.protocols.rosbridge_types import BridgeSchema, written_on_ros1
-from jacaros.ros.topics import TopicMultiplexer
+from jacaros.ros.node import NodeSettings, TopicMultiplexer
+from jacaros.ros.protocols.rosbridge_messages import BridgeSchema, Translator, written_on_ros1
+from jacaros.ros.protocols.rosbridge_wire import PATIENCE, Polled, Requests
 from jacaros.ros.waiting import settle, within
 from jacaros.runtime.clock import Timer
+
+T = TypeVar("T")
 
 FIRST_LOOK = 5.0
 """Seconds that starting waits for the first attempt to connect; a missing server refuses immediately."""
@@ -30,6 +31,10 @@ SENDING = 0.5
 """Seconds that closing waits for the last messages to leave."""
 DOING = 1.0
 """Seconds that closing waits until the server has processed the last messages."""
+ATTEMPTS, PAUSE = 6, 0.5
+"""Number of requests for the version of ROS, and seconds between them: rosapi may start after the server."""
+SIGN_OF_2 = "/msg/"
+"""Part of the names of types on ROS 2 only."""
 FETCHING = 3.0
 """Seconds that a request for an unknown type may block the loop."""
 CURE = (
@@ -42,41 +47,21 @@ MISSES = 3
 """Number of checks without the topic after which it counts as refused."""
 
 
-class Asked(Protocol):
-    """A subscription or a publisher at the server."""
-
-    @property
-    def topic(self) -> str:
-        """Absolute name."""
-
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-
-    def join(self) -> None:
-        """Announce it to a server that does not know us yet."""
-
-    def refused(self, text: str) -> None:
-        """Handle that the server refuses it; *text* is the reason."""
+OperationHandler = Callable[[dict[str, Any]], None]
+"""Handles an operation of the server."""
+_FIELDS = {
+    "service_response": "id",
+    "call_service": "service",
+    "action_feedback": "id",
+    "action_result": "id",
+    "send_action_goal": "action",
+    "cancel_action_goal": "action",
+    "status": "id",
+}
+"""The field that names the addressee of each operation of the server, apart from ``publish``."""
 
 
-class CalledService(Protocol):
-    """A service of ours."""
-
-    def called(self, message: dict[str, Any]) -> None:
-        """Handle a call."""
-
-
-class GoalReceiver(Protocol):
-    """An action server of ours."""
-
-    def goal(self, message: dict[str, Any]) -> None:
-        """Handle a goal."""
-
-    def cancel(self, goal_id: str) -> None:
-        """Handle a request to cancel."""
-
-
-class BridgeNode(Node):
+class BridgeNode(Backend):
     """A client of a rosbridge server, as seen by its parts.
 
     Args:
@@ -86,7 +71,7 @@ class BridgeNode(Node):
     Attributes:
         attached: whether there is a connection and the version of ROS is known.
         packs: whether the server can send CBOR.
-        goals: senders by the ids of their goals.
+        handlers: what handles operations of the server, by the operation and the value of its field in `_FIELDS`.
     """
 
     def __init__(self, settings: NodeSettings, url: str) -> None:
@@ -98,18 +83,14 @@ class BridgeNode(Node):
         self.translator = Translator(self.schema)
         self.admission = Admission(self)
         self.multiplexers: dict[str, TopicMultiplexer[Any]] = {}
-        self.goals: dict[str, Any] = {}
-        # Weak references: the node holds the entities until they are closed.
-        self.services: WeakValueDictionary[str, CalledService] = WeakValueDictionary()
-        self.action_servers: WeakValueDictionary[str, GoalReceiver] = WeakValueDictionary()
+        self.handlers: dict[tuple[str, str], OperationHandler] = {}
         self.attached = False
         self.packs = False
         self._numbers = itertools.count(1)
         self._has_rosapi = False
-        self._greeting: asyncio.Task[None] | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
         self._ended_at = ""
         """The type at which rosapi crashed."""
-        self._checks: set[asyncio.Task[None]] = set()
         self._lost_topics: set[str] = set()
         self._reported: set[str] = set()
 
@@ -132,10 +113,7 @@ class BridgeNode(Node):
         """Run the exit hooks and disconnect."""
         await self.lifetime.leave()
         self._link.stop()
-        if self._greeting is not None:
-            self._greeting.cancel()
-        for check in self._checks:
-            check.cancel()
+        self._cancel_tasks()
         self.attached = False
         self.admission.close()
         self.close_members()
@@ -153,9 +131,28 @@ class BridgeNode(Node):
         """Return an id for an operation; the server quotes it in status messages."""
         return f"{operation}:{name}:{next(self._numbers)}"
 
+    def unhandle(self, handler: OperationHandler, operation: str, whose: str) -> None:
+        """Deregister from `handlers`, unless a newer entity of the same name has taken the place."""
+        if self.handlers.get((operation, whose)) == handler:
+            del self.handlers[operation, whose]
+
     def send(self, operation: dict[str, Any], droppable: bool = False) -> bool:
         """Send an operation to a server that knows us, from any thread. Return False if it is lost."""
         return self.attached and self._link.send(operation, droppable)
+
+    def request(
+        self, operation: dict[str, Any], repeat: Callable[[], None], refused: Callable[[str], None]
+    ) -> None:
+        """Subscribe or advertise, and check that the server does so.
+
+        Args:
+            operation: the operation.
+            repeat: sends it again, when the server no longer refuses it.
+            refused: takes the reason why the server refuses it.
+        """
+        self.send(operation)
+        request = _Request(operation["topic"], operation["type"], repeat, refused)
+        self.admission.expect(operation["id"], request)
 
     def written_type(self, type_name: str) -> str:
         """Return the server's name of a type."""
@@ -175,6 +172,12 @@ class BridgeNode(Node):
             self._say(
                 f"topic {topic}: messages are lost: the rosbridge server at {self.url} is away or too slow"
             )
+
+    def polled(
+        self, service: str, read: Callable[[dict[str, Any]], T], unknown: T, /, **arguments: str
+    ) -> Polled[T]:
+        """Return a value that a service of rosapi reports; see `Polled`."""
+        return Polled(self.requests, f"/rosapi/{service}", arguments, read, unknown)
 
     async def rosapi(self, service: str, arguments: dict[str, Any], timeout: float | None = None) -> Any:
         """Call a service of rosapi and return the fields of its response.
@@ -203,58 +206,94 @@ class BridgeNode(Node):
     # Interface for the link:
 
     def _link_up(self) -> None:
-        if self._greeting is not None:
-            self._greeting.cancel()
+        self._cancel_tasks()
         self._ended_at = ""
         self._lost_topics.clear()
         self._reported.clear()
-        self._greeting = self.loop.create_task(self._greet())
+        self._begin(self._greet())
 
     async def _greet(self) -> None:
         """Find out the version of ROS, and announce everything to the server."""
-        found = await greet(self._rosapi, self.clock, lambda: self._link.up)
-        if found is None:
-            return
-        if not found.told:
+        found = await self._ask_for_version()
+        self._has_rosapi = found is not None
+        if not self._has_rosapi:
             self.log(
                 f"the rosbridge server at {self.url} has no rosapi node, so the graph cannot be queried; assuming ROS 2; "
                 "its launch file starts both. If rosapi has crashed, as it does at types with bounded arrays, restart it "
                 "and name a folder with the definitions of your types (in a mapping file: interfaces)"
             )
-        self.translator.ros_version, self.packs = found.ros_version, found.packs
-        self._has_rosapi = found.told
+        self.translator.ros_version, self.packs = found or (2, False)
         self.attached = True
-        self._join()
+        self._for_all("join")
         self.found()
 
-    def _join(self) -> None:
-        """Announce everything to a server that does not know us yet."""
-        for multiplexer in list(self.multiplexers.values()):
-            multiplexer.join()
-        for member in list(self.members):
-            join = getattr(member, "join", None)
-            if join is not None:
-                join()
+    async def _ask_for_version(self) -> tuple[int, bool] | None:
+        """Return the version of ROS, and whether the server can send CBOR; None if rosapi does not answer."""
+        for _ in range(ATTEMPTS):
+            # Neither ROS 1 nor early ROS 2 has this service.
+            with contextlib.suppress(ServiceError, KeyError, TypeError, ValueError):
+                return int((await self._rosapi("get_ros_version", {}, PATIENCE))["version"]), True
+            with contextlib.suppress(ServiceError, KeyError, TypeError):
+                types = (await self._rosapi("topics", {}, PATIENCE))["types"]
+                # Early servers of ROS 2 lost messages in CBOR.
+                return (2, False) if any(SIGN_OF_2 in kind for kind in types) else (1, True)
+            await self.clock.sleep(PAUSE)
+        return None
 
     def _link_down(self) -> None:
         self.attached = False
-        if self._greeting is not None:
-            self._greeting.cancel()
+        self._cancel_tasks()
         self.requests.fail_all()
-        for multiplexer in list(self.multiplexers.values()):
-            multiplexer.lost()
-        for member in list(self.members):
-            lost = getattr(member, "lost", None)
-            if lost is not None:
-                lost()
+        self._for_all("lost")
         self._await_server()
+
+    def _for_all(self, method: str) -> None:
+        """Let all entities announce themselves to a server that does not know us yet, or note that it is lost."""
+        for each in (*self.multiplexers.values(), *self.members):
+            if (call := getattr(each, method, None)) is not None:
+                call()
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = self.loop.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def _cancel_tasks(self) -> None:
+        for task in self._tasks:
+            task.cancel()
 
     def _await_server(self) -> None:
         self.missing(f"rosbridge server at {self.url}", CURE)
 
     def _received(self, message: dict[str, Any]) -> None:
-        """Handle an operation of the server."""
-        raise NotImplementedError
+        if message["op"] == "publish":
+            multiplexer = self.multiplexers.get(str(message.get("topic")))
+            if multiplexer is not None:
+                multiplexer.put(message.get("msg"))
+        else:  # in order, after earlier messages of topics
+            self.loop.call_soon(self._dispatch, message["op"], message)
+
+    def _dispatch(self, operation: str, message: dict[str, Any]) -> None:
+        if operation == "status" and message.get("level") not in ("error", "warning"):
+            return
+        whose = str(message.get(_FIELDS.get(operation, "")))
+        handler = self.handlers.get((operation, whose))
+        try:
+            if handler is not None:
+                handler(message)
+            elif operation == "service_response":
+                self.requests.answered(message)
+            elif operation == "status":
+                self._note_status(whose, str(message.get("msg")))
+        except (TypeError, ValueError, KeyError, AttributeError) as problem:
+            self.log(f"the rosbridge server sent an invalid {operation}: {problem}")
+
+    def _note_status(self, number: str, text: str) -> None:
+        """Handle a status message of the server, mostly that it refuses a request."""
+        # A failed call is answered as well.
+        if not number.startswith(("call_service:", "send_action_goal:")) and text not in self._reported:
+            self._reported.add(text)
+            self.log(f"message of the rosbridge server: {text}")
 
     def _say(self, text: str) -> None:
         post(self.loop, self.log, text)
@@ -270,9 +309,7 @@ class BridgeNode(Node):
 
     def _check_rosapi(self, asked: str) -> None:
         """Check whether rosapi still runs: real ones crash when they are asked for certain types."""
-        check = self.loop.create_task(self._look_for_rosapi(asked))
-        self._checks.add(check)
-        check.add_done_callback(self._checks.discard)
+        self._begin(self._look_for_rosapi(asked))
 
     async def _look_for_rosapi(self, asked: str) -> None:
         try:
@@ -306,7 +343,13 @@ class BridgeNode(Node):
 
 
 @dataclass(slots=True)
-class _Case:
+class _Request:
+    """A subscription or an advertisement: how to repeat it, and what to do if the server refuses it."""
+
+    topic: str
+    written_type: str
+    repeat: Callable[[], None]
+    refused: Callable[[str], None]
     misses: int = 0
     conflict: bool = False
 
@@ -324,25 +367,25 @@ class Admission:
 
     def __init__(self, node: BridgeNode) -> None:
         self._node = node
-        self._cases: dict[Asked, _Case] = {}
+        self._open: dict[str, _Request] = {}
         self._timer: Timer | None = None
         self._pause = FIRST_PAUSE
 
-    def expect(self, asked: Asked) -> None:
-        """Note that *asked* was just requested; on the loop."""
-        if any(part.startswith("_") for part in asked.topic.split("/")):
+    def expect(self, number: str, request: _Request) -> None:
+        """Note that a topic was just requested, by the id of the operation; on the loop."""
+        if any(part.startswith("_") for part in request.topic.split("/")):
             return  # hidden: rosapi does not report it
-        self._cases.setdefault(asked, _Case()).misses = 0
+        self._open[number] = request
         self._pause = FIRST_PAUSE
         self._look_later()
 
-    def forget(self, asked: Asked) -> None:
-        """Stop checking an entity."""
-        self._cases.pop(asked, None)
+    def forget(self, number: str) -> None:
+        """Stop checking a request."""
+        self._open.pop(number, None)
 
     def close(self) -> None:
         """Stop checking."""
-        self._cases.clear()
+        self._open.clear()
         if self._timer is not None:
             self._timer.cancel()
 
@@ -353,38 +396,33 @@ class Admission:
 
     def _look(self) -> None:
         self._timer = None
-        if self._cases and self._node.attached:
+        if self._open and self._node.attached:
             self._node.requests.begin("/rosapi/topics", {}, self._judge)
 
     def _judge(self, values: dict[str, Any] | None, _: ServiceError | None) -> None:
         if values is not None and isinstance(values.get("topics"), list):
             types = dict(zip(values["topics"], values.get("types") or (), strict=False))
-            for asked, case in list(self._cases.items()):
-                self._compare(asked, case, types.get(asked.topic))
-        if self._cases:
+            for number, request in list(self._open.items()):
+                self._compare(number, request, types.get(request.topic))
+        if self._open:
             self._pause = min(self._pause * 2.0, LONGEST_PAUSE)
             self._look_later()
 
-    def _compare(self, asked: Asked, case: _Case, found: str | None) -> None:
-        wanted = asked.written_type()
+    def _compare(self, number: str, request: _Request, found: str | None) -> None:
+        topic, wanted = request.topic, request.written_type
         if found in (None, "", "*"):
-            self._missed(asked, case, wanted)
+            request.misses += 1
+            # rosapi of ROS 1 reports only published topics.
+            if self._node.ros_version == 2 and request.misses == MISSES:
+                request.conflict = True
+                request.refused(
+                    f"topic {topic}: requested from the rosbridge server, but not in the graph: is {wanted} "
+                    "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
+                )
         elif found != wanted:
-            case.conflict = True
-            asked.refused(
-                f"topic {asked.topic} carries {message_type(str(found))}, not {message_type(wanted)}"
-            )
+            request.conflict = True
+            request.refused(f"topic {topic} carries {message_type(str(found))}, not {message_type(wanted)}")
         else:
-            del self._cases[asked]
-            if case.conflict:  # it was refused, and would be accepted now
-                asked.join()
-
-    def _missed(self, asked: Asked, case: _Case, wanted: str) -> None:
-        case.misses += 1
-        # rosapi of ROS 1 reports only published topics.
-        if self._node.ros_version == 2 and case.misses == MISSES:
-            case.conflict = True
-            asked.refused(
-                f"topic {asked.topic}: requested from the rosbridge server, but not in the graph: is {wanted} "
-                "installed on the robot, and may the server serve this topic (its parameter topics_glob)?"
-            )
+            del self._open[number]
+            if request.conflict:  # it was refused, and would be accepted now
+                request.repeat()

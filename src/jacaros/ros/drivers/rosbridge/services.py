@@ -1,13 +1,10 @@
-"""Services through the bridge, as client and server, and rosapi's services for the graph and for parameters."""
+"""Services through the bridge, as client and server, and parameters."""
 
-import asyncio
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any, NoReturn
+from typing import Any
 
-from jacaros.ros.backend import Handler
-from jacaros.ros.calling import AttemptingClient, ServerWatch
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
 from jacaros.ros.errors import (
     CallFailed,
@@ -17,13 +14,10 @@ from jacaros.ros.errors import (
     ParameterUnknown,
     ServiceError,
 )
-from jacaros.ros.graph import Endpoint, GraphContents, TopicInfo
-from jacaros.ros.names import action_type, message_type, request_type, response_type, service_type
+from jacaros.ros.names import request_type, response_type
 from jacaros.ros.parameter import Declaration, ParameterValue, checked_value
-from jacaros.ros.parameter_events import ParameterEvents
-from jacaros.ros.parameter_services import ParameterServices
-from jacaros.ros.protocols.rosbridge_requests import Polled
-from jacaros.ros.serving import Responder
+from jacaros.ros.parameter_services import NodeParameters, ParameterEvents
+from jacaros.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.ros.waiting import settle, within
 
 _NOT_OUR_DEFINITION = ("does not have a field", "message requires a", "Expected a JSON object")
@@ -33,17 +27,13 @@ FOR_EVER = 86400.0
 """Time-out of a call without one, for servers that would otherwise use five seconds."""
 
 
-class BridgeClient(AttemptingClient):
+class BridgeClient(ServiceClient[BridgeNode]):
     """Client of `RosbridgeBackend`."""
 
-    _node: BridgeNode  # pyright: ignore[reportIncompatibleVariableOverride]
-
     def __init__(self, node: BridgeNode, name: str, type_name: str) -> None:
-        node.schema.service(type_name)
-        super().__init__(node, name, type_name)  # pyright: ignore[reportArgumentType]
-        self._offered = Polled(
-            node.requests, "/rosapi/service_type", {"service": name}, lambda seen: bool(seen["type"]), False
-        )
+        node.schema.load(type_name)
+        super().__init__(node, name, type_name)
+        self._offered = node.polled("service_type", lambda seen: bool(seen["type"]), False, service=name)
 
     @property
     def ready(self) -> bool:
@@ -56,8 +46,8 @@ class BridgeClient(AttemptingClient):
     async def _attempt(self, message: Any, rest: float | None) -> Any:
         node = self._node
         node.require_connection(self.name)
-        answer = self._pending.new()
-        arguments = node.translator.encode(request_type(self._type_name), message)
+        answer = self._new_answer()
+        arguments = node.translator.encode(request_type(self.type_name), message)
         patience = FOR_EVER if rest is None else rest
         number = node.requests.begin(self.name, arguments, partial(settle, answer), patience)
         try:
@@ -67,184 +57,62 @@ class BridgeClient(AttemptingClient):
             if "Timeout exceeded" in str(problem) and rest is not None:
                 raise TimeoutError from None
             if any(words in str(problem) for words in _NOT_OUR_DEFINITION):
-                raise MessageMismatch(str(problem), self._type_name) from None
+                raise MessageMismatch(str(problem), self.type_name) from None
             raise
         finally:
             node.requests.forget(number)
         try:
-            return node.translator.decode(response_type(self._type_name), values)
+            return node.translator.decode(response_type(self.type_name), values)
         except ValueError as problem:
             raise CallFailed(
-                f"service {self.name}: the response is not a {self._type_name}: {problem}"
+                f"service {self.name}: the response is not a {self.type_name}: {problem}"
             ) from None
 
-    def close(self) -> None:
-        """Close the client."""
-        self._node.forget(self)
-        self._pending.close()
 
-
-class BridgeService:
+class BridgeService(ServiceServer[BridgeNode]):
     """Service of `RosbridgeBackend`."""
 
     def __init__(self, node: BridgeNode, name: str, type_name: str, handler: Handler) -> None:
-        node.schema.service(type_name)
-        node.services[name] = self
-        self.name = name
-        self._node = node
-        self._type_name = type_name
-        self._responder = Responder(node.factory, name, type_name, handler, node.log)
-        self._closed = False
+        node.schema.load(type_name)
+        super().__init__(node, name, type_name, handler)
+        node.handlers["call_service", name] = self._called
         if node.attached:
             self.join()
 
     def join(self) -> None:
         """Offer the service at a server that does not know us yet."""
-        kind = self._node.written_type(self._type_name)
+        kind = self._node.written_type(self.type_name)
         self._node.send({"op": "advertise_service", "type": kind, "service": self.name})
 
-    def close(self) -> None:
-        """Stop offering the service."""
-        self._responder.close()
-        if not self._closed:
-            self._closed = True
-            self._node.forget(self)
-            self._node.send({"op": "unadvertise_service", "service": self.name})
+    def _leave(self) -> None:
+        self._node.unhandle(self._called, "call_service", self.name)
+        self._node.send({"op": "unadvertise_service", "service": self.name})
 
-    def called(self, message: dict[str, Any]) -> None:
-        """Handle a request of the server; on the loop."""
+    def _called(self, message: dict[str, Any]) -> None:
         node, number = self._node, message.get("id")
         try:
-            request = node.translator.decode(request_type(self._type_name), message.get("args") or {})
+            request = node.translator.decode(request_type(self.type_name), message.get("args") or {})
         except ValueError as problem:
-            node.log(f"service {self.name}: the request is not a {self._type_name}: {problem}")
+            node.log(f"service {self.name}: the request is not a {self.type_name}: {problem}")
             return
 
         def done(response: Any, problem: ServiceError | None) -> None:
             answer = {"op": "service_response", "id": number, "service": self.name}
             if problem is None:
-                answer["values"] = node.translator.encode(response_type(self._type_name), response)
+                answer["values"] = node.translator.encode(response_type(self.type_name), response)
                 node.send(answer | {"result": True})
             # The server cannot pass on a failure (it would send a response of zeros): as on ROS 2, the call gets no
             # answer.
 
-        self._responder.answer(request, done)
-
-
-_ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
-_PARAMETER_SERVICES = (
-    "describe_parameters",
-    "get_parameter_types",
-    "get_parameters",
-    "get_type_description",
-    "list_parameters",
-    "set_parameters",
-    "set_parameters_atomically",
-)
-_LOGS = ("/rosout", "/rosout_agg", "/parameter_events")
-AT_ONCE = 8
-"""Number of concurrent requests; older servers answer them in turn anyway."""
-
-
-async def look(backend: BridgeNode, timeout: float) -> GraphContents:
-    """Return the contents of the graph according to rosapi. Raises `ServiceError`."""
-    try:
-        async with asyncio.timeout(timeout):
-            return await _Look(backend).contents()
-    except TimeoutError:
-        raise CallFailed(f"rosapi did not return the contents of the graph within {timeout:g} s") from None
-
-
-class _Look:
-    def __init__(self, backend: BridgeNode) -> None:
-        self._backend = backend
-        self._gate = asyncio.Semaphore(AT_ONCE)
-
-    async def contents(self) -> GraphContents:
-        topics, services, nodes, actions = await asyncio.gather(
-            self._ask("topics"), self._ask("services"), self._ask("nodes"), self._action_servers()
-        )
-        types = dict(zip(topics["topics"], topics["types"], strict=True))
-        hidden = {f"{action}/{part}" for action in actions for part in _ACTIONLIB}
-        shown = [
-            name for name in types if name not in _LOGS and name not in hidden and "/_action/" not in name
-        ]
-        infos = await asyncio.gather(*(self._topic(name, types[name]) for name in shown))
-        plain = [name for name in services["services"] if not _is_internal(name)]
-        kinds = await asyncio.gather(*(self._type("service_type", "service", name) for name in plain))
-        found = await asyncio.gather(*(self._action(name, types) for name in actions))
-        return GraphContents(
-            {info.name: info for info in infos},
-            {name: _full(service_type, kind) for name, kind in zip(plain, kinds, strict=True)},
-            {name: kind for name, kind, served in found if served},
-            tuple(sorted(absolute(nodes["nodes"]))),
-        )
-
-    async def _topic(self, name: str, kind: str) -> TopicInfo:
-        publishers, subscribers = await asyncio.gather(
-            self._ask("publishers", topic=name), self._ask("subscribers", topic=name)
-        )
-        return TopicInfo(
-            name,
-            tuple(sorted(_full(message_type, each) for each in kind.split(",") if each)),
-            tuple(Endpoint(node) for node in absolute(publishers["publishers"])),
-            tuple(Endpoint(node) for node in absolute(subscribers["subscribers"])),
-        )
-
-    async def _action_servers(self) -> list[str]:
-        try:
-            answer = await self._ask("action_servers")
-        except ServiceError:  # an older server
-            return []
-        return list(answer.get("action_servers", ()))
-
-    async def _action(self, name: str, types: dict[str, str]) -> tuple[str, str, bool]:
-        """Return an action's name, its type, and whether a server offers it."""
-        goal = types.get(f"{name}/goal", "")
-        if goal.endswith("ActionGoal"):  # ROS 1
-            # rosapi of ROS 1 uses the names of topics, and a client alone has all five, too.
-            servers = await self._ask("publishers", topic=f"{name}/status")
-            return name, _full(action_type, goal.removesuffix("ActionGoal")), bool(servers["publishers"])
-        kind = await self._type("action_type", "action", name)
-        return name, _full(action_type, kind), True
-
-    async def _type(self, service: str, argument: str, name: str) -> str:
-        try:
-            return str((await self._ask(service, **{argument: name})).get("type", ""))
-        except ServiceError:
-            return ""
-
-    async def _ask(self, what: str, **arguments: str) -> dict[str, Any]:
-        async with self._gate:
-            answer: dict[str, Any] = await self._backend.rosapi(what, arguments)
-            return answer
-
-
-def _full(form: Any, name: str) -> str:
-    return str(form(name)) if name else ""
-
-
-def absolute(names: Iterable[str]) -> list[str]:
-    """Return names with the slash that rosapi omits."""
-    return [name if name.startswith("/") else f"/{name}" for name in names]
-
-
-def _is_internal(name: str) -> bool:
-    last = name.rsplit("/", 1)[-1]
-    return (
-        "/_action/" in name
-        or last in _PARAMETER_SERVICES
-        or last in ("get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels")
-        or name.startswith("/rosapi/")  # the services that we use
-    )
+        self.answer(request, done)
 
 
 _ABSENT = "jacaros: no such parameter"
 """The default in the request: rosapi has no other way to report a missing parameter."""
 
 
-class BridgeParameters:
-    """Parameters of one node, seen from outside.
+class BridgeParameters(NodeParameters):
+    """Parameters of one node, seen from outside; on ROS 1 those of the master below its name, through rosapi.
 
     Args:
         backend: sends the requests.
@@ -253,205 +121,75 @@ class BridgeParameters:
     """
 
     def __init__(self, backend: BridgeNode, node: str, events: ParameterEvents) -> None:
-        self.node = node
+        super().__init__(backend.clock, node, self._make_bridge_client, events)
         self._backend = backend
-        self._parameter_events = events
-        self._of_node = NodeParameters(backend, node)
-        self._of_master = MasterParameters(backend, node)
 
     def declare(self, name: str, declaration: Declaration) -> ParameterValue:
         """Raise `CapabilityMissing`: over a bridge there is no node of our own with parameters."""
-        self._missing(f"parameter {name} cannot be declared")
+        raise self._missing(f"parameter {name} cannot be declared")
 
     def withdraw(self, name: str) -> None:
         """Raise `CapabilityMissing`, as `declare`."""
-        self._missing(f"parameter {name} cannot be withdrawn")
+        raise self._missing(f"parameter {name} cannot be withdrawn")
 
     async def names(self, timeout: float | None = None) -> list[str]:
         """Names of the node's parameters, sorted."""
-        return await self._parameters.names(timeout)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        return await self._parameters.get(name, timeout)
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        await self._parameters.set(name, value, timeout)
-
-    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
-        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
-        if self._backend.ros_version == 1:
-            self._missing(f"changes of parameters of {self.node} are not reported")
-        self._require_other()
-        return self._parameter_events.listen(self.node, callback)
-
-    @property
-    def _parameters(self) -> "NodeParameters | MasterParameters":
-        if self._backend.ros_version == 1:
-            return self._of_master
-        self._require_other()
-        return self._of_node
-
-    def _require_other(self) -> None:
-        """On ROS 2 parameters belong to nodes, and we have none."""
-        if self.node == self._backend.node_name:
-            raise CapabilityMissing(
-                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
-                "name another node"
-            )
-
-    def _missing(self, what: str) -> NoReturn:
-        raise CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
-
-
-class MasterParameters:
-    """The parameters of the ROS 1 master below a node's name, through rosapi.
-
-    Args:
-        backend: sends the requests.
-        node: absolute name of the node.
-    """
-
-    def __init__(self, backend: BridgeNode, node: str) -> None:
-        self._backend = backend
-        self._node = node
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
+        if not self._are_of_master:
+            return await super().names(timeout)
         answer = await self._backend.rosapi("get_param_names", {}, timeout)
-        prefix = f"{self._node}/"
+        prefix = f"{self.node}/"
         return sorted(name.removeprefix(prefix) for name in answer["names"] if name.startswith(prefix))
 
     async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
         """Return a parameter's value."""
-        arguments = {"name": f"{self._node}/{name}", "default_value": json.dumps(_ABSENT)}
-        answer = await self._backend.rosapi("get_param", arguments, timeout)
-        text = answer.get("value", "")
+        if not self._are_of_master:
+            return await super().get(name, timeout)
+        arguments = {"name": f"{self.node}/{name}", "default_value": json.dumps(_ABSENT)}
+        text = (await self._backend.rosapi("get_param", arguments, timeout)).get("value", "")
         try:
             value = json.loads(text) if text != "" else _ABSENT
         except ValueError:
             value = text
         if value == _ABSENT or value is None:
-            raise ParameterUnknown(f"node {self._node} has no parameter {name}")
-        return self._plain(name, value)
+            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
+        if isinstance(value, list) and {type(each) for each in value} == {int, float}:
+            value = [float(each) for each in value]
+        try:
+            return checked_value(value)
+        except ParameterRefused:
+            text = f"parameter {name} of node {self.node} has an unsupported value: {value!r}"
+            raise CallFailed(text) from None
 
     async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
         """Change a parameter."""
+        if not self._are_of_master:
+            await super().set(name, value, timeout)
+            return
         if isinstance(value, bytes):
             raise ParameterRefused(
                 f"parameter {name}: the rosbridge protocol does not support bytes in parameters"
             )
-        if self._plain_or_none(value) is None:
-            raise ParameterRefused(f"parameter {name} cannot be {value!r}")
-        arguments = {"name": f"{self._node}/{name}", "value": json.dumps(value)}
+        arguments = {"name": f"{self.node}/{name}", "value": json.dumps(checked_value(value))}
         await self._backend.rosapi("set_param", arguments, timeout)
 
-    def _plain(self, name: str, value: Any) -> ParameterValue:
-        plain = self._plain_or_none(value)
-        if plain is not None:
-            return plain
-        if isinstance(value, dict):
-            raise ParameterUnknown(
-                f"parameter {name} of {self._node} is a group; read its parts, {name}/PART"
+    def on_change(self, callback: Callable[[Mapping[str, ParameterValue]], None]) -> Callable[[], None]:
+        """Call *callback* with changed parameters; on ROS 2 only, because rosapi of ROS 1 does not report changes."""
+        if self._are_of_master:
+            raise self._missing(f"changes of parameters of {self.node} are not reported")
+        return super().on_change(callback)
+
+    @property
+    def _are_of_master(self) -> bool:
+        """Whether the robot has ROS 1. On ROS 2 parameters belong to nodes, and we have none."""
+        if self._backend.ros_version == 2 and self.node == self._backend.node_name:
+            raise CapabilityMissing(
+                "over rosbridge there is no node of our own, and so there are no parameters of our own; "
+                "name another node"
             )
-        raise CallFailed(f"parameter {name} of node {self._node} has an unsupported value: {value!r}")
+        return self._backend.ros_version == 1
 
-    def _plain_or_none(self, value: Any) -> ParameterValue | None:
-        if isinstance(value, bool | int | float | str):
-            return value
-        if isinstance(value, list):
-            for kinds in ((bool,), (int,), (int, float), (str,)):
-                # bool is a subclass of int, and a list of both is not supported
-                if all(
-                    isinstance(each, kinds) and (bool in kinds or not isinstance(each, bool))
-                    for each in value
-                ):
-                    return value
-        return None
+    def _missing(self, what: str) -> CapabilityMissing:
+        return CapabilityMissing(f"{what} over rosbridge; run on the robot itself, with --ros ros2")
 
-
-_FIELDS = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    5: "byte_array_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
-"""The field of ``rcl_interfaces/msg/ParameterValue`` for each number of ``ParameterType``."""
-_NUMBERS: Mapping[type, int] = {bool: 1, int: 2, float: 3, str: 4, bytes: 5}
-_LIST_NUMBERS: Mapping[type, int] = {bool: 6, int: 7, float: 8, str: 9}
-_TEXTS, _NOT_SET = 9, 0
-
-
-class NodeParameters:
-    """The parameters of one node.
-
-    Args:
-        node: sends the calls.
-        name: absolute name of the node that has them.
-    """
-
-    def __init__(self, node: BridgeNode, name: str) -> None:
-        self.node = name
-        self._node = node
-        self._services = ParameterServices(name, self._client)
-
-    async def names(self, timeout: float | None = None) -> list[str]:
-        """Names of the node's parameters."""
-        answer = await self._services.call("ListParameters", {"depth": 0}, timeout)
-        return sorted(answer.result.names)
-
-    async def get(self, name: str, timeout: float | None = None) -> ParameterValue:
-        """Return a parameter's value."""
-        answer = await self._services.call("GetParameters", {"names": [name]}, timeout)
-        value = read(answer.values[0]) if len(answer.values) == 1 else None
-        if value is None:
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}, or it has no value")
-        return value
-
-    async def set(self, name: str, value: ParameterValue, timeout: float | None = None) -> None:
-        """Change a parameter."""
-        wanted = checked_value(value)
-        number = _NUMBERS.get(type(wanted))
-        if isinstance(wanted, list):
-            number = _LIST_NUMBERS[type(wanted[0])] if wanted else await self._type(name, timeout) or _TEXTS
-        assert number is not None, f"checked_value has let {wanted!r} pass"
-        given = list(wanted) if isinstance(wanted, bytes) else wanted
-        told = {"name": name, "value": {"type": number, _FIELDS[number]: given}}
-        answer = await self._services.call("SetParameters", {"parameters": [told]}, timeout)
-        if answer.results and answer.results[0].successful:
-            return
-        if not await self._type(name, timeout):
-            raise ParameterUnknown(f"node {self.node} has no parameter {name}")
-        reason = answer.results[0].reason if answer.results else "the node gave no reason"
-        raise ParameterRefused(f"parameter {name} of {self.node} cannot be {value!r}: {reason}")
-
-    async def _type(self, name: str, timeout: float | None) -> int:
-        """Return the number of a parameter's type; 0 if it does not exist."""
-        answer = await self._services.call("GetParameterTypes", {"names": [name]}, timeout)
-        return int(answer.types[0]) if len(answer.types) == 1 else _NOT_SET
-
-    def _client(self, name: str, type_name: str) -> BridgeClient:
-        client = BridgeClient(self._node, name, type_name)
-        self._node.keep(client)
-        return client
-
-
-def read(told: Any) -> ParameterValue | None:
-    """Read a ``rcl_interfaces/msg/ParameterValue``; None for a parameter without a value."""
-    field = _FIELDS.get(int(told.type))
-    if field is None:
-        return None
-    value = getattr(told, field)
-    if field == "byte_array_value":
-        return bytes(int(octet) & 255 for octet in value)
-    if field.endswith("array_value"):
-        plain: list[Any] = value.tolist() if hasattr(value, "tolist") else list(value)
-        return plain
-    single: ParameterValue = value
-    return single
+    def _make_bridge_client(self, name: str, type_name: str) -> BridgeClient:
+        return self._backend.keep(BridgeClient(self._backend, name, type_name))

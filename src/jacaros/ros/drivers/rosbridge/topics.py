@@ -1,17 +1,14 @@
 """Topics through the bridge, including those of ROS 1's actions."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
-from jacaros.ros.backend import Sample, TopicTrouble
 from jacaros.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.ros.node import Wanted
-from jacaros.ros.orphans import Orphans
-from jacaros.ros.protocols.rosbridge_requests import LOOK_STEADILY, Polled
-from jacaros.ros.qos import DEFAULT_QOS, QoS
-from jacaros.ros.topics import SharedSubscription, TopicMultiplexer, TopicPublisher
+from jacaros.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, TopicTrouble, Wanted
+from jacaros.ros.protocols.rosbridge_wire import LOOK_STEADILY
+from jacaros.ros.qos import QoS
 from jacaros.runtime.clock import Timer
 
 WAITING = 300
@@ -26,15 +23,12 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
     sent again. Other messages are lost meanwhile: a velocity from a minute ago would do harm.
     """
 
-    def __init__(
-        self, node: BridgeNode, topic: str, type_name: str, qos: QoS, droppable: bool = True
-    ) -> None:
+    def __init__(self, node: BridgeNode, topic: str, type_name: str, qos: QoS) -> None:
         super().__init__(node, topic, type_name, qos)
-        self._droppable = droppable
+        # A lost goal or request to cancel would not be repeated.
+        self._droppable = not _is_of_action(type_name)
         self._kept: deque[Any] = deque(maxlen=qos.depth if self.latched else 0)
-        self._subscribers = Polled(
-            node.requests, "/rosapi/subscribers", {"topic": topic}, lambda seen: len(seen["subscribers"]), 0
-        )
+        self._subscribers = node.polled("subscribers", lambda seen: len(seen["subscribers"]), 0, topic=topic)
         self._number = node.number("advertise", topic)
         if node.attached:
             self.join()
@@ -50,24 +44,15 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
             "op": "advertise",
             "id": self._number,
             "topic": self.topic,
-            "type": self.written_type(),
+            "type": self._node.written_type(self.type_name),
             "latch": self.latched,
             "queue_size": self.qos.depth,
         }
         if self._node.ros_version == 2:
             operation["qos"] = _quality(self.qos)
-        self._node.send(operation)
-        self._node.admission.expect(self)
+        self._node.request(operation, self.join, lambda text: self.report(f"nothing is published: {text}"))
         for message in self._kept:
             self._pass_on(message)
-
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-        return self._node.written_type(self.type_name)
-
-    def refused(self, text: str) -> None:
-        """Report that the server does not publish for us."""
-        self.report(f"nothing is published: {text}")
 
     def _send(self, message: Any) -> None:
         self._kept.append(message)
@@ -82,7 +67,7 @@ class BridgePublisher(TopicPublisher[BridgeNode]):
         return self._node.send({"op": "publish", "topic": self.topic, "msg": values}, droppable)
 
     def _leave(self) -> None:
-        self._node.admission.forget(self)
+        self._node.admission.forget(self._number)
         self._node.send({"op": "unadvertise", "id": self._number, "topic": self.topic})
 
 
@@ -97,12 +82,11 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         super().__init__(topic, type_name)
         self._number = node.number("subscribe", topic)
         self._node = node
+        node.handlers["status", self._number] = self._refused
         self._last: Any = None
         self._late: Timer | None = None
         self._depth = 0
-        self._publishers = Polled(
-            node.requests, "/rosapi/publishers", {"topic": topic}, lambda seen: len(seen["publishers"]), 0
-        )
+        self._publishers = node.polled("publishers", lambda seen: len(seen["publishers"]), 0, topic=topic)
 
     @property
     def publisher_count(self) -> int:
@@ -128,23 +112,22 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             "op": "subscribe",
             "id": self._number,
             "topic": self.topic,
-            "type": self.written_type(),
+            "type": self._node.written_type(self.type_name),
             "queue_length": self._depth,
         }
         if self._node.packs and self._node.translator.packs(self.type_name):
             operation["compression"] = "cbor"
         # Without qos the server chooses one that matches all publishers that it knows. But if none exist yet, it
         # misses what they publish before they discover it.
-        if self._node.ros_version == 2 and any(
-            reader.qos.durability == "transient_local" for reader in self.readers
-        ):
+        durabilities = {reader.qos.durability for reader in self.readers if self._node.ros_version == 2}
+        if "transient_local" in durabilities:
             operation["qos"] = _quality(QoS(durability="transient_local", depth=self._depth))
-        elif self._node.ros_version == 2 and any(
-            reader.qos.durability == "best_available" for reader in self.readers
-        ):
-            self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
-        self._node.send(operation)
-        self._node.admission.expect(self)
+        elif "best_available" in durabilities:
+            self._look_later(operation)
+        self._node.request(operation, self.join, self.report)
+
+    def _look_later(self, operation: dict[str, Any]) -> None:
+        self._late = self._node.clock.call_later(LOOK_STEADILY, partial(self._look_for_late, operation))
 
     def _look_for_late(self, operation: dict[str, Any]) -> None:
         """Subscribe again when the first publisher has appeared: then the server requests its stored message."""
@@ -152,13 +135,7 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
             if self.publisher_count:
                 self._node.send(operation)
             else:
-                self._late = self._node.clock.call_later(
-                    LOOK_STEADILY, partial(self._look_for_late, operation)
-                )
-
-    def written_type(self) -> str:
-        """The type as the server writes it."""
-        return self._node.written_type(self.type_name)
+                self._look_later(operation)
 
     def lost(self) -> None:
         """Forget the latched message."""
@@ -170,9 +147,8 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
         self._last = message
         super().put(message)
 
-    def refused(self, text: str) -> None:
-        """Report that the server refuses the topic."""
-        self.report(text)
+    def _refused(self, message: dict[str, Any]) -> None:
+        self.report(f"topic {self.topic}: refused by the rosbridge server: {message.get('msg')}")
 
     def _stop_looking(self) -> None:
         if self._late is not None:
@@ -180,7 +156,8 @@ class BridgeMultiplexer(TopicMultiplexer["BridgeSubscription"]):
 
     def _leave(self) -> None:
         self._stop_looking()
-        self._node.admission.forget(self)
+        self._node.handlers.pop(("status", self._number), None)
+        self._node.admission.forget(self._number)
         self._node.send({"op": "unsubscribe", "id": self._number, "topic": self.topic})
 
 
@@ -188,15 +165,12 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
     """Subscription of `RosbridgeBackend`.
 
     Messages are decoded when they are delivered, so messages dropped from a full queue cost nothing.
-
-    Args:
-        waiting: maximum number of waiting messages; default: from *qos*.
     """
 
-    def __init__(self, node: BridgeNode, wanted: Wanted, waiting: int | None = None) -> None:
+    def __init__(self, node: BridgeNode, wanted: Wanted) -> None:
         super().__init__(node, wanted, node.multiplexers, BridgeMultiplexer)
-        if waiting is not None:
-            self._waiting = deque(self._waiting, waiting)
+        if _is_of_action(wanted.type_name):  # the result must not arrive before its feedback
+            self._waiting = deque(self._waiting, WAITING)
 
     def deliver(self, message: Any) -> None:
         """Decode a message and deliver it."""
@@ -210,6 +184,11 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
             self._node.delivered()
 
 
+def _is_of_action(type_name: str) -> bool:
+    """Return whether a type is that of a topic of ROS 1's actions, which the protocol of rosbridge does not know."""
+    return "/action/" in type_name or type_name.startswith("actionlib_msgs/")
+
+
 def _quality(qos: QoS) -> dict[str, Any]:
     return {
         "history": "keep_last",
@@ -217,49 +196,3 @@ def _quality(qos: QoS) -> dict[str, Any]:
         "reliability": qos.reliability,
         "durability": qos.durability,
     }
-
-
-class ActionTopics:
-    """The topics of one action of a ROS 1 robot for `ActionlibWire` and `ActionlibServer`; an `ActionTopicsNode`.
-
-    The rosbridge protocol does not support ROS 1's actions, so goals, requests to cancel, status and feedback are
-    ordinary messages of the types that actionlib generates (``pkg/NameActionGoal`` and so on).
-
-    Incoming messages are delivered in the order of arrival: the result never before its feedback. Outgoing messages
-    are not dropped when the network is slow: a lost request to cancel would not be repeated.
-
-    Args:
-        node: the backend.
-    """
-
-    def __init__(self, node: BridgeNode) -> None:
-        self._node = node
-        self.clock = node.clock
-        self.log = node.log
-        self.factory = node.factory
-
-    @property
-    def orphans(self) -> Orphans:
-        """Recognises goals of earlier runs."""
-        return self._node.orphans
-
-    @property
-    def node_name(self) -> str:
-        """Absolute name of the node."""
-        return self._node.node_name
-
-    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> BridgePublisher:
-        """Make a publisher."""
-        return self._node.keep(BridgePublisher(self._node, topic, type_name, qos, droppable=False))
-
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], qos: QoS = DEFAULT_QOS
-    ) -> BridgeSubscription:
-        """Call *callback* with every message."""
-        return self._node.keep(
-            BridgeSubscription(self._node, Wanted(topic, type_name, callback, qos), WAITING)
-        )
-
-    def add_exit_hook(self, hook: Callable[[], None]) -> Callable[[], None]:
-        """Call *hook* when the process ends."""
-        return self._node.add_exit_hook(hook)

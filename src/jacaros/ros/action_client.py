@@ -1,14 +1,16 @@
 """Action clients independent of the middleware: active goals, their waiting callers, and servers that disappear.
 
-`GoalSender` is a complete action client; a backend provides a `GoalWire` that sends, and passes on what it receives.
+`ActionClient` is complete; a backend provides a `GoalWire` that sends, and passes on what it receives.
 Everything here happens on the loop.
 """
 
 import asyncio
+import hashlib
 import math
+import secrets
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 from jacaros.ros.action import SERVER_LOST_AFTER, Outcome
 from jacaros.ros.errors import (
@@ -19,12 +21,12 @@ from jacaros.ros.errors import (
     ServerUnavailable,
     ServiceError,
 )
-from jacaros.ros.message import MessageFactory
+from jacaros.ros.message import Schema
 from jacaros.ros.names import goal_type
-from jacaros.ros.orphans import Orphans
-from jacaros.ros.serving import checked_message
-from jacaros.ros.waiting import RETRY, Absence, Waiting, settle, within
+from jacaros.ros.waiting import RETRY, Deadline, Waiting, settle, within
 from jacaros.runtime.clock import Clock, Timer
+
+T = TypeVar("T")
 
 ENDING = 5.0
 """Seconds that a server has to end a goal after a request to cancel."""
@@ -33,7 +35,7 @@ ENDING = 5.0
 class GoalWire(Protocol):
     """The part of an action client that depends on the middleware.
 
-    No method waits. Answers are passed to the `GoalSender`: `accepted` or `rejected` for each goal sent, then
+    No method waits. Answers are passed to the `ActionClient`: `accepted` or `rejected` for each goal sent, then
     `feedback` and `ended`; `cancel_answered` for each `cancel_goal`; `server_present` whenever that changes.
     """
 
@@ -64,10 +66,16 @@ class GoalWire(Protocol):
         """Leave; messages sent just before must still reach the server."""
 
 
-class PendingGoal:
-    """A goal on the client's side, a `GoalHandle`. It ends once, for all present and later callers."""
+class GoalHandle:
+    """A goal that its server has accepted, seen by the client.
 
-    def __init__(self, sender: "GoalSender", goal_id: str, on_feedback: Callable[[Any], None] | None) -> None:
+    Attributes:
+        goal_id: id of the goal in the graph.
+    """
+
+    def __init__(
+        self, sender: "ActionClient", goal_id: str, on_feedback: Callable[[Any], None] | None
+    ) -> None:
         self.goal_id = goal_id
         self.on_feedback = on_feedback
         self.acceptance: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -77,67 +85,88 @@ class PendingGoal:
         self.leaves_by: float | None = None
         """Time of `Clock.elapsed` until which a goal that is being cancelled delays newer goals."""
         self._sender = sender
-        self._waiting: list[asyncio.Future[Outcome]] = []
+        self._waiting: list[asyncio.Future[None]] = []
         self._asking: list[asyncio.Future[bool]] = []
         self._followers: list[asyncio.Future[None]] = []
 
     async def outcome(self, timeout: float | None = None) -> Outcome:
-        """Wait for the goal's end."""
-        if isinstance(self.end, Outcome):
-            return self.end
-        if self.end is not None:
-            raise self.end.with_traceback(None)
-        waiter: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
-        self._waiting.append(waiter)
-        try:
-            return await within(self._sender.clock, waiter, timeout)
-        except TimeoutError:
-            raise CallTimedOut(
-                f"goal {self.goal_id} of action {self._sender.name} is still active after {timeout:g} s"
-            ) from None
-        finally:
-            if waiter in self._waiting:
-                self._waiting.remove(waiter)
+        """Wait for the goal to end; any number of callers may wait, also after the end.
+
+        Raises:
+            CallTimedOut: the goal is still active after *timeout* seconds of the clock; it is not cancelled.
+            ServerLost: the server disappeared, so the outcome will never be known (`SERVER_LOST_AFTER`).
+        """
+        if self.end is None:
+            try:
+                await self._wait(self._waiting, timeout)
+            except TimeoutError:
+                raise CallTimedOut(
+                    f"goal {self.goal_id} of action {self._sender.name} is still active after {timeout:g} s"
+                ) from None
+        return self._ended()
 
     async def cancel(self, timeout: float | None = None) -> bool:
-        """Ask the server to cancel the goal."""
-        if isinstance(self.end, Outcome):
-            return False
+        """Ask the server to cancel the goal. Return True if it agreed, False if it refused or the goal had ended.
+
+        The goal has ended only when `outcome` returns.
+
+        Raises:
+            CallTimedOut: the server did not answer in time.
+            ServerLost: the server disappeared.
+        """
         if self.end is not None:
-            raise self.end.with_traceback(None)
-        answer: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
-        self._asking.append(answer)
-        self._sender.ask_to_cancel(self)
+            self._ended()
+            return False
         try:
-            return await within(self._sender.clock, answer, timeout)
+            return await self._wait(self._asking, timeout, lambda: self._sender.ask_to_cancel(self))
         except TimeoutError:
             raise CallTimedOut(
                 f"the server of action {self._sender.name} did not answer within {timeout:g} s "
                 f"whether it cancels goal {self.goal_id}"
             ) from None
-        finally:
-            if answer in self._asking:
-                self._asking.remove(answer)
 
     def abandon(self, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
-        """Cancel the goal and return immediately; the client owns it until it has ended."""
+        """Cancel the goal and return immediately.
+
+        Its client owns the goal until it has ended, and logs a warning if that takes more than 5 s.
+
+        Args:
+            afterwards: awaited when the goal has ended.
+        """
         self._sender.abandon(self, afterwards)
 
     async def gone(self) -> bool:
         """Wait until a goal that is being cancelled has ended or continues. Return False if that takes too long."""
         if self.leaves_by is None:
             return True
-        follower: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._followers.append(follower)
+        left = self.leaves_by - self._sender.clock.elapsed
         try:
-            left = self.leaves_by - self._sender.clock.elapsed
-            await within(self._sender.clock, follower, None if left == math.inf else left)
+            await self._wait(self._followers, None if left == math.inf else left)
         except TimeoutError:
             return False
-        finally:
-            if follower in self._followers:
-                self._followers.remove(follower)
         return True
+
+    async def _wait(
+        self,
+        waiters: list[asyncio.Future[T]],
+        timeout: float | None,
+        ask: Callable[[], None] = lambda: None,
+    ) -> T:
+        """Wait with the other *waiters* for the event that settles them; call *ask* to bring it about."""
+        waiter: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+        waiters.append(waiter)
+        try:
+            ask()
+            return await within(self._sender.clock, waiter, timeout)
+        finally:
+            waiters.remove(waiter)
+
+    def _ended(self) -> Outcome:
+        """Return the outcome, or raise why it will never be known."""
+        if isinstance(self.end, Outcome):
+            return self.end
+        assert self.end is not None
+        raise self.end.with_traceback(None)
 
     def cancel_answered(self, agreed: bool) -> None:
         """Note whether the server has agreed to cancel."""
@@ -159,18 +188,73 @@ class PendingGoal:
         problem = None if isinstance(end, Outcome) else end
         settle(self.acceptance, None, problem)
         for waiter in self._waiting:
-            settle(waiter, end, problem)
+            settle(waiter, None, problem)
         for answer in self._asking:
             # The server's answer was lost or overtaken; the outcome implies it.
             settle(answer, isinstance(end, Outcome) and end.status == "canceled", problem)
 
 
-LeavingGoals = dict[str, dict[PendingGoal, None]]
+OrphanPolicy = Literal["cancel", "keep"] | Callable[[str], Awaitable[bool]]
+"""What to do with orphans: cancel them, leave them, or ask a question (text) and cancel them if the answer is True."""
+
+
+class Orphans:
+    """Goals of earlier runs of one node, whose process was killed: their action servers still pursue them.
+
+    Goal ids identify their owner: they begin with the name of the node (ROS 1) or with a hash of it (ROS 2), followed
+    by the run. So goals of other nodes are never taken for orphans.
+
+    Args:
+        node_name: absolute name of the node.
+        policy: what to do with them.
+        log: called with a warning.
+    """
+
+    def __init__(self, node_name: str, policy: OrphanPolicy, log: Callable[[str], None]) -> None:
+        self._policy: OrphanPolicy = policy
+        self._log = log
+        run = secrets.token_hex(4)
+        self._families = (f"{node_name}-", hashlib.sha256(node_name.encode()).hexdigest()[:12])
+        self._named, self._hashed = (f"{family}{run}" for family in self._families)
+        self._known: set[str] = set()
+
+    def named_id(self, number: int, now: float) -> str:
+        """Return an id in actionlib's form: node (and run), number, time."""
+        return f"{self._named}-{number}-{now:.9f}"
+
+    def hashed_id(self) -> str:
+        """Return an id of 16 bytes, as 32 hexadecimal digits."""
+        return self._hashed + secrets.token_hex(6)
+
+    def newly_found(self, goal_id: str) -> bool:
+        """Return whether an active goal is an orphan that has not been seen before."""
+        if (
+            not goal_id.startswith(self._families)
+            or goal_id.startswith((self._named, self._hashed))
+            or goal_id in self._known
+        ):
+            return False
+        self._known.add(goal_id)
+        return True
+
+    async def may_cancel(self, action: str) -> bool:
+        """Decide whether to cancel an orphan of *action*, and log it."""
+        found = f"action {action} is still executing a goal of an earlier run of this node"
+        if self._policy == "cancel":
+            self._log(f"warning: {found}; cancelling it")
+            return True
+        if self._policy == "keep":
+            self._log(f"warning: {found}; the robot may be moving")
+            return False
+        return await self._policy(f"{found}. Cancel it?")
+
+
+LeavingGoals = dict[str, dict[GoalHandle, None]]
 """Goals of one node that are being cancelled, by action."""
 
 
-class GoalSender:
-    """An action client, whatever the middleware.
+class ActionClient:
+    """Sends goals to an action server, whatever the middleware.
 
     Args:
         clock: measures the time-outs.
@@ -189,7 +273,7 @@ class GoalSender:
         self,
         clock: Clock,
         log: Callable[[str], None],
-        factory: MessageFactory,
+        factory: Schema,
         name: str,
         type_name: str,
         leaving: LeavingGoals | None = None,
@@ -201,14 +285,14 @@ class GoalSender:
         self._log = log
         self._factory = factory
         self._goal_type = goal_type(type_name)
-        self._goals: dict[str, PendingGoal] = {}
+        self._goals: dict[str, GoalHandle] = {}
         self._leaving: LeavingGoals = {} if leaving is None else leaving
         self._orphans = orphans
         self._heard_of_goals = False
         self._abandoning: set[asyncio.Task[None]] = set()
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
-        self._absence = Absence()
+        self._waiting = Waiting(clock, log, f"action {name} ({type_name})")
         self._closed = False
 
     @property
@@ -227,31 +311,45 @@ class GoalSender:
         return pending is not None and not pending.abandoned
 
     def goal(self, **fields: Any) -> Any:
-        """Make a goal message."""
+        """Make a goal message; see `Backend.message`."""
         return self._factory.make(self._goal_type, fields)
 
     async def send(
         self, goal: Any = None, on_feedback: Callable[[Any], None] | None = None, timeout: float | None = None
-    ) -> PendingGoal:
-        """Send a goal and wait until the server has accepted it."""
-        message = checked_message(self._factory, self._goal_type, goal)
-        deadline = None if timeout is None else self.clock.elapsed + timeout
+    ) -> GoalHandle:
+        """Send a goal and wait until the server has accepted it.
+
+        Goals of this node that are being cancelled come first: the goal is sent when they have ended, at most 5 s
+        after each request. That time does not count towards *timeout*.
+
+        Args:
+            goal: a goal message, a mapping of its fields, or None for the defaults.
+            on_feedback: called on the loop with each feedback message of this goal, until its end.
+            timeout: seconds to wait for the server and for its acceptance, in total; None: no limit.
+
+        Raises:
+            MessageMismatch: the goal does not match the type definition.
+            GoalRejected: the server rejected it.
+            ServerUnavailable: no server offered the action in time.
+            CallTimedOut: the server neither accepted nor rejected the goal in time; if it accepts later, the goal is
+                cancelled.
+
+        Cancelling this coroutine cancels the goal if the server accepts it.
+        """
+        message = self._factory.checked(self._goal_type, goal)
+        deadline = Deadline(self.clock, timeout)
         while True:
-            await self._server(deadline, timeout)
-            waited = await self._predecessors()
-            if deadline is not None:
-                deadline += waited
+            await self._server(deadline)
+            deadline.postpone(await self._predecessors())
             try:
-                return await self._attempt(message, on_feedback, deadline, timeout)
-            except (
-                ServerUnavailable
-            ):  # it was seen a moment ago, but has gone, or has not been discovered everywhere
-                if deadline is not None and self.clock.elapsed + RETRY > deadline:
-                    raise self._nobody(timeout) from None
+                return await self._attempt(message, on_feedback, deadline)
+            except ServerUnavailable:  # it was seen, but has gone, or has not been discovered everywhere
+                if deadline.comes_within(RETRY):
+                    raise self._nobody(deadline) from None
             await self.clock.sleep(RETRY)
 
     def close(self) -> None:
-        """Close the client: its goals are cancelled, waiting callers fail."""
+        """Close the client: its goals are cancelled if the server can be reached, and waiting callers fail."""
         if self._closed:
             return
         self._closed = True
@@ -266,7 +364,7 @@ class GoalSender:
             settle(arrival, None, problem)
         self.wire.close()
 
-    def ask_to_cancel(self, pending: PendingGoal) -> None:
+    def ask_to_cancel(self, pending: GoalHandle) -> None:
         """Send a request to cancel; the answer arrives with `cancel_answered`.
 
         Raises:
@@ -275,9 +373,7 @@ class GoalSender:
         self._leaves(pending)
         self.wire.cancel_goal(pending.goal_id)
 
-    def abandon(
-        self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None = None
-    ) -> None:
+    def abandon(self, pending: GoalHandle, afterwards: Callable[[], Awaitable[object]] | None = None) -> None:
         """Cancel a goal that is no longer needed: now if it was accepted, else as soon as it is.
 
         It remains a goal of this client until it has ended: newer goals of the action wait for that.
@@ -307,7 +403,7 @@ class GoalSender:
         self._heard_of_goals = True
         for goal_id in goal_ids:
             if goal_id not in self._goals and self._orphans.newly_found(goal_id):
-                pending = PendingGoal(self, goal_id, None)
+                pending = GoalHandle(self, goal_id, None)
                 pending.accepted = pending.abandoned = True
                 self._goals[goal_id] = pending
                 pending.leaves_by = math.inf  # newer goals wait for the decision
@@ -315,7 +411,7 @@ class GoalSender:
                 self.wire.adopt_goal(goal_id)
                 self._keep(self._decide(pending, self._orphans))
 
-    async def _decide(self, pending: PendingGoal, orphans: Orphans) -> None:
+    async def _decide(self, pending: GoalHandle, orphans: Orphans) -> None:
         if not await orphans.may_cancel(self.name):
             self.has_left(pending)
             self._forget(pending.goal_id)
@@ -323,7 +419,7 @@ class GoalSender:
             pending.leaves_by = None
             self.abandon(pending)
 
-    def has_left(self, pending: PendingGoal) -> None:
+    def has_left(self, pending: GoalHandle) -> None:
         """Let newer goals continue: a goal has ended, or its server refuses to cancel it."""
         self._leaving.get(self.name, {}).pop(pending, None)
         pending.no_longer_leaves()
@@ -398,24 +494,19 @@ class GoalSender:
     # Internal:
 
     async def _attempt(
-        self,
-        message: Any,
-        on_feedback: Callable[[Any], None] | None,
-        deadline: float | None,
-        timeout: float | None,
-    ) -> PendingGoal:
+        self, message: Any, on_feedback: Callable[[Any], None] | None, deadline: Deadline
+    ) -> GoalHandle:
         """Send a goal once; raise `ServerUnavailable` if there turns out to be no server."""
-        pending = PendingGoal(self, self.wire.new_id(), on_feedback)
+        pending = GoalHandle(self, self.wire.new_id(), on_feedback)
         self._goals[pending.goal_id] = pending
         try:
             self.wire.send_goal(pending.goal_id, message)
-            await within(
-                self.clock, pending.acceptance, None if deadline is None else deadline - self.clock.elapsed
-            )
+            await within(self.clock, pending.acceptance, deadline.left)
         except TimeoutError:
             self.abandon(pending)
             raise CallTimedOut(
-                f"the server of action {self.name} neither accepted nor rejected the goal within {timeout:g} s"
+                f"the server of action {self.name} neither accepted nor rejected the goal within "
+                f"{deadline.timeout:g} s"
             ) from None
         except asyncio.CancelledError:
             self.abandon(pending)
@@ -425,35 +516,28 @@ class GoalSender:
             raise
         return pending
 
-    def _nobody(self, timeout: float | None) -> ServerUnavailable:
-        return ServerUnavailable(f"no server offered {self._described} within {timeout:g} s")
+    def _nobody(self, deadline: Deadline) -> ServerUnavailable:
+        return ServerUnavailable(f"no server offered {self._waiting.what} within {deadline.timeout:g} s")
 
-    @property
-    def _described(self) -> str:
-        return f"action {self.name} ({self.type_name})"
-
-    async def _server(self, deadline: float | None, timeout: float | None) -> None:
+    async def _server(self, deadline: Deadline) -> None:
         """Wait for the server."""
         if self._closed:
             raise CallFailed(f"the client of action {self.name} was closed")
         if self.wire.offered:
-            self._absence.end(self._log, self._described)
+            self._waiting.found()
             return
-        help = "is the node that offers it running?"
-        with Waiting(self.clock, self._log, self._described, help, absence=self._absence):
+        with self._waiting.during():
             while not self.wire.offered:
                 arrival: asyncio.Future[None] = asyncio.get_running_loop().create_future()
                 self._arrivals.append(arrival)
                 try:
-                    await within(
-                        self.clock, arrival, None if deadline is None else deadline - self.clock.elapsed
-                    )
+                    await within(self.clock, arrival, deadline.left)
                 except TimeoutError:
-                    raise self._nobody(timeout) from None
+                    raise self._nobody(deadline) from None
                 finally:
                     self._arrivals.remove(arrival)
 
-    def _leaves(self, pending: PendingGoal) -> None:
+    def _leaves(self, pending: GoalHandle) -> None:
         if pending.end is None and pending.leaves_by is None:
             pending.leaves_by = self.clock.elapsed + ENDING
             self._leaving.setdefault(self.name, {})[pending] = None
@@ -475,9 +559,7 @@ class GoalSender:
                 )
         return self.clock.elapsed - began
 
-    async def _see_off(
-        self, pending: PendingGoal, afterwards: Callable[[], Awaitable[object]] | None
-    ) -> None:
+    async def _see_off(self, pending: GoalHandle, afterwards: Callable[[], Awaitable[object]] | None) -> None:
         try:
             await pending.outcome(ENDING)
         except CallTimedOut:
