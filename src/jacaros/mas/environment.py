@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jacaros.agents.body.body import AgentBody
@@ -34,6 +33,8 @@ from jacaros.runtime.clock import Clock
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact
     from jacaros.artifacts.env.errors import ArtifactId
+
+    FindType = Callable[[str], type[Artifact]]
 
 
 class Resources(Mapping[str, object]):
@@ -73,42 +74,6 @@ class OperationAccount(Account):
         self._settled()
 
 
-class TypeFinder:
-    """Finds artifact classes by type name.
-
-    A project's own artifacts are imported at the start, so that errors in them are reported before anything runs; those of
-    JaCaROS are imported when the first artifact is created.
-
-    Attributes:
-        given: classes by name that have precedence over all others.
-    """
-
-    def __init__(self, folder: Path, modules: ProjectModules) -> None:
-        self.given: dict[str, type[Artifact]] = {}
-        self._modules = modules
-        self._find: Callable[[str], type[Artifact]] | None = None
-        if has_own_artifacts(folder):
-            self._prepare()
-
-    def __call__(self, type_name: str) -> "type[Artifact]":
-        """Return the class with this name. Raises `UnknownArtifactType`."""
-        given = self.given.get(type_name)
-        if given is not None:
-            return given
-        try:
-            return (self._find or self._prepare())(type_name)
-        except UnknownArtifactType:
-            if close_matches(type_name, self.given):
-                raise UnknownArtifactType(type_name, self.given) from None
-            raise
-
-    def _prepare(self) -> "Callable[[str], type[Artifact]]":
-        from jacaros.artifacts.registry import type_finder
-
-        self._find = type_finder(self._modules)
-        return self._find
-
-
 class RunEnvironment:
     """The environment of a run, and the bodies of its agents in it.
 
@@ -125,7 +90,7 @@ class RunEnvironment:
 
     Attributes:
         environment: all workspaces and artifacts.
-        types: finds the classes of artifacts.
+        given_types: artifact classes by name that have precedence over all others.
 
     Raises:
         ModuleUnreadable: the project's own artifacts have an error.
@@ -141,8 +106,14 @@ class RunEnvironment:
         activity: Activity,
         on_internal_error: Callable[[BaseException], None],
     ) -> None:
-        self.types = TypeFinder(deployment.base_path, modules)
-        self.environment = Environment(clock, resources, self.types, console.log, on_internal_error)
+        self.given_types: dict[str, type[Artifact]] = {}
+        # A project's own artifacts are imported at the start, so that errors in them are reported before anything runs;
+        # those of JaCaROS are imported when the first artifact is created.
+        self._modules = modules
+        self._find: FindType | None = None
+        if has_own_artifacts(deployment.base_path):
+            self._find = self._finder()
+        self.environment = Environment(clock, resources, self.find_type, console.log, on_internal_error)
         self._console = console
         self._activity = activity
         references = References()
@@ -150,6 +121,23 @@ class RunEnvironment:
         # A run may create and dispose millions of artifacts.
         self.environment.when_disposed(references.forget)
         self.environment.when_disposed(self._writer.forget)
+
+    def find_type(self, type_name: str) -> "type[Artifact]":
+        """Return the artifact class with this name. Raises `UnknownArtifactType`."""
+        if type_name in self.given_types:
+            return self.given_types[type_name]
+        try:
+            self._find = self._find or self._finder()
+            return self._find(type_name)
+        except UnknownArtifactType:
+            if close_matches(type_name, self.given_types):
+                raise UnknownArtifactType(type_name, self.given_types) from None
+            raise
+
+    def _finder(self) -> "FindType":
+        from jacaros.artifacts.registry import type_finder
+
+        return type_finder(self._modules)
 
     def make_body(self, host: AgentHost) -> AgentBody:
         """Return a body for an agent, in ``/main``."""
@@ -189,7 +177,7 @@ class RunEnvironment:
             ProjectError: all unknown types, before anything is created; or all failures of creation.
         """
         artifacts = [artifact for workspace in deployment.workspaces for artifact in workspace.artifacts]
-        types = types_of(artifacts, self.types)
+        types = types_of(artifacts, self.find_type)
         wrong: list[Diagnostic] = []
         for spec in deployment.workspaces:
             workspace = _workspace(self.environment, spec)
@@ -203,9 +191,7 @@ class RunEnvironment:
             raise ProjectError(wrong)
 
 
-def types_of(
-    artifacts: Sequence[ArtifactSpec], find_type: "Callable[[str], type[Artifact]]"
-) -> "dict[str, type[Artifact]]":
+def types_of(artifacts: Sequence[ArtifactSpec], find_type: "FindType") -> "dict[str, type[Artifact]]":
     """Return the classes of artifacts by artifact name.
 
     Raises:

@@ -53,7 +53,11 @@ class PythonAgentHost(AgentHost):
         self.mail = Messaging(spec.name, self.send, run.agent_names, run.clock, run.activity, waiting)
         self.verbose = mind_options(spec.options).verbose
         self._agent = agent
-        self._handlers = Handlers(agent, self.mail, self.task_activity, self.start)
+        self._on_message = overridden(agent, PythonAgent, "on_message")
+        self._on_signal = overridden(agent, PythonAgent, "on_signal")
+        self._on_property = overridden(agent, PythonAgent, "on_property")
+        self._events: asyncio.Queue[Callable[[], Any]] = asyncio.Queue()
+        """What its handlers are called with, in the order of events."""
         self._session: Session | None = None
         self._observer: OperationObserver | None = None
         self._tasks: dict[asyncio.Task[Any], None] = {}
@@ -77,9 +81,10 @@ class PythonAgentHost(AgentHost):
         del goals
         if self._leaving:
             return
-        if self._handlers.wanted:
-            self.start(self._handlers.serve())
-        self.start(self._main(self._handlers.wanted))
+        has_handlers = any((self._on_message, self._on_signal, self._on_property))
+        if has_handlers:
+            self.start(self._handle_events())
+        self.start(self._main(has_handlers))
 
     async def _main(self, stays: bool) -> None:
         with self._observed():
@@ -207,6 +212,32 @@ class PythonAgentHost(AgentHost):
         if self._closed:
             raise JacarosError(f"agent {self.name} has ended")
 
+    # ---- handlers
+
+    async def _handle_events(self) -> None:
+        """Call the handlers, one at a time, until the agent ends."""
+        if self._on_message is not None:
+            self.start(self._read())
+        while True:
+            with self.task_activity.waiting():
+                handle = await self._events.get()
+            done = handle()
+            if isawaitable(done):
+                await done
+
+    async def _read(self) -> None:
+        while True:
+            message = await self.mail.next_message(None)
+            self._events.put_nowait(partial(self._handle, message))
+
+    async def _handle(self, message: ReceivedMessage) -> None:
+        assert self._on_message is not None
+        answer = self._on_message(message)
+        if isawaitable(answer):
+            answer = await answer
+        if message.is_question and not message.answered:
+            message.reply(answer)
+
     # ---- time
 
     @property
@@ -248,7 +279,10 @@ class PythonAgentHost(AgentHost):
                 raise WorkspaceError(f"the project has no environment ({ADD_ENVIRONMENT})")
             self._session = self.open_session()
             self._session.observer = self._observer
-            self._handlers.listen(self._session)
+            if (on_signal := self._on_signal) is not None:
+                self._session.on_signal(lambda signal: self._events.put_nowait(partial(on_signal, signal)))
+            if (on_change := self._on_property) is not None:
+                self._session.on_change(lambda change: self._events.put_nowait(partial(on_change, change)))
         return self._session
 
     # ---- output
@@ -277,68 +311,6 @@ def _fault_lines(error: BaseException) -> list[str]:
     for each in error.exceptions if isinstance(error, BaseExceptionGroup) else ():
         lines.append(f"  {error_text(each)}{place_of_fault(each)}")
     return lines
-
-
-class Handlers:
-    """Calls the handlers of an agent in turn, in the order of events.
-
-    Args:
-        agent: the agent.
-        mail: its messages.
-        task_activity: counts waits.
-        start: runs a coroutine of the agent.
-    """
-
-    def __init__(
-        self,
-        agent: PythonAgent,
-        mail: Messaging,
-        task_activity: "TaskActivity",
-        start: Callable[[Coroutine[Any, Any, Any]], object],
-    ) -> None:
-        self._mail, self._task_activity, self._start = mail, task_activity, start
-        self._on_message = overridden(agent, PythonAgent, "on_message")
-        self._on_signal = overridden(agent, PythonAgent, "on_signal")
-        self._on_property = overridden(agent, PythonAgent, "on_property")
-        self._waiting: asyncio.Queue[Callable[[], Any]] = asyncio.Queue()
-
-    @property
-    def wanted(self) -> bool:
-        """Whether the agent has handlers."""
-        return any((self._on_message, self._on_signal, self._on_property))
-
-    async def serve(self) -> None:
-        """Call them until the agent ends."""
-        if self._on_message is not None:
-            self._start(self._read())
-        while True:
-            with self._task_activity.waiting():
-                handle = await self._waiting.get()
-            done = handle()
-            if isawaitable(done):
-                await done
-
-    def listen(self, session: Session) -> None:
-        """Record what the session of the agent perceives, from its beginning."""
-        if self._on_signal is not None:
-            on_signal = self._on_signal
-            session.on_signal(lambda signal: self._waiting.put_nowait(partial(on_signal, signal)))
-        if self._on_property is not None:
-            on_change = self._on_property
-            session.on_change(lambda change: self._waiting.put_nowait(partial(on_change, change)))
-
-    async def _read(self) -> None:
-        while True:
-            message = await self._mail.next_message(None)
-            self._waiting.put_nowait(partial(self._handle, message))
-
-    async def _handle(self, message: ReceivedMessage) -> None:
-        assert self._on_message is not None
-        answer = self._on_message(message)
-        if isawaitable(answer):
-            answer = await answer
-        if message.is_question and not message.answered:
-            message.reply(answer)
 
 
 class TaskActivity(OperationAccount):

@@ -541,7 +541,7 @@ class Mas:
 
         They have precedence over others with the same name.
         """
-        self._run_environment.types.given.update({each.__name__: each for each in types})
+        self._run_environment.given_types.update({each.__name__: each for each in types})
 
     def create_workspace(self, path: str) -> str:
         """Create a workspace. Return its full path.

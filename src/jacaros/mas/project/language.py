@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, ClassVar
 
-from jacaros.agents.language.diagnostics import Span
+from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.files.texts import suggestion
 from jacaros.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
 from jacaros.mas.project.declarations import ProjectPart, Topic, Unsupported, class_without_effect
@@ -12,15 +12,14 @@ from jacaros.mas.project.declarations import ProjectPart, Topic, Unsupported, cl
 NAME = ("word", "string")
 
 
-class ProjectReader:
-    """Reads one project file. Errors are collected in the cursor.
+class ProjectReader(ProjectCursor):
+    """Reads one project file.
 
     Attributes:
         keyword: the word with which a file begins.
         kind: the ending of its name.
         sections: the names of sections for messages.
         readers: by key, reads the value of ``key:``, given the token of the key.
-        cursor: position in the file.
         part: the declarations so far.
     """
 
@@ -29,8 +28,8 @@ class ProjectReader:
     sections: ClassVar[Sequence[str]]
     readers: ClassVar[Mapping[str, Callable[[Any, Token], object]]]
 
-    def __init__(self, cursor: ProjectCursor) -> None:
-        self.cursor = cursor
+    def __init__(self, file: SourceFile, diagnostics: list[Diagnostic]) -> None:
+        super().__init__(file, diagnostics)
         self.part = ProjectPart()
 
     def read(self) -> ProjectPart:
@@ -40,25 +39,24 @@ class ProjectReader:
         return self.part
 
     def _project(self) -> None:
-        cursor = self.cursor
         begin = f"begin the file with `{self.keyword} name {{`"
-        cursor.expect(self.keyword, begin)
+        self.expect(self.keyword, begin)
         self.head()
-        opener = cursor.expect("{", begin)
-        while not cursor.accept("}"):
-            if cursor.token.kind == "end":
-                cursor.fail("`{` is not closed", cursor.span_of(opener), "end the file with `}`")
-            start = cursor.index
+        opener = self.expect("{", begin)
+        while not self.accept("}"):
+            if self.token.kind == "end":
+                self.fail("`{` is not closed", self.span_of(opener), "end the file with `}`")
+            start = self.index
             try:
                 self._section()
             except ProjectPanic as panic:
                 if not isinstance(panic, UnclosedPanic):
                     self._to_next_section(start)
-                if cursor.token.kind == "end":
+                if self.token.kind == "end":
                     return  # the error may have consumed the closing bracket of the file
-        if cursor.token.kind != "end":
-            cursor.report(
-                f"unexpected {cursor.token} after the end of the system",
+        if self.token.kind != "end":
+            self.report(
+                f"unexpected {self.token} after the end of the system",
                 help="check for an extra `}` before it",
             )
 
@@ -67,23 +65,22 @@ class ProjectReader:
         raise NotImplementedError
 
     def _section(self) -> None:
-        cursor = self.cursor
         if not self.at_key_of_project():
             self.other_section()
             return
-        key = cursor.advance()
-        cursor.advance()
+        key = self.advance()
+        self.advance()
         self.readers[key.text](self, key)
 
     def other_section(self) -> None:
         """Read a section that is not ``key:``, or fail."""
-        token = self.cursor.token
+        token = self.token
         help = suggestion(token.text, self.sections, f"expected one of {', '.join(self.sections)}")
-        self.cursor.fail(f"unknown section {token} in a {self.kind} file", help=help)
+        self.fail(f"unknown section {token} in a {self.kind} file", help=help)
 
     def at_key_of_project(self) -> bool:
         """Return whether ``key:`` of the project comes next."""
-        return self.cursor.token.text in self.readers and self.cursor.at_key()
+        return self.token.text in self.readers and self.at_key()
 
     def at_next_section(self) -> bool:
         """Return whether a section certainly begins here."""
@@ -91,11 +88,10 @@ class ProjectReader:
 
     def _to_next_section(self, start: int) -> None:
         """Skip to the next section, after an error in the one that began at *start*."""
-        cursor = self.cursor
-        if cursor.index == start:
-            cursor.advance()
-        while cursor.token.kind != "end" and not self.at_next_section():
-            cursor.advance()
+        if self.index == start:
+            self.advance()
+        while self.token.kind != "end" and not self.at_next_section():
+            self.advance()
 
     def unsupported(self, topic: Topic, what: str, span: Span, detail: bool = False) -> None:
         """Record a declaration that has no effect."""
@@ -109,14 +105,13 @@ class ProjectReader:
 
     def parameters(self) -> str:
         """Return the text from the current bracket to the matching one; empty without one."""
-        cursor = self.cursor
-        if cursor.token.kind != "(":
+        if self.token.kind != "(":
             return ""
-        start = cursor.token.start
-        cursor.skip_block()
-        return cursor.file.text[start : cursor.before().stop]
+        start = self.token.start
+        self.skip_block()
+        return self.file.text[start : self.before().stop]
 
     def world(self, kinds: Sequence[str] = NAME) -> None:
         """Read the name of a world."""
-        name = self.cursor.take("the name of a world file", *kinds)
-        self.part.world, self.part.world_span = text_of(name), self.cursor.span_of(name)
+        name = self.take("the name of a world file", *kinds)
+        self.part.world, self.part.world_span = text_of(name), self.span_of(name)

@@ -8,8 +8,8 @@ from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.files.texts import file_text, is_file
 from jacaros.mas.agents.programs import source_folders
 from jacaros.mas.deployment import CARTAGO_ENVIRONMENTS, Deployment, ProjectError
-from jacaros.mas.project.cursor import ProjectCursor
 from jacaros.mas.project.declarations import ArtifactPart, FocusPart, ProjectPart, WorkspacePart, condensed
+from jacaros.mas.project.language import ProjectReader
 from jacaros.mas.project.resolving import Resolver
 
 _JCM: Final = ".jcm"
@@ -64,21 +64,21 @@ class _Files:
             ProjectError: the file cannot be read.
         """
         self.seen.add(path.resolve())
-        cursor = ProjectCursor(SourceFile(path.as_posix(), _text(path)), self.diagnostics)
-        part = read_part(path.suffix, cursor)
+        reader = reader_of(SourceFile(path.as_posix(), _text(path)), self.diagnostics)
+        part = reader.read()
         _complete(path, part)
         self._map(path, part)
         for file, span in reversed(part.uses):
             used = path.parent / (file if file.endswith(_JCM) else file + _JCM)
             if not is_file(used):
-                cursor.report(f"project not found: `{file}`", span, f"expected at {used}")
+                reader.report(f"project not found: `{file}`", span, f"expected at {used}")
             elif used.resolve() in (*using, path.resolve()):
-                cursor.report(f"project `{file}` uses itself", span)
+                reader.report(f"project `{file}` uses itself", span)
             elif used.resolve() not in self.seen:
                 try:
                     _import(part, self.read(used, (*using, path.resolve())))
                 except ProjectError as error:
-                    cursor.report(error.diagnostics[0].message, span)
+                    reader.report(error.diagnostics[0].message, span)
         return part
 
     def _map(self, path: Path, part: ProjectPart) -> None:
@@ -105,16 +105,16 @@ def _text(path: Path) -> str:
         raise ProjectError([Diagnostic("error", f"cannot read {path}: {error}")]) from error
 
 
-def read_part(suffix: str, cursor: ProjectCursor) -> ProjectPart:
-    """Return the declarations of a file of this kind. Errors are collected in the cursor."""
+def reader_of(file: SourceFile, diagnostics: list[Diagnostic]) -> ProjectReader:
+    """Return a reader for a file, by the ending of its name. It adds errors to *diagnostics*."""
     # Imported on demand: a project uses one of the two formats.
-    if suffix == _JCM:
+    if file.name.endswith(_JCM):
         from jacaros.mas.project.jcm import JcmReader
 
-        return JcmReader(cursor).read()
+        return JcmReader(file, diagnostics)
     from jacaros.mas.project.mas2j import Mas2jReader
 
-    return Mas2jReader(cursor).read()
+    return Mas2jReader(file, diagnostics)
 
 
 def _complete(path: Path, part: ProjectPart) -> None:

@@ -96,9 +96,8 @@ class _Rerun:
             self._clock = mas.system.clock
             self._history = history = mas.system.keep_history()
             history.listen(lambda t, event, data: found.append((t, event, _with_short_names(event, data))))
-            for (
-                other
-            ) in self._others:  # they do nothing: programs look up names, and messages are in the recording
+            # They do nothing: programs look up names, and messages are in the recording.
+            for other in self._others:
                 mas.add_agent(other, "")
             await mas.sleep(self._began)
             agent = self._begin(mas)

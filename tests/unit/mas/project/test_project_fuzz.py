@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
-from jacaros.mas.project.cursor import ProjectCursor
-from jacaros.mas.project.reading import read_part, read_project
+from jacaros.mas.project.reading import read_project, reader_of
 
 JCM_WORDS = """
 mas uses agent workspace artifact institution organisation group scheme node running debug in package
@@ -31,7 +30,7 @@ LANGUAGES = {
 
 def read(suffix: str, text: str) -> list[Diagnostic]:
     diagnostics: list[Diagnostic] = []
-    read_part(suffix, ProjectCursor(SourceFile("p", text), diagnostics))
+    reader_of(SourceFile(f"p{suffix}", text), diagnostics).read()
     lines = text.split("\n")
     for each in diagnostics:
         assert each.span is not None
