@@ -158,7 +158,8 @@ def _described(told: str, fields: tuple[FieldPart, ...], words: list[str]) -> st
         own = names[place : place + field.count]
         place += field.count
         if word:
-            values.append(f"{own[0]}{f' to {own[-1]}' if own[1:] else ''}: {word}")
+            span = own[0] if len(own) == 1 else f"{own[0]} to {own[-1]}"
+            values.append(f"{span}: {word}")
     told = told.rstrip(".")
     return f"{told}. {'; '.join(values)}" if values else told
 
