@@ -521,6 +521,7 @@ def quit_from_environment(presence: AgentPresence, call: Call, finish: Finish) -
 
 
 _CONSOLE = "console"
+_PRINTING = "print", "println", "printWithAgName", "printlnWithAgName"
 
 
 class AgentBody(AgentPresence):
@@ -562,7 +563,8 @@ class AgentBody(AgentPresence):
 
     def act(self, act: Act) -> None:
         """Begin an action; the mind receives its outcome, possibly before this returns."""
-        self.enter()
+        if not self._entered:
+            self.enter()
         self._pending[act.id] = ENDED
         self._activity.begin()
         if act.functor is NEEDS:
@@ -634,13 +636,25 @@ class AgentBody(AgentPresence):
         action = ACTIONS.get((call.name, len(call.arguments)))
         if action is not None and call.direction.artifact is None:
             return self._by_itself(action, call)
-        artifact = self._artifact_for(call)
-        if action is not None and self.is_own(artifact) and self._offers(artifact, call):
-            at_home = artifact is self.session
-            here = None if at_home else self.environment.workspace(artifact.workspace)
-            call.direction = Direction(None, here, call.direction.timeout)
-            return self._by_itself(action, call)
-        if artifact.creator is None and artifact.name == _CONSOLE and _prints(call):
+        direction = call.direction
+        try:
+            artifact = self.artifact_for(
+                call.name, len(call.arguments), direction, call.act.intention, call.namespace
+            )
+        except UnknownArtifact:
+            raise
+        except OperationFailed as failure:
+            if isinstance(failure, UnknownOperation) or direction is not ANYWHERE:
+                raise undelivered(call.act, failure) from None
+            raise
+        if action is not None and self.is_own(artifact):
+            workspace = self.environment.workspace(artifact.workspace)
+            if call.key in workspace.offers(artifact):
+                call.direction = Direction(
+                    None, None if artifact is self.session else workspace, direction.timeout
+                )
+                return self._by_itself(action, call)
+        if artifact.creator is None and artifact.name == _CONSOLE and call.name in _PRINTING:
             # Printed here and not by the console artifact, which would receive values, while users want terms.
             self._show("".join(map(display, call.arguments)))
             self._finish(call.act.id, succeeded())
@@ -656,20 +670,6 @@ class AgentBody(AgentPresence):
             return deadline.watch(action(self, call, deadline.ended) or ENDED)
         except OperationFailed:
             deadline.cancel()
-            raise
-
-    def _offers(self, artifact: ArtifactId, call: Call) -> bool:
-        return call.key in self.environment.workspace(artifact.workspace).offers(artifact)
-
-    def _artifact_for(self, call: Call) -> ArtifactId:
-        direction, intention = call.direction, call.act.intention
-        try:
-            return self.artifact_for(call.name, len(call.arguments), direction, intention, call.namespace)
-        except UnknownArtifact:
-            raise
-        except OperationFailed as failure:
-            if isinstance(failure, UnknownOperation) or direction is not ANYWHERE:
-                raise undelivered(call.act, failure) from None
             raise
 
     def _execute(self, call: Call, artifact: ArtifactId) -> UnderWay:
@@ -710,7 +710,3 @@ def _too_deep(artifact: ArtifactId, key: str) -> OperationFailed:
     """Return the failure of an action with an argument that exceeds Python's nesting limit."""
     message = f"an argument of {key} is nested too deeply for a Python value"
     return OperationFailed(message, Structure("wrong_op_arguments", (artifact, key)))
-
-
-def _prints(call: Call) -> bool:
-    return call.name in ("print", "println", "printWithAgName", "printlnWithAgName")

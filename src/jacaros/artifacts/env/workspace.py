@@ -147,14 +147,18 @@ def init_of(artifact_type: type[Artifact], request: OperationRequest) -> Declare
 
 
 class OperationIndex:
-    """The artifacts of a workspace that offer one operation with one number of arguments."""
+    """The artifacts of a workspace that offer one operation with one number of arguments.
 
-    __slots__ = ("_every", "_exact", "_providers")
+    Attributes:
+        found: the last result of `providers`; None once it is no longer true.
+    """
+
+    __slots__ = ("_every", "_exact", "found")
 
     def __init__(self) -> None:
         self._every = _ByAge()
         self._exact = _ByAge()
-        self._providers: Providers | None = None
+        self.found: Providers | None = None
 
     def add(self, artifact: ArtifactId, exact: bool) -> None:
         """Add an artifact, which must be younger than all others.
@@ -166,7 +170,7 @@ class OperationIndex:
         self._every.add(artifact)
         if exact:
             self._exact.add(artifact)
-        self._providers = None
+        self.found = None
 
     def remove(self, artifact: ArtifactId) -> None:
         """Remove an artifact, if present."""
@@ -174,14 +178,14 @@ class OperationIndex:
             self._every.remove(artifact)
             if artifact in self._exact.artifacts:
                 self._exact.remove(artifact)
-            self._providers = None
+            self.found = None
 
     def providers(self) -> "Providers":
         """Return all artifacts, the oldest first."""
-        if self._providers is None:
-            self._providers = Providers(self._every.artifacts)
-            self._providers.operation_index = self
-        return self._providers
+        if self.found is None:
+            self.found = Providers(self._every.artifacts)
+            self.found.operation_index = self
+        return self.found
 
     def is_preferred(self, artifact: ArtifactId) -> bool:
         """Return whether an artifact may be chosen. An exact number of arguments has precedence."""
@@ -629,7 +633,7 @@ class Workspace(ports.Workspace):
             index = self._indexes[operation, arity] = OperationIndex()
             for artifact_id in self._artifacts.values():
                 self._offer_of(artifact_id, operation, arity, index)
-        return index.providers()
+        return index.found or index.providers()
 
     def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, index: OperationIndex) -> None:
         """Add an artifact to the index of an operation, if it offers it."""

@@ -393,16 +393,7 @@ class Steps:
             self._running[execution] = None
 
     def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
-        if self.setting.tracer is None:
-            self._run_at_once(execution, declared)
-            return
-        before = CURRENT.set(execution.cause)
-        try:
-            self._run_at_once(execution, declared)
-        finally:
-            CURRENT.reset(before)
-
-    def _run_at_once(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
+        before = None if self.setting.tracer is None else CURRENT.set(execution.cause)
         try:
             result = declared.function(self.artifact, *execution.arguments)
             if result is not None:
@@ -416,6 +407,9 @@ class Steps:
             self.end(execution, error)
         else:
             self.end(execution, None)
+        finally:
+            if before is not None:
+                CURRENT.reset(before)
 
     async def _drive(self, execution: OperationExecution) -> None:
         error: BaseException | None = None

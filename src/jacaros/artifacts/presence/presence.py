@@ -89,14 +89,14 @@ class JoinedWorkspaces:
         Raises:
             OperationFailed: no workspace is joined.
         """
-        found = self._base(intention)
+        found = self._base(intention) if self._of_intention else self._last
         if found.path not in self._joined:
             raise not_joined(found.path)
         return found
 
     def _base(self, intention: int | None) -> Workspace:
         """Return the workspace that paths are relative to: the current one, or home."""
-        if self._of_intention and intention is not None:
+        if intention is not None:
             found = self._of_intention.get(intention, self._last)
             if found.path in self._joined:
                 return found

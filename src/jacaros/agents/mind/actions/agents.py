@@ -28,7 +28,7 @@ from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.rules.pending import set_alarm
 from jacaros.agents.mind.rules.proc_msg import nobody_there, time_out_question
 from jacaros.agents.mind.state.act import SpeechAct
-from jacaros.agents.mind.state.intention import PLAN
+from jacaros.agents.mind.state.intention import variables_of
 from jacaros.agents.mind.state.pending import ASK, AnswerWait, Waiting
 from jacaros.agents.terms.substitution import is_flat, rename, resolve
 from jacaros.agents.terms.text import display, text
@@ -419,10 +419,9 @@ def verbose(ctx: Context, level: Term) -> None:
 def print_unifier(ctx: Context) -> None:
     """``.print_unifier`` prints the bound variables of the plan, one per line, and ``done``."""
     if ctx.intention is not None:
-        frame = ctx.intention.frames[-1]
-        for name, slot in frame[PLAN].slots.items():
-            value = resolve(frame[slot])
-            if value is not None and value.__class__ is not Var:
+        for name, value in variables_of(ctx.intention.frames[-1]).items():
+            value = resolve(value)
+            if value.__class__ is not Var:
                 ctx.architecture.print(f"{name}={text(value)}")
     ctx.architecture.print("done")
 

@@ -9,13 +9,22 @@ from jacaros.agents.language.lowering import lower
 from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import WrongArguments, internal_action
 from jacaros.agents.mind.rules import deadlines, goals
-from jacaros.agents.mind.rules.body_steps import bindings_of, is_body_frame, trigger_of, variables_of
+from jacaros.agents.mind.rules.body_steps import bindings_of, is_body_frame, trigger_of
 from jacaros.agents.mind.rules.clr_int import achieve, pending_event
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.mind.rules.failure_reason import code_place, nowhere, shown_goal
 from jacaros.agents.mind.rules.goals import post_external
 from jacaros.agents.mind.rules.pending import listen, now, set_alarm, watch
-from jacaros.agents.mind.state.intention import ANNOTATIONS, EVENT_GOAL, GOAL, PLAN, STEP, Frame, Intention
+from jacaros.agents.mind.state.intention import (
+    ANNOTATIONS,
+    EVENT_GOAL,
+    GOAL,
+    PLAN,
+    STEP,
+    Frame,
+    Intention,
+    variables_of,
+)
 from jacaros.agents.mind.state.pending import Waiting, is_action, is_supervision
 from jacaros.agents.mind.state.plan import SUSPENDED, Failure
 from jacaros.agents.mind.state.triggers import Trigger, literal_of

@@ -20,7 +20,7 @@ from jacaros.agents.mind.rules.query import answers, collecting
 from jacaros.agents.mind.rules.searching import Loop, Remaining, first_answer_of, refuse, run
 from jacaros.agents.mind.state.belief_base import has_source, parts
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import FIRST_SLOT, GOAL, PLAN, STEP, Frame, NextStep
+from jacaros.agents.mind.state.intention import FIRST_SLOT, GOAL, PLAN, STEP, Frame, NextStep, variables_of
 from jacaros.agents.mind.state.plan import FAILED, Failure, Plan, StepInfo
 from jacaros.agents.mind.state.triggers import Trigger, trigger
 from jacaros.agents.terms.order import annotation_set
@@ -89,12 +89,7 @@ class Step:
 
     def values(self, frame: Frame) -> Names:
         """The variables that the step mentions; those without a value are made when they are first asked for."""
-        slots = frame[PLAN].slots
-        return Names(
-            (name, frame[slots[name]])
-            for name in self.names
-            if name in slots and frame[slots[name]] is not None
-        )
+        return Names(variables_of(frame, self.names))
 
     def keep(self, frame: Frame, names: Names) -> None:
         """Store the variables that the step has bound. Known variables keep their places: a loop around unbinds them."""
@@ -216,13 +211,7 @@ class GoalCondition:
 
     def __call__(self, agent: Any, frame: Frame) -> bool:
         """Ask the beliefs."""
-        slots = frame[PLAN].slots
-        values = Names(
-            (name, frame[slots[name]])
-            for name in self.names
-            if name in slots and frame[slots[name]] is not None
-        )
-        found = holds(agent, self.node, values, agent.trail)
+        found = holds(agent, self.node, Names(variables_of(frame, self.names)), agent.trail)
         undo(agent.trail, 0)
         return found
 
@@ -406,14 +395,6 @@ def plan_term(agent: Circumstance, plan: Plan) -> Term:
     """A plan of an agent as a term, with its label and what is known of it."""
     term = lower_plan(plan.node, fresh_names())
     return (term[0], agent.library.label(plan), *term[2:])
-
-
-def variables_of(frame: Frame) -> dict[str, Term]:
-    """The variables of a frame that have been given a value."""
-    slots = frame[PLAN].slots
-    return {
-        name: frame[slot] for name, slot in slots.items() if slot < len(frame) and frame[slot] is not None
-    }
 
 
 def bindings_of(frame: Frame) -> Term:

@@ -15,7 +15,7 @@ from jacaros.agents.mind.rules.searching import run
 from jacaros.agents.mind.state.belief_base import BeliefTables, Item, Table
 from jacaros.agents.mind.state.budget import SearchBudget, SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import PLAN, Intention
+from jacaros.agents.mind.state.intention import PLAN, Intention, variables_of
 from jacaros.agents.mind.state.plan import Answers, Plan, Rule
 from jacaros.agents.terms.functions import FunctionNames
 from jacaros.agents.terms.operators import RUNNING, ArithmeticFault, settle
@@ -206,12 +206,8 @@ class Context:
 
     def _names(self) -> Names:
         """The variables of the running plan by their names."""
-        names = Names()
         current = self.intention
-        if current is not None and current.frames:
-            frame = current.frames[-1]
-            names.update({n: frame[s] for n, s in frame[PLAN].slots.items() if frame[s] is not None})
-        return names
+        return Names(variables_of(current.frames[-1]) if current is not None and current.frames else ())
 
     def report(self, action: str, fault: object) -> None:
         """Warn of an internal action that failed in a condition."""

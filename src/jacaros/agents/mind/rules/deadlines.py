@@ -30,6 +30,7 @@ from jacaros.agents.mind.state.intention import (
     Frame,
     Intention,
     Posted,
+    variables_of,
 )
 from jacaros.agents.mind.state.pending import (
     SUPERVISION,
@@ -217,8 +218,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
 
 def _guards(frame: Frame) -> dict[str, Term]:
     """Return the guards of a plan, with the values of its variables when it begins."""
-    slots = frame[PLAN].slots
-    names = Names((name, frame[slot]) for name, slot in slots.items() if frame[slot] is not None)
+    names = Names(variables_of(frame))
     return {
         node.functor: rename(resolve(lower(node.arguments[0], names.__getitem__)))
         for node in frame[PLAN].guards

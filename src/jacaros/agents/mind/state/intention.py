@@ -1,6 +1,6 @@
 """Intentions: stacks of frames, as data."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any, Final
 
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
@@ -20,6 +20,15 @@ plan: the `Plan`.
 """
 
 STEP, GOAL, ANNOTATIONS, SERIAL, PLAN, FIRST_SLOT = range(6)
+
+
+def variables_of(frame: Frame, names: Collection[str] | None = None) -> dict[str, Term]:
+    """The variables of a frame that have been given a value; of those with these names only, if given."""
+    return {
+        name: frame[slot]
+        for name, slot in frame[PLAN].slots.items()
+        if slot < len(frame) and frame[slot] is not None and (names is None or name in names)
+    }
 
 
 class Intention:
