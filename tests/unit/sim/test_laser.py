@@ -41,7 +41,7 @@ def brute_force(segments: Sequence[Segment], x: float, y: float, yaw: float, bea
 def test_the_sweep_equals_brute_force_to_the_last_bit(seed: int) -> None:
     draw = random.Random(seed)
     walls = random_walls(draw, 40)
-    laser = Laser(LaserSettings(beams_per_turn=draw.choice([90, 181, 360]), range_max=50.0), walls, "seed")
+    laser = Laser(LaserSettings(beams_per_turn=draw.choice([90, 181, 360]), range_max=50.0), "seed", walls)
     for _ in range(10):
         pose = draw.uniform(-6.9, 6.9), draw.uniform(-4.9, 4.9), draw.uniform(-PI, PI)
         assert laser.scan(*pose) == brute_force(walls, *pose, laser.settings.beams_per_turn)
@@ -49,14 +49,14 @@ def test_the_sweep_equals_brute_force_to_the_last_bit(seed: int) -> None:
 
 def test_walls_out_of_range_are_skipped_and_no_others() -> None:
     walls = random_walls(random.Random(3), 40)
-    far, near = Laser(LaserSettings(), walls, "s"), Laser(LaserSettings(range_max=2.0), walls, "s")
+    far, near = Laser(LaserSettings(), "s", walls), Laser(LaserSettings(range_max=2.0), "s", walls)
     for step in range(20):
         pose = (-3.0 + 0.3 * step, -1.0, 0.05 * step)
         assert near.scan(*pose) == [value if value <= 2.0 else math.inf for value in far.scan(*pose)]
 
 
 def test_the_middle_beam_hits_a_wall_ahead() -> None:
-    laser = Laser(LaserSettings(beams_per_turn=360), [Segment(2.0, -1.0, 2.0, 1.0)], "seed")
+    laser = Laser(LaserSettings(beams_per_turn=360), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
     ranges = laser.scan(0.0, 0.0, 0.0)
     assert ranges[180] == pytest.approx(2.0)
     assert ranges[180 + 20] == pytest.approx(2.0 / math.cos(math.radians(20)))
@@ -65,7 +65,7 @@ def test_the_middle_beam_hits_a_wall_ahead() -> None:
 
 
 def test_the_field_of_view_is_centred_on_the_heading() -> None:
-    laser = Laser(LaserSettings(beams_per_turn=360, field=PI), [Segment(2.0, -1.0, 2.0, 1.0)], "seed")
+    laser = Laser(LaserSettings(beams_per_turn=360, field=PI), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
     assert laser.angle_min == pytest.approx(-PI / 2)
     assert laser.angle_max == pytest.approx(PI / 2)
     ranges = laser.scan(0.0, 0.0, 0.0)
@@ -74,7 +74,7 @@ def test_the_field_of_view_is_centred_on_the_heading() -> None:
 
 
 def test_another_robot_is_seen_as_a_disc() -> None:
-    laser = Laser(LaserSettings(beams_per_turn=360), [], "seed")
+    laser = Laser(LaserSettings(beams_per_turn=360), "seed", [])
     ranges = laser.scan(0.0, 0.0, 0.0, [(3.0, 0.0, 0.5)])
     assert ranges[180] == pytest.approx(2.5)
     seen = [beam for beam, distance in enumerate(ranges) if distance < math.inf]
@@ -85,8 +85,8 @@ def test_another_robot_is_seen_as_a_disc() -> None:
 def test_noise_is_bounded_and_repeats_with_the_seed() -> None:
     settings = LaserSettings(noise=0.02)
     walls = [Segment(2.0, -9.0, 2.0, 9.0)]
-    first, again, other = (Laser(settings, walls, seed).scan(0.0, 0.0, 0.0) for seed in ("1", "1", "2"))
-    exact = Laser(LaserSettings(), walls, "1").scan(0.0, 0.0, 0.0)
+    first, again, other = (Laser(settings, seed, walls).scan(0.0, 0.0, 0.0) for seed in ("1", "1", "2"))
+    exact = Laser(LaserSettings(), "1", walls).scan(0.0, 0.0, 0.0)
     assert first == again
     assert first != other
     for noisy, true in zip(first, exact, strict=True):
@@ -94,5 +94,5 @@ def test_noise_is_bounded_and_repeats_with_the_seed() -> None:
 
 
 def test_nothing_is_detected_out_of_range() -> None:
-    laser = Laser(LaserSettings(range_max=1.5), [Segment(2.0, -1.0, 2.0, 1.0)], "seed")
+    laser = Laser(LaserSettings(range_max=1.5), "seed", [Segment(2.0, -1.0, 2.0, 1.0)])
     assert set(laser.scan(0.0, 0.0, 0.0)) == {math.inf}

@@ -1,7 +1,8 @@
 """Faults as plain data, read from fault files (`jacaros.sim.files.faults`)."""
 
 import math
-from collections.abc import Mapping
+import random
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Final, NamedTuple
 
@@ -90,3 +91,12 @@ class Fault:
     seconds: Annotated[float, _seconds("delay")] = 0.5
     jitter: Annotated[float, _seconds("largest random extra delay")] = 0.0
     copies: Annotated[int, whole(2, "deliveries of each message")] = 2
+
+    def draw(self, seed: int, purpose: str) -> Callable[[], float]:
+        """Return random numbers from 0 to 1 for a world with that seed: the same ones in each run."""
+        return random.Random(f"{seed}/{self.name}/{purpose}").random
+
+    def chance(self, seed: int) -> Callable[[], bool]:
+        """Return a function that decides each time whether the fault happens, with the probability ``share``."""
+        draw = self.draw(seed, self.kind)
+        return lambda: draw() < self.share

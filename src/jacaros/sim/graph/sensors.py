@@ -62,7 +62,7 @@ def _laser(at: RobotOnGraph) -> Tick:
 
 
 def _scan(at: RobotOnGraph, message: Any) -> None:
-    laser = at.time.world.laser(at.robot.name)
+    laser = at.time.world.lasers[at.robot.name]
     message.angle_min, message.angle_max = laser.angle_min, laser.angle_max
     message.angle_increment = laser.angle_increment
     message.scan_time = _TICKS_PER_SCAN / TICKS_PER_SECOND

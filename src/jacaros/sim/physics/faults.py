@@ -1,36 +1,17 @@
-"""The faults of a running world: their schedule, and their effects on the world."""
+"""The faults of a running world: when they begin and end, and what they affect."""
 
 import math
-import random
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from jacaros.errors import UsageError
 from jacaros.sim.data.faults import MESSAGES, Fault
-from jacaros.sim.data.world import PersonDescription, WorldDescription
-from jacaros.sim.physics.robot import Robot
 
 Undo = Callable[[], object]
 Abort = Callable[[str], object]
 """Aborts a goal because of a fault."""
-
-
-class FaultyWorld(Protocol):
-    """The part of `jacaros.sim.physics.world.World` that faults use."""
-
-    description: WorldDescription
-    time: float
-    doors: dict[str, bool]
-    dead_docks: set[str]
-    stuck_doors: dict[str, Callable[[], bool]]
-
-    def robot(self, name: str) -> Robot: ...
-    def move_door(self, name: str, opened: bool) -> str | None: ...
-    def add_person(self, description: PersonDescription) -> object: ...
-    def remove_person(self, name: str) -> None: ...
-    def note_fault(self, name: str, data: dict[str, Any]) -> None: ...
 
 
 @dataclass(slots=True)
@@ -48,10 +29,6 @@ class Disturbance:
     first: Any = None
 
 
-class Refused(Exception):
-    """Raised when a fault cannot happen now."""
-
-
 class Faults:
     """The faults of a world, by name.
 
@@ -59,8 +36,12 @@ class Faults:
     ``begins``, ``ends``, or ``refused`` with ``why``.
 
     Args:
-        world: affected world.
         faults: its faults.
+        seed: seed of the world.
+        now: returns the time of the world, in seconds.
+        happen: lets a fault happen in the world, and returns what ends it; None for faults without duration. It raises
+            `UsageError` if the fault cannot happen now.
+        note: takes the events, with the affected robot ("" for none).
 
     Attributes:
         by_name: faults by name.
@@ -68,8 +49,15 @@ class Faults:
         topics, actions: all topics and actions with faults, active or not.
     """
 
-    def __init__(self, world: FaultyWorld, faults: Iterable[Fault] = ()) -> None:
-        self._world = world
+    def __init__(
+        self,
+        faults: Iterable[Fault],
+        seed: int,
+        now: Callable[[], float],
+        happen: Callable[[Fault], Undo | None],
+        note: Callable[[str, dict[str, Any]], object],
+    ) -> None:
+        self._seed, self._now, self._happen, self._note = seed, now, happen, note
         self.by_name = {fault.name: fault for fault in faults}
         self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
         self.actions = frozenset(fault.action for fault in self.by_name.values() if fault.action)
@@ -130,13 +118,13 @@ class Faults:
             return None
         try:
             undo = self._effect(fault)
-        except (Refused, UsageError) as refused:
+        except UsageError as refused:
             self._tell(fault, "refused", why=str(refused))
             return str(refused)
         if undo is not None:
             self._undo[name] = undo
             if fault.lasts is not None:
-                self._ends[name] = self._world.time + fault.lasts
+                self._ends[name] = self._now() + fault.lasts
                 self._look_ahead()
         self._tell(fault, "begins")
         return None
@@ -172,91 +160,23 @@ class Faults:
         return self.by_name[name]
 
     def _tell(self, fault: Fault, state: str, **more: str) -> None:
-        self._world.note_fault(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
+        self._note(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
 
     def _effect(self, fault: Fault) -> Undo | None:
         """Apply a fault, and return the function that ends it; None for faults without duration.
 
         Raises:
-            Refused, UsageError: the fault cannot happen now.
+            UsageError: the fault cannot happen now.
         """
         if fault.kind in MESSAGES:
             active = self._disturbances.setdefault(fault.topic, {})
-            active[fault.name] = Disturbance(fault, _draw(self._world, fault, "messages"))
+            active[fault.name] = Disturbance(fault, fault.draw(self._seed, "messages"))
             return partial(active.pop, fault.name)
         if fault.kind == "aborted_action":
-            happens = _chance(self._world, fault)
+            happens = fault.chance(self._seed)
             self._aborting[fault.name] = fault.action, happens
             for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
                 if happens():
                     abort(fault.name)
             return partial(self._aborting.pop, fault.name)
-        return _EFFECTS[fault.kind](self._world, fault)
-
-
-def _draw(world: FaultyWorld, fault: Fault, purpose: str) -> Callable[[], float]:
-    return random.Random(f"{world.description.seed}/{fault.name}/{purpose}").random
-
-
-def _chance(world: FaultyWorld, fault: Fault) -> Callable[[], bool]:
-    """Return a function that decides each time whether a fault happens, with the probability ``share``."""
-    draw = _draw(world, fault, fault.kind)
-    return lambda: draw() < fault.share
-
-
-def _slip(world: FaultyWorld, fault: Fault) -> Undo:
-    robot, draw = world.robot(fault.robot), _draw(world, fault, "slip")
-    robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
-    return partial(setattr, robot, "grip", None)
-
-
-def _block(world: FaultyWorld, fault: Fault) -> Undo:
-    robot = world.robot(fault.robot)
-    robot.blocked_wheel = fault.wheel
-    return partial(setattr, robot, "blocked_wheel", "")
-
-
-def _kidnap(world: FaultyWorld, fault: Fault) -> None:
-    world.robot(fault.robot).put_down(fault.pose)
-
-
-def _drop(world: FaultyWorld, fault: Fault) -> None:
-    battery = world.robot(fault.robot).battery
-    battery.level = min(battery.level, fault.level)
-
-
-def _cut_current(world: FaultyWorld, fault: Fault) -> Undo:
-    world.dead_docks.add(fault.dock)
-    return partial(world.dead_docks.discard, fault.dock)
-
-
-def _close_door(world: FaultyWorld, fault: Fault) -> Undo:
-    if not world.doors[fault.door]:
-        return lambda: None
-    why = world.move_door(fault.door, opened=False)
-    if why is not None:
-        raise Refused(why)
-    return partial(world.move_door, fault.door, opened=True)
-
-
-def _jam_door(world: FaultyWorld, fault: Fault) -> Undo:
-    world.stuck_doors[fault.door] = _chance(world, fault)
-    return partial(world.stuck_doors.pop, fault.door, None)
-
-
-def _let_come(world: FaultyWorld, fault: Fault) -> Undo:
-    assert fault.person is not None
-    world.add_person(fault.person)
-    return partial(world.remove_person, fault.name)
-
-
-_EFFECTS: dict[str, Callable[[FaultyWorld, Fault], Undo | None]] = {
-    "wheel_slip": _slip,
-    "blocked_wheel": _block,
-    "kidnapped_robot": _kidnap,
-    "battery_drop": _drop,
-    "dead_dock": _cut_current,
-    "closed_door": _close_door,
-    "stuck_door": _jam_door,
-    "person": _let_come,
-}
+        return self._happen(fault)

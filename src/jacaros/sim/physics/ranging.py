@@ -24,7 +24,7 @@ class Laser:
             between two beams, in radians.
     """
 
-    def __init__(self, settings: LaserSettings, segments: Sequence[Segment], seed: str) -> None:
+    def __init__(self, settings: LaserSettings, seed: str, segments: Sequence[Segment] = ()) -> None:
         self.settings, self.segments = settings, segments
         self._count = settings.beams_per_turn
         self.angle_increment = TWO_PI / self._count

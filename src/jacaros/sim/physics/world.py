@@ -7,6 +7,7 @@ and seed and the same commands at the same steps give the same run, to the last 
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from jacaros.sim.data.world import Dock, PersonDescription, WorldDescription
 from jacaros.sim.files.faults import read_faults
 from jacaros.sim.files.world import load_world, read_world
 from jacaros.sim.physics.dirt import Cleaning
-from jacaros.sim.physics.faults import Faults
+from jacaros.sim.physics.faults import Faults, Undo
 from jacaros.sim.physics.people import People, Person
 from jacaros.sim.physics.ranging import Laser
 from jacaros.sim.physics.robot import Robot
@@ -42,6 +43,7 @@ class World:
         description: the description that it was made from.
         time: seconds since the start of the world.
         robots: robots by name, in the order of the file.
+        lasers: the laser of each robot, by name.
         doors: whether each door, by name, is open.
         segments: all walls and closed doors.
         cleaning: the dirt, and the running cleaning tools.
@@ -67,8 +69,11 @@ class World:
         self.stuck_doors: dict[str, Callable[[], bool]] = {}
         for robot in self._row:
             robot.dead_docks = self.dead_docks
-        self._lasers: dict[str, Laser] = {}
         self.doors = {door.name: door.open for door in description.doors}
+        self.lasers = {
+            name: Laser(robot.description.laser, f"{self.description.seed}/{name}/laser")
+            for name, robot in self.robots.items()
+        }
         self._put_up_walls()
         self._people = People(self.description.people, self._note_person)
         self.people = self._people.by_name
@@ -81,7 +86,9 @@ class World:
         self._next_sample = 0.0
         self._move_listeners: tuple[Callable[[], None], ...] = ()
         self._sample_robots(all_of_them=True)
-        self.faults = Faults(self, faults)
+        self.faults = Faults(
+            faults, self.description.seed, lambda: self.time, self._let_happen, self._note_fault
+        )
         self.faults.step(self.time)
 
     @classmethod
@@ -163,7 +170,7 @@ class World:
         self.segments = self.description.segments + tuple(door.segment for door in self._closed)
         radius = max((robot.radius for robot in self.description.robots), default=0.17)
         self._walls = WallIndex(self.segments, radius)
-        for laser in self._lasers.values():
+        for laser in self.lasers.values():
             laser.segments = self.segments
 
     def move_door(self, name: str, opened: bool) -> str | None:
@@ -194,7 +201,7 @@ class World:
     def scan(self, name: str) -> list[float]:
         """Return the ranges that a robot's laser measures now, in metres."""
         robot = self.robot(name)
-        return self.laser(name).scan(robot.x, robot.y, robot.yaw, self.others(robot))
+        return self.lasers[name].scan(robot.x, robot.y, robot.yaw, self.others(robot))
 
     def others(self, robot: Robot) -> list[Circle]:
         """Return all other robots, people and obstacles (metres): what *robot*'s laser sees unless a wall hides it."""
@@ -218,14 +225,6 @@ class World:
             if apart <= DOCK_SEEN_FROM and not way.crosses(*self.segments):
                 seen.append((apart, dock))
         return min(seen, key=lambda pair: pair[0])[1] if seen else None
-
-    def laser(self, name: str) -> Laser:
-        """Return a robot's laser, created on first use."""
-        if name not in self._lasers:
-            settings = self.robot(name).description.laser
-            seed = f"{self.description.seed}/{name}/laser"
-            self._lasers[name] = Laser(settings, self.segments, seed)
-        return self._lasers[name]
 
     def add_person(self, description: PersonDescription) -> Person:
         """Add a person at the first point of the path.
@@ -400,8 +399,47 @@ class World:
     def _note_place(self, kind: str, x: float, y: float, data: dict[str, Any]) -> None:
         self._truth.record_event(Event(self.time, "", kind, x, y, 0.0, data))
 
-    def note_fault(self, name: str, data: dict[str, Any]) -> None:
-        """Record that a fault starts or ends; *name* is the affected robot, "" for none."""
+    def _let_happen(self, fault: Fault) -> Undo | None:
+        """Let a fault happen, and return what ends it; None for faults without duration.
+
+        Raises:
+            UsageError: it cannot happen now.
+        """
+        seed = self.description.seed
+        match fault.kind:
+            case "wheel_slip":
+                robot, draw = self.robot(fault.robot), fault.draw(seed, "slip")
+                robot.grip = lambda: max(0.0, 1.0 - 2.0 * fault.share * draw())
+                return partial(setattr, robot, "grip", None)
+            case "blocked_wheel":
+                robot = self.robot(fault.robot)
+                robot.blocked_wheel = fault.wheel
+                return partial(setattr, robot, "blocked_wheel", "")
+            case "kidnapped_robot":
+                self.robot(fault.robot).put_down(fault.pose)
+            case "battery_drop":
+                battery = self.robot(fault.robot).battery
+                battery.level = min(battery.level, fault.level)
+            case "dead_dock":
+                self.dead_docks.add(fault.dock)
+                return partial(self.dead_docks.discard, fault.dock)
+            case "closed_door":
+                if not self.doors[fault.door]:
+                    return lambda: None
+                why = self.move_door(fault.door, opened=False)
+                if why is not None:
+                    raise UsageError(why)
+                return partial(self.move_door, fault.door, opened=True)
+            case "stuck_door":
+                self.stuck_doors[fault.door] = fault.chance(seed)
+                return partial(self.stuck_doors.pop, fault.door, None)
+            case "person":
+                assert fault.person is not None
+                self.add_person(fault.person)
+                return partial(self.remove_person, fault.name)
+        return None
+
+    def _note_fault(self, name: str, data: dict[str, Any]) -> None:
         if name:
             self._note(self.robot(name), "fault", data)
         else:
