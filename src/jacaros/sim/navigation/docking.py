@@ -1,10 +1,14 @@
-"""Docking and undocking."""
+"""Docking and undocking, and their actions: Nav2's, the Kobuki's, and the Create 3's with its short motions."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from jacaros.plane.pose import Placement, distance
+from jacaros.ros.action import Accept, GoalStatus
 from jacaros.sim.data.world import Dock
+from jacaros.sim.graph.frames import ODOMETRY, FrameUnknown, on_map, pose_fault, stamped_pose
+from jacaros.sim.graph.on_graph import Execute, Goal
 from jacaros.sim.navigation.driver import STOP
 from jacaros.sim.navigation.navigator import PERIOD, Navigator
 from jacaros.sim.navigation.planner import GOAL_MARGIN, NavigationFailure
@@ -21,11 +25,16 @@ _CHARGES_WITHIN = 2.0
 _UNDOCKED = 0.12
 _BACK_SPEED = 0.2
 
+_DOCK_AT = 0.5
+"""Tolerance in metres between a dock and the pose in a goal."""
+_KOBUKI = {1: "GET_STREAM", 2: "SCAN", 3: "ALIGNED", 4: "DOCKED_IN"}
+"""The states of the Kobuki's docking that are nearest to those of Nav2."""
+
 TellState = Callable[[int], object]
 
 
 class Docking:
-    """Docks and undocks one robot.
+    """Docks and undocks one robot, and serves it.
 
     Args:
         navigator: drives the robot.
@@ -33,12 +42,13 @@ class Docking:
 
     def __init__(self, navigator: Navigator) -> None:
         self.navigator = navigator
+        self._at = navigator.at
 
     @property
     def docked(self) -> bool:
         """Whether the charging contacts touch a dock."""
-        self.navigator.time.catch_up()
-        return self.navigator.robot.dock is not None
+        self._at.time.catch_up()
+        return self._at.robot.dock is not None
 
     def dock_called(self, name: str) -> Dock:
         """Return the dock with that name.
@@ -46,7 +56,7 @@ class Docking:
         Raises:
             NavigationFailure: the name is unknown.
         """
-        docks = self.navigator.time.world.description.docks
+        docks = self._at.time.world.description.docks
         for dock in docks:
             if dock.name == name:
                 return dock
@@ -63,15 +73,15 @@ class Docking:
         def apart(dock: Dock) -> float:
             return distance((place.x, place.y), (dock.pose.x, dock.pose.y))
 
-        near = [dock for dock in self.navigator.time.world.description.docks if apart(dock) <= within]
+        near = [dock for dock in self._at.time.world.description.docks if apart(dock) <= within]
         if not near:
             raise NavigationFailure(DOCK_NOT_VALID, f"no dock at ({place.x:.2f}, {place.y:.2f})")
         return min(near, key=apart)
 
     def visible_dock(self) -> Dock | None:
         """Return the nearest dock that the robot detects from its pose."""
-        self.navigator.time.catch_up()
-        return self.navigator.time.world.visible_dock(self.navigator.robot)
+        self._at.time.catch_up()
+        return self._at.time.world.visible_dock(self._at.robot)
 
     async def dock(self, dock: Dock, stage: bool, tell: TellState, limit: float = math.inf) -> None:
         """Drive to the staging pose (if *stage*, within *limit* seconds), into the dock, and wait for the charging current.
@@ -80,7 +90,7 @@ class Docking:
             NavigationFailure: docking failed; with the codes of this file.
             Overtaken: another goal has claimed the wheels.
         """
-        robot = self.navigator.robot
+        robot = self._at.robot
         if self.docked and robot.dock is dock:
             return
         if stage:
@@ -104,10 +114,10 @@ class Docking:
             NavigationFailure: the way is blocked.
             Overtaken: another goal has claimed the wheels.
         """
-        dock = self.navigator.robot.dock
+        dock = self._at.robot.dock
         if not self.docked or dock is None:
             return
-        clock = self.navigator.time.clock
+        clock = self._at.time.clock
         over = clock.now() + limit
         with self.navigator.wheels.claimed() as claim:
             for sign in (-1.0, 1.0):
@@ -150,3 +160,160 @@ class Docking:
     def _room(self, place: Placement) -> bool:
         planner = self.navigator.planner
         return planner.grid.clearance_at(place.x, place.y) >= planner.radius + GOAL_MARGIN
+
+    def offer_nav2(self) -> None:
+        """``/dock_robot`` and ``/undock_robot``."""
+        self._serve(
+            "/dock_robot",
+            "nav2_msgs/action/DockRobot",
+            self._dock_robot,
+            lambda goal: None if goal.use_dock_id else pose_fault(goal.dock_pose.pose),
+        )
+        self._serve("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
+
+    def offer_create3(self) -> None:
+        """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
+        self._create3("/dock", "Dock", self._dock, self._cannot_dock)
+        self._create3("/undock", "Undock", self._undock, self._cannot_undock)
+        self._create3("/drive_distance", "DriveDistance", self._drive_distance)
+        self._create3("/rotate_angle", "RotateAngle", self._rotate_angle)
+
+    def offer_kobuki(self) -> None:
+        """``/dock_drive_action``."""
+        self._serve(
+            "/dock_drive_action",
+            "kobuki_msgs/action/AutoDocking",
+            self._auto_docking,
+            overtaken=GoalStatus.CANCELED,
+        )
+
+    def _serve(
+        self,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        accept: Accept | None = None,
+        overtaken: GoalStatus = GoalStatus.ABORTED,
+    ) -> None:
+        """Serve an action; a failure sets those of the fields below that its result has."""
+
+        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+            try:
+                return await execute(goal)
+            except NavigationFailure as failure:
+                goal.abort(
+                    failure.text,
+                    success=False,
+                    error_code=failure.code,
+                    is_docked=self.docked,
+                    text=failure.text,
+                    pose=self._pose(),
+                )
+
+        self._at.action(name, type_name, carry_out, accept, overtaken)
+
+    def _create3(
+        self, name: str, action: str, execute: Execute, cannot: Callable[[], str | None] = lambda: None
+    ) -> None:
+        """Serve an action that, like a Create 3, rejects impossible goals, and a second goal while one is running."""
+        running = 0
+
+        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+            nonlocal running
+            running += 1
+            try:
+                return await execute(goal)
+            finally:
+                running -= 1
+
+        def accept(request: Any) -> str | None:
+            return f"{name} is running; cancel that goal first" if running else cannot()
+
+        self._serve(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
+
+    async def _dock_robot(self, goal: Goal) -> Mapping[str, Any]:
+        clock = self._at.time.clock
+        began = clock.now()
+
+        def tell(state: int) -> None:
+            goal.feedback(state=state, docking_time=clock.now() - began)
+
+        request = goal.request
+        if request.use_dock_id:
+            dock = self.dock_called(request.dock_id)
+        else:
+            dock = self.dock_near(await self._place(request.dock_pose), _DOCK_AT)
+        limit = request.max_staging_time or math.inf
+        await self.dock(dock, request.navigate_to_staging_pose, tell, limit)
+        return {"success": True}
+
+    async def _place(self, stamped: Any) -> Placement:
+        self.navigator.pose()
+        try:
+            return await on_map(self._at, stamped)
+        except FrameUnknown as problem:
+            raise NavigationFailure(FAILED_TO_STAGE, str(problem)) from None
+
+    async def _undock_robot(self, goal: Goal) -> Mapping[str, Any]:
+        if not self.docked:
+            # Nav2 has nothing to do, and aborts without a code.
+            raise NavigationFailure(0, "the robot is not docked")
+        await self.undock(goal.request.max_undocking_time or math.inf)
+        return {"success": True}
+
+    def _cannot_dock(self) -> str | None:
+        if self.docked:
+            return "the robot is already docked"
+        return "no dock in sight" if self.visible_dock() is None else None
+
+    def _cannot_undock(self) -> str | None:
+        return None if self.docked else "the robot is not docked"
+
+    def _dock_in_sight(self) -> Dock:
+        dock = self.visible_dock()
+        if dock is None:  # the robot was pushed after the goal was accepted
+            raise NavigationFailure(0, "no dock in sight")
+        return dock
+
+    async def _dock(self, goal: Goal) -> Mapping[str, Any]:
+        goal.feedback(sees_dock=self.visible_dock() is not None)
+        await self.dock(self._dock_in_sight(), True, lambda state: goal.feedback(sees_dock=True))
+        return {"is_docked": self.docked}
+
+    async def _undock(self, goal: Goal) -> Mapping[str, Any]:
+        await self.undock()
+        await self.turn_away()
+        return {"is_docked": self.docked}
+
+    async def _auto_docking(self, goal: Goal) -> Mapping[str, Any]:
+        dock = self._dock_in_sight()
+        await self.dock(
+            dock, True, lambda state: goal.feedback(state=_KOBUKI.get(state, "SCAN"), text=dock.name)
+        )
+        return {"text": f"docked in {dock.name}"}
+
+    async def _drive_distance(self, goal: Goal) -> Mapping[str, Any]:
+        request = goal.request
+        speed = min(max(request.max_translation_speed, 0.02), self._at.robot.description.limits.speed)
+        with self.navigator.wheels.claimed() as claim:
+            made = await self.navigator.straight(
+                claim, request.distance, speed, lambda left: goal.feedback(remaining_travel_distance=left)
+            )
+        return self._moved(made, request.distance, 0.02, "m")
+
+    async def _rotate_angle(self, goal: Goal) -> Mapping[str, Any]:
+        request = goal.request
+        rate = min(max(request.max_rotation_speed, 0.05), self._at.robot.description.limits.turn_rate)
+        with self.navigator.wheels.claimed() as claim:
+            made = await self.navigator.rotate(
+                claim, request.angle, rate, lambda left: goal.feedback(remaining_angle_travel=left)
+            )
+        return self._moved(made, request.angle, 0.05, "rad")
+
+    def _moved(self, made: float, wanted: float, tolerance: float, unit: str) -> Mapping[str, Any]:
+        if abs(made) < abs(wanted) - tolerance:
+            raise NavigationFailure(0, f"blocked after {abs(made):.2f} {unit}")
+        return {"pose": self._pose()}
+
+    def _pose(self) -> Any:
+        return stamped_pose(self._at, self._at.robot.odometry.placement, ODOMETRY)

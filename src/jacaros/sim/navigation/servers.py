@@ -14,7 +14,6 @@ from jacaros.ros.backend import Sample
 from jacaros.sim.data.grid import Grid
 from jacaros.sim.graph.frames import MAP, POSE, FrameUnknown, on_map, pose_fault, stamped_pose
 from jacaros.sim.graph.on_graph import Goal, Overtaken, RobotOnGraph
-from jacaros.sim.navigation.dock_servers import DockServers
 from jacaros.sim.navigation.docking import Docking
 from jacaros.sim.navigation.navigator import Navigator
 from jacaros.sim.navigation.planner import NO_POSES, TF_ERROR, NavigationFailure, through_poses
@@ -40,7 +39,7 @@ class RobotNavigation:
         self._navigator = Navigator(at, grid)
         self._simple: asyncio.Task[None] | None = None
         self._running: str | None = None
-        docks = DockServers(Docking(self._navigator))
+        docks = Docking(self._navigator)
         if at.backend.ros_version == 2:
             self._offer_nav2()
             docks.offer_nav2()
