@@ -23,6 +23,7 @@ from jacaros.artifacts.registry import BUILT_IN
 from jacaros.artifacts.robots.velocity import WheeledArtifact
 from jacaros.cli.main import COMMANDS, jacaros
 from jacaros.files.entries import declared_entries
+from jacaros.plane.shapes import Segment
 from jacaros.sim.data import robot, world
 from jacaros.sim.data.faults import Fault
 
@@ -56,6 +57,7 @@ DESCRIBED: dict[str, Any] = {
     "Laser": robot.LaserSettings(),
     "Navigation": robot.NavigationSettings(),
     "Tool": robot.CleaningTool("", ()),
+    "Door": world.Door("", Segment(0.0, 0.0, 1.0, 0.0)),
     "Object": world.ObjectDescription("", 0.0, 0.0),
     "Person": world.PersonDescription("", ()),
     "Fault": Fault("", ""),

@@ -50,12 +50,8 @@ FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
     "task": ("task", "room"),
     "tool_started": ("tool",),
     "tool_stopped": ("tool",),
-    "cleaned": (
-        "room",
-        "dirt",
-        "grams",
-        "percent",
-    ),  # the rest, at each whole percent and when the tool stops
+    # The rest, at each whole percent and when the tool stops:
+    "cleaned": ("room", "dirt", "grams", "percent"),
     "fell": (),  # down a cliff
     "lights": ("colors",),
     "sound": ("notes", "append"),

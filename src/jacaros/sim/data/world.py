@@ -72,9 +72,9 @@ class Dock:
 class Door:
     """A piece of wall that exists while the door is closed; ``open`` is the initial state."""
 
-    name: str
-    segment: Segment
-    open: bool = False
+    name: Annotated[str, Entry("text", "unique name, of letters, digits and _")]
+    segment: Annotated[Segment, Entry("`[[x, y], [x, y]]` m", "where it closes")]
+    open: Annotated[bool, flag("open at the start")] = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,10 +14,11 @@ Lengths are metres, dirt is in grams::
 import itertools
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import Any
 
-from jacaros.files.entries import read, values
+from jacaros.files.entries import Reader, read, values
 from jacaros.files.yaml import Node
 from jacaros.plane.contact import WallIndex, push_out_rectangle
 from jacaros.plane.pose import Pose
@@ -116,15 +117,24 @@ def read_color(node: Node, _: object) -> str:
     return text
 
 
-def read_objects(node: Node, _: object) -> tuple[ObjectDescription, ...]:
-    """Read all objects, in the order of the file; their names must differ."""
-    found: list[ObjectDescription] = []
-    for item in node.sequence():
-        each = read(item, ObjectDescription("", 0.0, 0.0), color=read_color)
-        if any(other.name == each.name for other in found):
-            item.wrong(f"duplicate object '{each.name}'", "give it another name")
-        found.append(each)
-    return tuple(found)
+def read_object(node: Node) -> ObjectDescription:
+    """Read one object that grippers can carry."""
+    return read(node, ObjectDescription("", 0.0, 0.0), color=read_color)
+
+
+def named(what: str, read_one: Callable[[Node], Any]) -> Reader:
+    """Return the reader of a list of things, in the order of the file, whose names must differ."""
+
+    def read_all(node: Node, _: object) -> tuple[Any, ...]:
+        found: list[Any] = []
+        for item in node.sequence():
+            each = read_one(item)
+            if any(other.name == each.name for other in found):
+                item.wrong(f"duplicate {what} '{each.name}'", "give it another name")
+            found.append(each)
+        return tuple(found)
+
+    return read_all
 
 
 _TOUCHING = 0.001

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from jacaros.files.entries import Reader, declared_entries, values
+from jacaros.files.entries import Reader, declared_entries, read, values
 from jacaros.files.texts import is_file, suggestion
 from jacaros.files.yaml import Node, Problem, read_document, top_keys
 from jacaros.plane.pose import Pose
@@ -20,9 +20,10 @@ from jacaros.sim.data.robot import RobotDescription
 from jacaros.sim.data.world import Dock, Door, Furniture, UnknownWorld, WorldDescription, WorldError
 from jacaros.sim.files.floor import (
     check_people,
+    named,
     place_problem,
     read_box,
-    read_objects,
+    read_object,
     read_person,
     read_rectangle,
     read_rooms,
@@ -155,9 +156,9 @@ def _world(document: Node, folder: Path) -> WorldDescription:
             usual,
             rooms=read_rooms,
             docks=_docks,
-            doors=_doors,
+            doors=named("door", _door),
             cliffs=_each(read_rectangle),
-            objects=read_objects,
+            objects=named("object", read_object),
             robots=_robots,
             people=_each(read_person),
         ),
@@ -265,23 +266,21 @@ def _docks(node: Node, _: object) -> tuple[Dock, ...]:
     return tuple(docks)
 
 
-def _doors(node: Node, _: object) -> tuple[Door, ...]:
-    doors: list[Door] = []
-    for item in node.sequence():
-        entries = item.mapping("name", "segment", "open", required=("name", "segment"))
-        if len(entries.keys() & {"name", "segment"}) < 2:
-            continue
-        name, opened = entries["name"].text(), "open" in entries and entries["open"].truth()
-        if not _DOOR_NAME.fullmatch(name):
-            entries["name"].wrong(
-                f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name"
-            )
-        if any(door.name == name for door in doors):
-            entries["name"].wrong(f"duplicate door '{name}'", "give it another name")
-        pieces: list[Segment] = []
-        _straight(entries["segment"], pieces)
-        doors.extend(Door(name, piece, opened) for piece in pieces)
-    return tuple(doors)
+def _door(node: Node) -> Door:
+    return read(node, Door("", Segment(0.0, 0.0, 1.0, 0.0)), name=_door_name, segment=_segment)
+
+
+def _door_name(node: Node, _: object) -> str:
+    name = node.text()
+    if not _DOOR_NAME.fullmatch(name):
+        node.wrong(f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name")
+    return name
+
+
+def _segment(node: Node, usual: Segment) -> Segment:
+    pieces: list[Segment] = []
+    _straight(node, pieces)
+    return pieces[0] if pieces else usual
 
 
 def _robots(node: Node, _: object) -> tuple[RobotDescription, ...]:
