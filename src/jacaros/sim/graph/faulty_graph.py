@@ -13,9 +13,10 @@ from typing import Any, cast
 
 from jacaros.errors import UsageError
 from jacaros.files.texts import suggestion
-from jacaros.ros.action import Abort, ActionServer, Execute, ServerGoal
+from jacaros.ros.action import Abort, ActionPolicy, ActionServer, Execute, ServerGoal
 from jacaros.ros.backend import Backend, Publisher, Sample, Subscription
 from jacaros.ros.message import field_names
+from jacaros.ros.qos import DEFAULT_QOS, QoS
 from jacaros.runtime.clock import Clock
 from jacaros.sim.physics.faults import Disturbance, Faults
 
@@ -84,39 +85,32 @@ class FaultyGraph:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._backend, name)
 
-    def publisher(self, topic: str, *arguments: Any, **keywords: Any) -> Publisher:
+    def publisher(self, topic: str, type_name: str, qos: QoS = DEFAULT_QOS) -> Publisher:
         """Make a publisher, a faulty one if the topic has faults."""
         self._made.add(topic)
-        publisher = self._backend.publisher(topic, *arguments, **keywords)
+        publisher = self._backend.publisher(topic, type_name, qos)
         if topic not in self._faults.topics:
             return publisher
-        return cast(Publisher, _FaultyPublisher(publisher, topic, self._pass_on))
+        return cast(Publisher, _FaultyPublisher(publisher, partial(self._pass_on, topic, publisher.publish)))
 
-    def subscription(
-        self, topic: str, type_name: str, callback: Callable[[Sample], None], *arguments: Any, **keywords: Any
-    ) -> Subscription:
+    def subscription(self, topic: str, type_name: str, callback: Callable[[Sample], None]) -> Subscription:
         """Make a subscription, a faulty one if the topic has faults."""
         self._made.add(topic)
-        if topic not in self._faults.topics:
-            return self._backend.subscription(topic, type_name, callback, *arguments, **keywords)
 
         def hear(sample: Sample) -> None:
-            self._pass_on(topic, sample.message, lambda message: callback(replace(sample, message=message)))
+            self._pass_on(topic, lambda message: callback(replace(sample, message=message)), sample.message)
 
-        return self._backend.subscription(topic, type_name, hear, *arguments, **keywords)
+        return self._backend.subscription(
+            topic, type_name, hear if topic in self._faults.topics else callback
+        )
 
     def action_server(
-        self,
-        action: str,
-        type_name: str,
-        execute: Execute,
-        *arguments: Any,
-        **keywords: Any,
+        self, action: str, type_name: str, execute: Execute, policy: ActionPolicy
     ) -> ActionServer:
         """Offer an action, a faulty one if its goals have faults."""
         self._offered.add(action)
         if action not in self._faults.actions:
-            return self._backend.action_server(action, type_name, execute, *arguments, **keywords)
+            return self._backend.action_server(action, type_name, execute, policy)
 
         async def carry_out(goal: ServerGoal) -> Any:
             aborted: list[str] = []
@@ -136,7 +130,7 @@ class FaultyGraph:
             finally:
                 end()
 
-        return self._backend.action_server(action, type_name, carry_out, *arguments, **keywords)
+        return self._backend.action_server(action, type_name, carry_out, policy)
 
     def check(self) -> None:
         """Check, after the world has joined the graph, that the faults concern only its topics and actions.
@@ -148,7 +142,7 @@ class FaultyGraph:
             _check_name(fault.name, "topic", fault.topic, self._made)
             _check_name(fault.name, "action", fault.action, self._offered)
 
-    def _pass_on(self, topic: str, message: Any, send: Callable[[Any], None]) -> None:
+    def _pass_on(self, topic: str, send: Callable[[Any], None], message: Any) -> None:
         passing: Sequence[Late] = ((0.0, message),)
         for fault in self._faults.disturbances(topic):
             passing = [(late + later, out) for late, each in passing for later, out in disturbed(fault, each)]
@@ -168,14 +162,9 @@ def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:
 class _FaultyPublisher:
     """A publisher whose messages are subject to faults."""
 
-    def __init__(
-        self, publisher: Publisher, topic: str, pass_on: Callable[[str, Any, Callable[[Any], None]], None]
-    ) -> None:
-        self._publisher, self._topic, self._pass_on = publisher, topic, pass_on
+    def __init__(self, publisher: Publisher, publish: Callable[[Any], None]) -> None:
+        self._publisher = publisher
+        self.publish = publish
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._publisher, name)
-
-    def publish(self, message: Any) -> None:
-        """Publish a message as the faults change it, if they do not drop it."""
-        self._pass_on(self._topic, message, self._publisher.publish)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from jacaros.plane.pose import Placement, Point, distance
@@ -188,9 +189,8 @@ class Trip:
         free = self._way(())
         if not self._others:
             return free
-        try:
-            way = self._way(self._others)
-        except NavigationFailure:
+        way = self._way_now()
+        if way is None:
             # Others may be gone when the robot arrives; walls will not.
             return self._way(())
         self._note_detour(way, Route(free).length)
@@ -202,9 +202,8 @@ class Trip:
         # Finding that there is no path takes longest; do not repeat it while the obstacles are unchanged.
         if self._hopeless is not None and _stand_still(self._hopeless, self._others):
             return
-        try:
-            way = self._way(self._others)
-        except NavigationFailure:
+        way = self._way_now()
+        if way is None:
             self._hopeless = self._others
             return
         self._hopeless = None
@@ -222,23 +221,24 @@ class Trip:
         if not all(self.navigator.perception.covers((x, y), self._pose) for x, y, _ in self._avoided):
             return
         vias = self._vias
-        try:
-            way = self._way(self._others)
-        except NavigationFailure:
-            return
-        if Route(way).length < self._route.remaining - _DETOUR:
+        way = self._way_now()
+        if way is not None and Route(way).length < self._route.remaining - _DETOUR:
             self._avoided = []
             self._drive_along(way)
         else:
             self._vias = vias
 
+    def _way_now(self) -> list[Point] | None:
+        """Return the path around the obstacles; None if there is none."""
+        with suppress(NavigationFailure):
+            return self._way(self._others)
+        return None
+
     def _way(self, others: Sequence[Circle]) -> list[Point]:
         """Return the path through all remaining goals, keeping well away from *others* if there is room."""
         if others:
-            try:
+            with suppress(NavigationFailure):
                 return self._way_around(others, _ROOMS[0])
-            except NavigationFailure:
-                pass
         return self._way_around(others, _ROOMS[1])
 
     def _way_around(self, others: Sequence[Circle], room: float) -> list[Point]:
