@@ -6,6 +6,7 @@ import random
 import pytest
 from sensor_lab import heard
 
+from jacaros.plane.pose import Placement
 from jacaros.plane.shapes import Circle, Segment
 from jacaros.sim.physics.ranging import FIELD, echo
 
@@ -74,7 +75,7 @@ def test_the_echo_is_that_of_the_nearest_point_in_the_cone() -> None:
     for _ in range(40):
         segments = [Segment(*(draw.uniform(-3, 3) for _ in range(4))) for _ in range(2)]
         circles = [(draw.uniform(0.5, 3), draw.uniform(-2, 2), 0.3)]
-        found, expected = echo(segments, circles, 0.0, 0.0, 0.0), by_many_rays(segments, circles)
+        found, expected = echo(segments, circles, Placement(0.0, 0.0)), by_many_rays(segments, circles)
         heard_something += found < math.inf
         assert found == pytest.approx(expected, abs=0.01)
     assert heard_something > 10

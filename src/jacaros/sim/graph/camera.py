@@ -71,7 +71,7 @@ class _View:
     def _look(self) -> list[list[Hit]]:
         if self._time != self._world.time:
             self._time = self._world.time
-            self._seen = columns(self._looking_at(), self._discs(), *self._at.robot.pose)
+            self._seen = columns(self._looking_at(), self._discs(), self._at.robot.placement)
         return self._seen
 
     def _looking_at(self) -> list[tuple[Segment, Look]]:

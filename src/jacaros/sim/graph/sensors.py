@@ -100,7 +100,7 @@ def _imu(at: RobotOnGraph) -> Tick:
 def _sonar(at: RobotOnGraph, message: Any) -> None:
     """The distance to the nearest thing in a cone of 30 degrees ahead, in metres."""
     world, robot = at.time.world, at.robot
-    found = echo(world.segments, world.others(robot), robot.x, robot.y, robot.yaw)
+    found = echo(world.segments, world.others(robot), robot.placement)
     message.radiation_type = constant(message, "ULTRASOUND")
     message.field_of_view, message.min_range, message.max_range = FIELD, RANGE_MIN, RANGE_MAX
     message.range = found if found <= RANGE_MAX else math.inf  # REP 117: no echo

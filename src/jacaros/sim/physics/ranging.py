@@ -9,6 +9,7 @@ import math
 import random
 from collections.abc import Iterable, Sequence
 
+from jacaros.plane.pose import Placement
 from jacaros.plane.shapes import Circle, Segment
 from jacaros.plane.trigonometry import PI, TWO_PI, radians, sine_cosine
 from jacaros.sim.data.robot import LaserSettings
@@ -114,21 +115,13 @@ RANGE_MIN, RANGE_MAX = 0.02, 4.0
 _EDGE_SINE, _EDGE_COSINE = sine_cosine(0.5 * FIELD)
 
 
-def echo(segments: Iterable[Segment], circles: Iterable[Circle], x: float, y: float, yaw: float) -> float:
+def echo(segments: Iterable[Segment], circles: Iterable[Circle], sonar: Placement) -> float:
     """Return the distance in metres from a sonar to the nearest point in its cone, ``inf`` for none."""
-    sine, cosine = sine_cosine(yaw)
-    nearest = math.inf
-    for ax, ay, bx, by in segments:
-        ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
-        found = _of_segment(
-            cosine * ax + sine * ay, cosine * ay - sine * ax, cosine * bx + sine * by, cosine * by - sine * bx
-        )
-        nearest = found if found < nearest else nearest
-    for circle_x, circle_y, radius in circles:
-        cx, cy = circle_x - x, circle_y - y
-        found = _of_circle(cosine * cx + sine * cy, abs(cosine * cy - sine * cx), radius)
-        nearest = found if found < nearest else nearest
-    return nearest
+    found = [_of_segment(*sonar.local(ax, ay), *sonar.local(bx, by)) for ax, ay, bx, by in segments]
+    for x, y, radius in circles:
+        ahead, left = sonar.local(x, y)
+        found.append(_of_circle(ahead, abs(left), radius))
+    return min(found, default=math.inf)
 
 
 def _of_segment(ax: float, ay: float, bx: float, by: float) -> float:

@@ -8,8 +8,10 @@ import math
 import sys
 from array import array
 from collections.abc import Iterable
+from operator import itemgetter
 from typing import Final, NamedTuple
 
+from jacaros.plane.pose import Placement
 from jacaros.plane.shapes import Circle, Segment
 from jacaros.plane.trigonometry import radians, sine_cosine
 
@@ -48,35 +50,17 @@ Hit = tuple[float, Look]
 
 
 def columns(
-    walls: Iterable[tuple[Segment, Look]],
-    discs: Iterable[tuple[Circle, Look]],
-    x: float,
-    y: float,
-    yaw: float,
+    walls: Iterable[tuple[Segment, Look]], discs: Iterable[tuple[Circle, Look]], robot: Placement
 ) -> list[list[Hit]]:
     """Return the hits of the ray of each column, farthest first."""
-    sine, cosine = sine_cosine(yaw)
     hits: list[list[Hit]] = [[] for _ in range(WIDTH)]
     for (ax, ay, bx, by), look in walls:
-        ax, ay, bx, by = ax - x, ay - y, bx - x, by - y
-        _meet_wall(
-            hits,
-            look,
-            cosine * ax + sine * ay,
-            cosine * ay - sine * ax,
-            cosine * bx + sine * by,
-            cosine * by - sine * bx,
-        )
-    for (circle_x, circle_y, radius), look in discs:
-        cx, cy = circle_x - x, circle_y - y
-        _meet_disc(hits, look, cosine * cx + sine * cy, cosine * cy - sine * cx, radius)
+        _meet_wall(hits, look, *robot.local(ax, ay), *robot.local(bx, by))
+    for (x, y, radius), look in discs:
+        _meet_disc(hits, look, *robot.local(x, y), radius)
     for met in hits:
-        met.sort(key=_depth, reverse=True)
+        met.sort(key=itemgetter(0), reverse=True)
     return hits
-
-
-def _depth(hit: Hit) -> float:
-    return hit[0]
 
 
 def _meet_wall(hits: list[list[Hit]], look: Look, a: float, a_left: float, b: float, b_left: float) -> None:
