@@ -158,29 +158,20 @@ SONAR: Final = frozenset(_names("sonar"))
 
 
 @dataclass(frozen=True, slots=True)
-class OwnTopic:
-    """A topic of the user's robot that the simulator does not know.
+class Added:
+    """A topic or a service of the user's robot that the simulator does not know.
 
     Attributes:
         name: below the robot's namespace; absolute with a leading slash.
-        type_name: message type.
-        message: fields of the message that is published.
+        type_name: type of the messages or of the service.
+        fields: fields of the published message or of the response.
         rate: messages per second; 0 for a topic that the robot subscribes to.
     """
 
     name: str
     type_name: str
-    message: Mapping[str, Any] = field(default_factory=dict)
+    fields: Mapping[str, Any] = field(default_factory=dict)
     rate: float = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class OwnService:
-    """A service of the user's robot that the simulator does not know, and the fields of its response."""
-
-    name: str
-    type_name: str
-    response: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,8 +187,8 @@ class Interface:
 
     lacking: frozenset[str] = frozenset()
     renamed: Mapping[str, str] = field(default_factory=dict)
-    topics: tuple[OwnTopic, ...] = ()
-    services: tuple[OwnService, ...] = ()
+    topics: tuple[Added, ...] = ()
+    services: tuple[Added, ...] = ()
 
     def name_of(self, name: str, prefix: str = "") -> str | None:
         """Return the absolute name for a name of the simulator; None if the robot does not have it.

@@ -17,7 +17,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from jacaros.files.entries import declared_entries, read, values
 from jacaros.files.texts import suggestion
@@ -30,11 +29,10 @@ from jacaros.sim.data.robot import (
     SERVICES,
     TOPICS,
     USUAL,
+    Added,
     CleaningTool,
     Interface,
     NavigationSettings,
-    OwnService,
-    OwnTopic,
     RobotDescription,
 )
 
@@ -121,6 +119,7 @@ def _removes(node: Node, _: object) -> tuple[str, ...]:
 SECTIONS = ("topics", "services", "actions")
 _KNOWN: Mapping[str, tuple[str, ...]] = {"topics": TOPICS, "services": SERVICES, "actions": ACTIONS}
 _TYPES: Mapping[str, str] = {"topics": "msg", "services": "srv"}
+_KEYS = {"topics": ("type", "message", "rate", "receive"), "services": ("type", "response")}
 _NAME = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 _FASTEST = 20.0
 """Highest rate of an added topic, in messages per second: that of the world's ticks."""
@@ -129,8 +128,7 @@ _FASTEST = 20.0
 def read_interface(entries: Mapping[str, Node], usual: Interface) -> Interface:
     """Read the names of one robot; *usual* are those of its kind."""
     renamed: dict[str, str] = {}
-    topics: list[OwnTopic] = []
-    services: list[OwnService] = []
+    added: dict[str, list[Added]] = {section: [] for section in _TYPES}
     for section in SECTIONS:
         given = list(entries[section].entries()) if section in entries else []
         others = set(_KNOWN[section]) - usual.lacking - {key.value for key, _ in given}
@@ -142,16 +140,14 @@ def read_interface(entries: Mapping[str, Node], usual: Interface) -> Interface:
             elif section == "actions" or not isinstance(value.value, dict):
                 _unknown(key, section)
                 continue
-            elif section == "topics":
-                topics.append(_topic(offered := name, value))
             else:
-                services.append(_service(offered := name, value))
+                added[section].append(_added(offered := name, value, section))
             if offered in used:
                 value.wrong(
                     f"`{offered}` is also the name of `{used[offered]}`", "give one of them another name"
                 )
             used[offered] = name
-    return Interface(usual.lacking, renamed, tuple(topics), tuple(services))
+    return Interface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
 
 
 def _name(node: Node) -> str:
@@ -172,31 +168,19 @@ def _unknown(key: Node, section: str) -> None:
     )
 
 
-def _type(node: Node | None, kind: str) -> str:
-    text = node.text() if node is not None else ""
-    if node is not None and text and not re.fullmatch(rf"[a-z]\w*/{kind}/[A-Z]\w*", text):
-        node.wrong(f"'{text}' is not a type", f"write it as PACKAGE/{kind}/TYPE")
-    return text
-
-
-def _fields(node: Node | None) -> dict[str, Any]:
-    return {str(name.value): value.value for name, value in node.entries()} if node is not None else {}
-
-
-def _topic(name: str, node: Node) -> OwnTopic:
-    entries = node.mapping("type", "message", "rate", "receive", required=("type",))
-    type_name = _type(entries.get("type"), "msg")
+def _added(name: str, node: Node, section: str) -> Added:
+    entries = node.mapping(*_KEYS[section], required=("type",))
+    kind, type_name = _TYPES[section], entries["type"].text() if "type" in entries else ""
+    if type_name and not re.fullmatch(rf"[a-z]\w*/{kind}/[A-Z]\w*", type_name):
+        entries["type"].wrong(f"'{type_name}' is not a type", f"write it as PACKAGE/{kind}/TYPE")
     if "receive" in entries and entries["receive"].truth():
         for key in ("message", "rate"):
             if key in entries:
                 entries[key].wrong(
                     f"a topic that is received has no '{key}'", f"remove '{key}', or 'receive'"
                 )
-        return OwnTopic(name, type_name, rate=0.0)
+        return Added(name, type_name, rate=0.0)
+    given = entries.get("message", entries.get("response"))
+    fields = {str(key.value): value.value for key, value in given.entries()} if given is not None else {}
     rate = entries["rate"].number(0.01, _FASTEST, 1.0) if "rate" in entries else 1.0
-    return OwnTopic(name, type_name, _fields(entries.get("message")), rate)
-
-
-def _service(name: str, node: Node) -> OwnService:
-    entries = node.mapping("type", "response", required=("type",))
-    return OwnService(name, _type(entries.get("type"), "srv"), _fields(entries.get("response")))
+    return Added(name, type_name, fields, rate)

@@ -4,7 +4,7 @@ Navigation and docking are in `jacaros.sim.navigation`.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
 from jacaros.errors import UsageError
@@ -12,7 +12,7 @@ from jacaros.ros.backend import Backend, Sample
 from jacaros.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.ros.message import plain, to_seconds
 from jacaros.ros.names import response_type
-from jacaros.sim.data.robot import OwnService, OwnTopic, absolute
+from jacaros.sim.data.robot import Added, absolute
 from jacaros.sim.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
 from jacaros.sim.graph.on_graph import TICKS_PER_SECOND, Goal, RobotOnGraph, WorldTime
 from jacaros.sim.graph.publishing import Tick
@@ -37,12 +37,8 @@ class RobotNode(RobotOnGraph):
         self._sensors: list[Tick] = [sensor(self) for sensor in SENSORS]
         self._colors: list[str] = []
         interface = robot.description.interface
-        added: list[OwnTopic | OwnService] = [*interface.topics, *interface.services]
-        for each in added:
-            try:
-                self._add(each, absolute(each.name, self.prefix))
-            except (UnknownInterface, MessageMismatch) as error:
-                raise UsageError(f"`{each.name}` of the robot `{robot.name}`: {error}") from None
+        self._add(interface.topics, self._add_topic)
+        self._add(interface.services, self._add_service)
         self.subscribe("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds", self._light)
         self.subscribe("/cmd_audio", "irobot_create_msgs/msg/AudioNoteVector", self._play)
         if robot.description.gripper_reach:
@@ -61,29 +57,35 @@ class RobotNode(RobotOnGraph):
             sensor(self._ticks)
         self._ticks += 1
 
-    def _add(self, added: OwnTopic | OwnService, name: str) -> None:
-        """Offer a topic or a service of a world file: constant messages or responses; received messages are recorded."""
-        if isinstance(added, OwnService):
-            self.backend.message(response_type(added.type_name), **added.response)
-            self.keep(self.backend.service(name, added.type_name, lambda request: added.response))
-        elif not added.rate:
-            self.keep(self.backend.subscription(name, added.type_name, self._record))
-        else:
-            self._sensors.append(self._repeat(added, name))
+    def _add(self, each_added: Iterable[Added], add: Callable[[Added, str], None]) -> None:
+        for added in each_added:
+            try:
+                add(added, absolute(added.name, self.prefix))
+            except (UnknownInterface, MessageMismatch) as error:
+                raise UsageError(f"`{added.name}` of the robot `{self.robot.name}`: {error}") from None
 
-    def _repeat(self, topic: OwnTopic, name: str) -> Tick:
+    def _add_service(self, service: Added, name: str) -> None:
+        """Offer a service of a world file with a constant response."""
+        self.backend.message(response_type(service.type_name), **service.fields)  # finds mistakes
+        self.keep(self.backend.service(name, service.type_name, lambda request: service.fields))
+
+    def _add_topic(self, topic: Added, name: str) -> None:
+        """Publish the constant message of a topic of a world file, or record the messages that it receives."""
+        if not topic.rate:
+            self.keep(self.backend.subscription(name, topic.type_name, self._record))
+            return
         publisher = self.keep(self.backend.publisher(name, topic.type_name))
-        publisher.message(**topic.message)  # finds mistakes
+        publisher.message(**topic.fields)  # finds mistakes
         period = max(1, round(TICKS_PER_SECOND / topic.rate))
 
         def publish(ticks: int) -> None:
             if ticks % period == 0:
-                message = publisher.message(**topic.message)
+                message = publisher.message(**topic.fields)
                 if hasattr(message, "header"):
                     self.fill_header(message.header, message.header.frame_id or "base_link")
                 publisher.publish(message)
 
-        return publish
+        self._sensors.append(publish)
 
     def _record(self, sample: Sample) -> None:
         self.time.catch_up()
