@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any, cast
 
 from jacaros.ros.backend import Backend, Publisher
@@ -34,6 +34,9 @@ class SimNode:
         world: world; its time continues.
         backend: graph; must be started before `start`, and is not closed by `close`.
         clock: the clock that the world follows.
+
+    Attributes:
+        grid: returns the map of the world, which is created on first use.
     """
 
     def __init__(self, world: World, backend: Backend, clock: Clock) -> None:
@@ -49,7 +52,7 @@ class SimNode:
         self._published: dict[str, bool] = {}
         self._maps: list[Publisher] = []
         self._map: Any = None
-        self._grid: Grid | None = None
+        self.grid = cache(lambda: Grid(world.description))
         self._timer: Timer | None = None
         self._ticks = 0
 
@@ -93,12 +96,6 @@ class SimNode:
     def paths(self) -> dict[str, Sequence[tuple[float, float]]]:
         """Return the points of the path of each robot, by name, in metres on the map; empty without a goal."""
         return {each.name: each.path for each in self.navigation}
-
-    def grid(self) -> Grid:
-        """Return the map of the world, created on first use."""
-        if self._grid is None:
-            self._grid = Grid(self.world.description)
-        return self._grid
 
     def _map_message(self) -> Any:
         if self._map is None:

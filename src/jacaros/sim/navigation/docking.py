@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.plane.pose import Placement, distance
-from jacaros.ros.action import Accept, GoalStatus
+from jacaros.ros.action import GoalStatus
 from jacaros.sim.data.world import Dock
-from jacaros.sim.graph.frames import ODOMETRY, FrameUnknown, on_map, pose_fault, stamped_pose
+from jacaros.sim.graph.frames import FrameUnknown, on_map, pose_fault
 from jacaros.sim.graph.on_graph import Execute, Goal
 from jacaros.sim.navigation.driver import STOP
 from jacaros.sim.navigation.navigator import PERIOD, Navigator
@@ -163,13 +163,13 @@ class Docking:
 
     def offer_nav2(self) -> None:
         """``/dock_robot`` and ``/undock_robot``."""
-        self._serve(
+        self.navigator.serve(
             "/dock_robot",
             "nav2_msgs/action/DockRobot",
             self._dock_robot,
             lambda goal: None if goal.use_dock_id else pose_fault(goal.dock_pose.pose),
         )
-        self._serve("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
+        self.navigator.serve("/undock_robot", "nav2_msgs/action/UndockRobot", self._undock_robot)
 
     def offer_create3(self) -> None:
         """``/dock``, ``/undock``, ``/drive_distance`` and ``/rotate_angle``."""
@@ -180,37 +180,12 @@ class Docking:
 
     def offer_kobuki(self) -> None:
         """``/dock_drive_action``."""
-        self._serve(
+        self.navigator.serve(
             "/dock_drive_action",
             "kobuki_msgs/action/AutoDocking",
             self._auto_docking,
             overtaken=GoalStatus.CANCELED,
         )
-
-    def _serve(
-        self,
-        name: str,
-        type_name: str,
-        execute: Execute,
-        accept: Accept | None = None,
-        overtaken: GoalStatus = GoalStatus.ABORTED,
-    ) -> None:
-        """Serve an action; a failure sets those of the fields below that its result has."""
-
-        async def carry_out(goal: Goal) -> Mapping[str, Any]:
-            try:
-                return await execute(goal)
-            except NavigationFailure as failure:
-                goal.abort(
-                    failure.text,
-                    success=False,
-                    error_code=failure.code,
-                    is_docked=self.docked,
-                    text=failure.text,
-                    pose=self._pose(),
-                )
-
-        self._at.action(name, type_name, carry_out, accept, overtaken)
 
     def _create3(
         self, name: str, action: str, execute: Execute, cannot: Callable[[], str | None] = lambda: None
@@ -229,7 +204,7 @@ class Docking:
         def accept(request: Any) -> str | None:
             return f"{name} is running; cancel that goal first" if running else cannot()
 
-        self._serve(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
+        self.navigator.serve(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
 
     async def _dock_robot(self, goal: Goal) -> Mapping[str, Any]:
         clock = self._at.time.clock
@@ -313,7 +288,4 @@ class Docking:
     def _moved(self, made: float, wanted: float, tolerance: float, unit: str) -> Mapping[str, Any]:
         if abs(made) < abs(wanted) - tolerance:
             raise NavigationFailure(0, f"blocked after {abs(made):.2f} {unit}")
-        return {"pose": self._pose()}
-
-    def _pose(self) -> Any:
-        return stamped_pose(self._at, self._at.robot.odometry.placement, ODOMETRY)
+        return {"pose": self.navigator.odometry_pose()}

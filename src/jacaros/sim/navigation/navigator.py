@@ -1,16 +1,20 @@
 """A navigating robot: its wheels, its estimated pose, its perception and its basic motions."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cached_property
+from typing import Any
 
 from jacaros.plane.pose import Placement, Point, clamp, distance, wrap
 from jacaros.plane.shapes import Circle
+from jacaros.ros.action import Accept, GoalStatus
 from jacaros.ros.backend import Publisher
 from jacaros.sim.data.grid import Grid
-from jacaros.sim.graph.on_graph import Overtaken, RobotOnGraph
+from jacaros.sim.graph.frames import ODOMETRY, stamped_pose
+from jacaros.sim.graph.on_graph import Execute, Goal, Overtaken, RobotOnGraph
 from jacaros.sim.navigation.driver import STOP, Command, Pace
-from jacaros.sim.navigation.planner import Planner
+from jacaros.sim.navigation.planner import NavigationFailure, Planner
 from jacaros.sim.physics.perception import LaserPerception
 
 PERIOD = 0.1
@@ -98,20 +102,47 @@ class Navigator:
         self.perception = LaserPerception(at.time.world, at.robot)
         self.path: Sequence[Point] = ()
         self._grid = grid
-        self._planner: Planner | None = None
 
-    @property
+    @cached_property
     def planner(self) -> Planner:
         """The planner, created on first use."""
-        if self._planner is None:
-            self._planner = Planner(self._grid(), self.robot.description.radius)
-        return self._planner
+        return Planner(self._grid(), self.robot.description.radius)
 
     def pose(self) -> Placement:
         """Return the estimated pose."""
         self.time.catch_up()
         self.at.localisation.update(self.time.world.time)
         return self.at.localisation.pose()
+
+    def odometry_pose(self) -> Any:
+        """Return the pose of odometry as a message."""
+        return stamped_pose(self.at, self.robot.odometry.placement, ODOMETRY)
+
+    def serve(
+        self,
+        name: str,
+        type_name: str,
+        execute: Execute,
+        accept: Accept | None = None,
+        overtaken: GoalStatus = GoalStatus.ABORTED,
+        coded: Callable[[int], int] = int,
+    ) -> None:
+        """Serve an action; a failure, with its code, sets those of the fields below that the action's result has."""
+
+        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+            try:
+                return await execute(goal)
+            except NavigationFailure as failure:
+                goal.abort(
+                    failure.text,
+                    success=False,
+                    error_code=coded(failure.code),
+                    is_docked=self.robot.dock is not None,
+                    text=failure.text,
+                    pose=self.odometry_pose(),
+                )
+
+        self.at.action(name, type_name, carry_out, accept, overtaken)
 
     def others(self, pose: Placement) -> list[Circle]:
         """Return what the map lacks: other robots in view, and closed doors."""

@@ -66,18 +66,22 @@ class RobotNavigation:
         self._navigator.wheels.close()
 
     def _offer_nav2(self) -> None:
-        at = self._at
-        at.action(
+        at, serve = self._at, self._navigator.serve
+        kind = "nav2_msgs/action/"
+        serve(
             "/navigate_to_pose",
-            "nav2_msgs/action/NavigateToPose",
+            kind + "NavigateToPose",
             self._to_pose,
             lambda goal: pose_fault(goal.pose.pose),
         )
-        for name, kind, execute in (
-            ("/navigate_through_poses", "NavigateThroughPoses", self._through_poses),
-            ("/follow_waypoints", "FollowWaypoints", self._waypoints),
-        ):
-            at.action(name, f"nav2_msgs/action/{kind}", execute, _poses_fault)
+        serve(
+            "/navigate_through_poses",
+            kind + "NavigateThroughPoses",
+            self._through_poses,
+            _poses_fault,
+            coded=through_poses,
+        )
+        serve("/follow_waypoints", kind + "FollowWaypoints", self._waypoints, _poses_fault)
         for map_ in ("global", "local"):
             name = f"/{map_}_costmap/clear_entirely_{map_}_costmap"
             at.service(name, "nav2_msgs/srv/ClearEntireCostmap", self._forget_obstacles)
@@ -85,9 +89,8 @@ class RobotNavigation:
 
     def _offer_move_base(self) -> None:
         at = self._at
-        at.action(
-            "/move_base", "move_base_msgs/action/MoveBase", self._move_base, overtaken=GoalStatus.CANCELED
-        )
+        kind = "move_base_msgs/action/MoveBase"
+        self._navigator.serve("/move_base", kind, self._move_base, overtaken=GoalStatus.CANCELED)
         at.service("/move_base/clear_costmaps", "std_srvs/srv/Empty", self._forget_obstacles)
         at.subscribe("/move_base_simple/goal", POSE, self._simple_goal)
 
@@ -119,7 +122,7 @@ class RobotNavigation:
         if not poses:
             goal.abort("the goal has no poses", error_code=NO_POSES)
         with self._navigating(_THROUGH_POSES, goal):
-            return await self._go(goal, poses, feedback, through_poses)
+            return await self._go(goal, poses, feedback)
 
     async def _move_base(self, goal: Goal) -> Mapping[str, Any]:
         # move_base accepts any goal, and aborts invalid ones.
@@ -153,16 +156,9 @@ class RobotNavigation:
         )
 
     async def _go(
-        self,
-        goal: Goal,
-        poses: list[Any],
-        feedback: Callable[[Progress], dict[str, Any]],
-        coded: Callable[[int], int] = int,
+        self, goal: Goal, poses: list[Any], feedback: Callable[[Progress], dict[str, Any]]
     ) -> Mapping[str, Any]:
-        try:
-            await self._drive(poses, lambda progress: goal.feedback(**feedback(progress)))
-        except NavigationFailure as failure:
-            goal.abort(failure.text, error_code=coded(failure.code))
+        await self._drive(poses, lambda progress: goal.feedback(**feedback(progress)))
         return {}
 
     async def _drive(self, poses: list[Any], tell: Callable[[Progress], object] = bool) -> None:
