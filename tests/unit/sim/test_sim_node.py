@@ -145,11 +145,13 @@ def test_the_battery_is_published_every_second_and_when_charging_changes() -> No
     assert done.received[-1].percentage == 1.0
 
 
-def test_the_laser_is_computed_only_with_subscribers() -> None:
+def test_the_laser_is_computed_only_with_subscribers(monkeypatch: pytest.MonkeyPatch) -> None:
     async def quiet(run: Run) -> None:
         await run.clock.sleep(1.0)
 
-    assert in_world("patrol", quiet).world._lasers == {}
+    with monkeypatch.context() as patch:
+        patch.setattr(World, "scan", lambda *_: pytest.fail("computed"))
+        in_world("patrol", quiet)
 
     async def listening(run: Run) -> None:
         run.listen("/scan", "sensor_msgs/msg/LaserScan")
