@@ -14,7 +14,7 @@ from typing import Any, cast
 from jacaros.errors import UsageError
 from jacaros.files.texts import suggestion
 from jacaros.ros.action import Abort, ActionPolicy, ActionServer, Execute, ServerGoal
-from jacaros.ros.backend import Backend, Sample
+from jacaros.ros.backend import Backend
 from jacaros.ros.message import field_names
 from jacaros.ros.node import Publisher, Sample, Subscription
 from jacaros.ros.qos import DEFAULT_QOS, QoS
