@@ -5,7 +5,6 @@ import re
 import sys
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,7 @@ from jacaros.files.texts import visible
 from jacaros.runtime.output import beneath
 
 if TYPE_CHECKING:
-    from jacaros.testing.suites import AgentTest, Outcome, Suite
+    from jacaros.testing.suites import Outcome, Suite
     from jacaros.testing.trial import TrialOptions
 
 _STYLED = re.compile(r"(\x1b\[.*?\x1b\[0m)", re.DOTALL)
@@ -92,7 +91,7 @@ def command(
 
     suites = _chosen(collect(paths or (Path(),)), paths, pattern)
     report = _Report(color, verbose)
-    return 0 if report.run(suites, TrialOptions(fast=clock == "fast", **given), pattern, first) else 1
+    return 0 if report.run(suites, TrialOptions(fast=clock == "fast", **given), first) else 1
 
 
 class _Report:
@@ -109,10 +108,8 @@ class _Report:
         self._verbose = verbose
         self._painted: set[str] = set()
 
-    def run(
-        self, suites: "Sequence[Suite]", options: "TrialOptions", pattern: str | None, first: bool
-    ) -> bool:
-        """Run all tests that match the pattern, or up to the *first* failed one; return whether all passed."""
+    def run(self, suites: "Sequence[Suite]", options: "TrialOptions", first: bool) -> bool:
+        """Run all tests, or up to the *first* failed one; return whether all passed."""
         from jacaros.testing.trial import run_suite
 
         failures: list[str] = []
@@ -126,7 +123,7 @@ class _Report:
                 errors += 1
                 self._echo(f"  {self._paint('ERROR ', 'failed')}  cannot run the file")
                 failures += ("", self._paint(f"{suite.path}: cannot run the file", "failed"), suite.error)
-            for outcome in run_suite(suite, options, partial(_is_meant, suite, pattern=pattern)):
+            for outcome in run_suite(suite, options):
                 outcomes.append(outcome)
                 self._show(outcome)
                 if not outcome.passed:
@@ -172,29 +169,24 @@ class _Report:
 
 
 def _chosen(found: "list[Suite]", paths: Sequence[Path], pattern: str | None) -> "list[Suite]":
-    """Return the suites with tests to run.
+    """Return the suites with tests to run, and drop the other tests.
 
     Raises:
         UsageError: no test is found, or none matches the pattern.
     """
     places = ", ".join(map(str, paths)) or "this folder"
-    if not any(suite.tests or suite.error is not None for suite in found):
+    names = [f"{suite.path}::{test.name}" for suite in found for test in suite.tests]
+    if not names and all(suite.error is None for suite in found):
         raise usage_error(
             f"no tests in {places}",
             "a test is a plan for a goal with the label test: @name[test] +!goal <- ...",
         )
-    chosen = [
-        suite
-        for suite in found
-        if suite.error is not None or any(_is_meant(suite, test, pattern) for test in suite.tests)
-    ]
+    for suite in found if pattern is not None else ():
+        wanted = f"*{pattern}*".lower()
+        suite.tests = [
+            test for test in suite.tests if fnmatchcase(f"{suite.path}::{test.name}".lower(), wanted)
+        ]
+    chosen = [suite for suite in found if suite.error is not None or suite.tests]
     if not chosen:
-        tests = listed(f"{suite.path}::{test.name}" for suite in found for test in suite.tests)
-        raise usage_error(f"no test in {places} matches `-k {pattern}`", f"tests: {tests}")
+        raise usage_error(f"no test in {places} matches `-k {pattern}`", f"tests: {listed(names)}")
     return chosen
-
-
-def _is_meant(suite: "Suite", test: "AgentTest", pattern: str | None) -> bool:
-    if pattern is None:
-        return True
-    return fnmatchcase(f"{suite.path}::{test.name}".lower(), f"*{pattern.lower()}*")
