@@ -331,7 +331,7 @@ class BridgeActionClient(ActionClient):
             node.clock, node.log, node.factory, name, type_name, node.leaving_goals, node.orphans
         )
         self._node = node
-        self.wire: ActionlibWire | Ros2Goals = Ros2Goals(node, self)
+        self.wire = Ros2Goals(node, self)
         node.keep(self)
         if node.attached:
             self.join()
