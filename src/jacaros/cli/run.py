@@ -205,7 +205,8 @@ def _launch(
         if explained:
             from jacaros.mas.history.why import Announcer  # here: few runs are explained
 
-            Announcer(mas.keep_history(), explained, mas.console.log).begin()
+            history = mas.keep_history()
+            history.listen(Announcer(history.all, explained, mas.console.log).hear)
         if options.fast:
             # As in `| head`: no reader wants the rest, and no robot depends on the agents.
             loop = asyncio.get_running_loop()

@@ -34,7 +34,6 @@ from jacaros.mas.history.about_motion import explain_command, explain_operation,
 from jacaros.mas.history.about_waiting import explain_idleness, explain_waiting
 from jacaros.mas.history.chains import is_written
 from jacaros.mas.history.explanation import Explanation
-from jacaros.mas.history.history import History
 from jacaros.mas.history.past import Past
 from jacaros.mas.history.patterns import Pattern, Question, literal_at, name_of
 from jacaros.mas.history.records import Record, decoded
@@ -271,7 +270,7 @@ class Announcer:
     interest that never happened.
 
     Args:
-        history: history of the run. The caller starts its observation.
+        so_far: returns the records of the run.
         events: events of interest, such as ``+alarm(_)`` or ``!go(dock)``.
         tell: takes each explanation as text.
 
@@ -279,18 +278,17 @@ class Announcer:
         UsageError: one of them is not an event, a goal or a belief.
     """
 
-    def __init__(self, history: History, events: Sequence[str], tell: Callable[[str], None]) -> None:
-        self._history, self._tell = history, tell
+    def __init__(
+        self, so_far: Callable[[], Sequence[Record]], events: Sequence[str], tell: Callable[[str], None]
+    ) -> None:
+        self._so_far, self._tell = so_far, tell
         self._wanted = {event: Pattern(event) for event in events}
         self._unmet = dict.fromkeys(events)
 
-    def begin(self) -> None:
-        """Explain from now on."""
-        self._history.listen(self._hear)
-
-    def _hear(self, t: float, event: str, data: Mapping[str, Any]) -> None:
+    def hear(self, t: float, event: str, data: Mapping[str, Any]) -> None:
+        """Explain a record, if it is of interest."""
         if event == "ended":
-            past = Past.of(self._history.all())
+            past = Past.of(self._so_far())
             for asked in self._unmet:
                 self._tell(explain_event(past, Question(asked, about=asked)).text())
         elif event in _READERS:
@@ -304,7 +302,7 @@ class Announcer:
                         self._tell(explanation.text())
 
     def _explain(self, asked: str, t: float, record: records.Event) -> Explanation | None:
-        past = Past.of(self._history.all())
+        past = Past.of(self._so_far())
         match record:
             case records.Deliberation():
                 return explain_deliberation(past, asked, t, record)
