@@ -29,7 +29,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from jacaros.mas.launch import SWITCH_INTERVAL
+from jacaros.runtime.mas.launch import SWITCH_INTERVAL
 
 HERE = Path(__file__).resolve().parent / "latency"
 JACAROS = Path(sys.executable).parent / "jacaros"

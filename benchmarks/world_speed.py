@@ -47,8 +47,8 @@ def median(figures: list[float]) -> float:
 
 def speed(name: str, seconds: float) -> float:
     """Simulated seconds in a second of the processor."""
-    from jacaros.sim import World
-    from jacaros.sim.physics.fingerprint import fingerprint
+    from jacaros.robots.world import World
+    from jacaros.robots.world.physics.fingerprint import fingerprint
 
     world = World.load(name)
     began = time.process_time()
@@ -58,7 +58,7 @@ def speed(name: str, seconds: float) -> float:
 
 def asked(python: str, name: str, seconds: float) -> float:
     """The same of ir-sim, in a process of its own."""
-    from jacaros.sim import World
+    from jacaros.robots.world import World
 
     command = [
         python,

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from jacaros.errors import JacarosError
+from jacaros.runtime.errors import JacarosError
 from jacaros.testing import RunResult, Verdict
 from scenarios import SCENARIOS, Scenario
 

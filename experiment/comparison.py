@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from disturbances import faults_for
 from disturbed_runs import AGENTS, AS_IF_DONE, BASELINE, ENDS, HUNG, OVER_NAV2, PATIENT, Outcome
-from jacaros.metrics import Table
+from jacaros.look.metrics import Table
 from scenarios import SCENARIOS
 
 SIGNIFICANT = 0.05

@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-import jacaros.sim
+import jacaros.robots.world
 from disturbances import faults_for, kind_of
 from jacaros.testing import RunResult, run_project
 from scenarios import FOLDER, SCENARIOS
@@ -22,7 +22,7 @@ SAID, WARNED, HUNG, AS_IF_DONE = "say that they failed", "warn only", "hang in s
 ENDS = (SAID, WARNED, HUNG, AS_IF_DONE)
 """How runs that fail end."""
 
-HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
+HOUSE = Path(jacaros.robots.world.__file__).parent / "worlds" / "house.yaml"
 
 DOORS = """
 doors:

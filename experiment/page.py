@@ -10,7 +10,7 @@ import comparison
 import sizes
 import success
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
-from jacaros.metrics import Group, ProgramMetrics, Table, as_markdown
+from jacaros.look.metrics import Group, ProgramMetrics, Table, as_markdown
 from scenarios import FOLDER, SCENARIOS
 from workshop.published import size_table
 

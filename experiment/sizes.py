@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jacaros.files.yaml import plain_values
-from jacaros.metrics import MEASURES, Group, ProgramMetrics, Table, measure, measure_chart
+from jacaros.look.metrics import MEASURES, Group, ProgramMetrics, Table, measure, measure_chart
+from jacaros.runtime.files.yaml import plain_values
 from scenarios import FOLDER, SCENARIOS
 
 CHARTS = ("identifiers", "lines", "gzip_bytes")

@@ -5,7 +5,7 @@ from statistics import median
 
 from disturbances import KINDS
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
-from jacaros.metrics import Table
+from jacaros.look.metrics import Table
 from scenarios import SCENARIOS
 
 SIDES = (AGENTS, OVER_NAV2, BASELINE, PATIENT)

@@ -13,10 +13,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jacaros.errors import JacarosError
+from jacaros.robots.world import World
+from jacaros.robots.world.node import SimNode
 from jacaros.runtime.clock import VirtualClock, new_event_loop
-from jacaros.sim import World
-from jacaros.sim.node import SimNode
+from jacaros.runtime.errors import JacarosError
 from jacaros.testing import RunResult
 from scenarios import SCENARIOS, Scenario
 from virtual_rclpy.graph import TimeIsUp, VirtualGraph, being_current

@@ -15,7 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "jacaros"
-LAYERS = ("agents", "artifacts")
+LAYERS = ("agents", "artifacts", "look", "robots", "runtime")
 """Packages whose packages have a budget each."""
 LOOSE = "."
 """The package of the modules directly in the root."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Generate and install our own ROS 2 interfaces into a venv made by install_ros2.sh: jacaros_interfaces (a look-alike of each
-# type in src/jacaros/ros/interfaces), and tf2_msgs, which is not among the wheels.
+# type in src/jacaros/robots/ros/interfaces), and tf2_msgs, which is not among the wheels.
 #
 #   tools/build_ros2_interfaces.sh jazzy|kilted VENV
 #
@@ -36,7 +36,7 @@ esac
 
 sources=$(mktemp -d)
 trap 'rm -rf "$sources"' EXIT
-write() { PYTHONPATH=$root/src "$venv/bin/python" -m jacaros.ros.interfaces.ros2_package "$sources" "$@" >/dev/null; }
+write() { PYTHONPATH=$root/src "$venv/bin/python" -m jacaros.robots.ros.interfaces.ros2_package "$sources" "$@" >/dev/null; }
 stamp() { echo "$venv/share/$1/.fingerprint"; }
 fingerprint() { (cd "$sources/$1" && cat "$root/tools/build_ros2_interfaces.sh" $(find . -type f | LC_ALL=C sort) | sha256sum); }
 is_there() { [ -f "$(stamp "$1")" ] && [ "$(cat "$(stamp "$1")")" = "$(fingerprint "$1")" ]; }

@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import hypot
 from pathlib import Path
 
-from jacaros.inspector import Frame, Recording
+from jacaros.look import Frame, Recording
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = ROOT / "runs"

@@ -15,21 +15,21 @@ from typing import Any
 import cbor2
 
 from jacaros.agents.language.diagnostics import render_all
-from jacaros.artifacts.mapping.file import load_mapping
-from jacaros.cli.ros_arguments import read_parameters
-from jacaros.errors import JacarosError
-from jacaros.inspector.page import replay_html
-from jacaros.inspector.recorder import Recorder
-from jacaros.inspector.recording import Recording
-from jacaros.inspector.scene import RobotView
-from jacaros.mas.checks.files import check_files
-from jacaros.mas.launch import load_deployment
-from jacaros.ros.drivers.rosbridge.link import Link
-from jacaros.ros.parameter import checked_value
-from jacaros.ros.protocols.rosbridge_messages import Translator
-from jacaros.ros.typestore import DefinitionSchema
-from jacaros.sim.data.ground_truth import GroundTruth, Sample
-from jacaros.sim.files.world import load_world
+from jacaros.look.page.page import replay_html
+from jacaros.look.page.recorder import Recorder
+from jacaros.look.page.scene import RobotView
+from jacaros.look.records.recording import Recording
+from jacaros.robots.mapping.file import load_mapping
+from jacaros.robots.ros.drivers.rosbridge.link import Link
+from jacaros.robots.ros.parameter import checked_value
+from jacaros.robots.ros.protocols.rosbridge_messages import Translator
+from jacaros.robots.ros.typestore import DefinitionSchema
+from jacaros.robots.world.data.ground_truth import GroundTruth, Sample
+from jacaros.robots.world.files.world import load_world
+from jacaros.runtime.cli.ros_arguments import read_parameters
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.mas.checks.files import check_files
+from jacaros.runtime.mas.launch import load_deployment
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS = 20.0
@@ -398,7 +398,7 @@ KINDS = {
         ".mas2j", lambda: _files("examples/**/*.mas2j", "tests/compatibility/*.mas2j"), _read_project
     ),
     "mapping": FileKind(".yaml", lambda: _files("src/jacaros/artifacts/**/*.yaml"), _read_mapping),
-    "world": FileKind(".yaml", lambda: _files("src/jacaros/sim/worlds/*.yaml"), _read_world),
+    "world": FileKind(".yaml", lambda: _files("src/jacaros/robots/world/worlds/*.yaml"), _read_world),
     "parameters": FileKind(".yaml", lambda: _PARAMETERS, _read_parameters),
     "recording": FileKind(".jsonl", _recordings, _read_recording, _json_lines_changed),
     "ground-truth": FileKind(".jsonl", _ground_truths, _read_ground_truth, _json_lines_changed),

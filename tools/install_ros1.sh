@@ -51,10 +51,10 @@ if [ ! -x "$venv/bin/python" ]; then
   say "making $venv"
   "$python" -m venv --system-site-packages "$venv"
 fi
-if ! "$venv/bin/python" -c 'import jacaros.ros.open, jacaros.cli.watching, ruamel.yaml, pytest, pytest_rerunfailures, hypothesis, rospy' 2>/dev/null; then
+if ! "$venv/bin/python" -c 'import jacaros.robots.ros.open, jacaros.runtime.cli.watching, msgspec, ruamel.yaml, pytest, pytest_rerunfailures, hypothesis, rospy' 2>/dev/null; then
   say "installing the project and the test tools into $venv"
   "$venv/bin/python" -m pip install -q --disable-pip-version-check -e "$root" pytest pytest-rerunfailures hypothesis >&2
 fi
-"$venv/bin/python" -W ignore -c 'import jacaros.ros.open, pytest, rospy; from nav_msgs.msg import Odometry; from tf2_msgs.msg import TFMessage
+"$venv/bin/python" -W ignore -c 'import jacaros.robots.ros.open, pytest, rospy; from nav_msgs.msg import Odometry; from tf2_msgs.msg import TFMessage
 import actionlib, move_base_msgs.msg, rosparam, tf2_ros'
 say "ready: $venv/bin/python -m pytest tests/contracts --require-ros1"

@@ -41,10 +41,10 @@ if ! "$venv/bin/python" -c 'import rclpy, nav_msgs.msg, sensor_msgs.msg, std_srv
 else
   say "rclpy: there"
 fi
-if ! "$venv/bin/python" -c 'import jacaros.ros.open, jacaros.cli.watching, ruamel.yaml, py_trees, pytest, pytest_rerunfailures, hypothesis' 2>/dev/null; then
+if ! "$venv/bin/python" -c 'import jacaros.robots.ros.open, jacaros.runtime.cli.watching, msgspec, ruamel.yaml, py_trees, pytest, pytest_rerunfailures, hypothesis' 2>/dev/null; then
   say "installing the project and the test tools into $venv"
   "$venv/bin/python" -m pip install -q --disable-pip-version-check -e "$root[behaviour-trees]" pytest pytest-rerunfailures hypothesis >&2
 fi
 "$root/tools/build_ros2_interfaces.sh" "$distribution" "$venv"
-"$venv/bin/python" -c 'import jacaros.ros.open, pytest, rclpy; import tf2_msgs.msg; from jacaros_interfaces.action import Count'
+"$venv/bin/python" -c 'import jacaros.robots.ros.open, pytest, rclpy; import tf2_msgs.msg; from jacaros_interfaces.action import Count'
 say "ready: $venv/bin/python -m pytest tests/contracts --require-ros2"

@@ -133,16 +133,16 @@ while not rospy.is_shutdown():
 }
 """Robots: programs that write the time and size of each velocity as a line, and publish odometry."""
 MODULES = (
-    "jacaros.mas.launch",
-    "jacaros.mas.environment",
-    "jacaros.artifacts.robots.velocity",
-    "jacaros.artifacts.mapping.artifact",
-    "jacaros.ros.drivers.memory.backend",
-    "jacaros.sim.node",
+    "jacaros.runtime.mas.launch",
+    "jacaros.runtime.mas.environment",
+    "jacaros.robots.artifacts.velocity",
+    "jacaros.robots.mapping.artifact",
+    "jacaros.robots.ros.drivers.memory.backend",
+    "jacaros.robots.world.node",
 )
 FLOOD = """
-from jacaros.artifacts.robots.maneuver import Timed
-from jacaros.cli.main import main
+from jacaros.robots.artifacts.maneuver import Timed
+from jacaros.runtime.cli.main import main
 Timed.period = 1e-5
 main()
 """
@@ -202,11 +202,11 @@ class Velocities:
 
 def become_agents(files: list[Path], flood: bool, pipe: int) -> int:
     """Run the agents on the in-process graph, which drive until interrupted; return the exit code."""
-    from jacaros.artifacts.robots.maneuver import Timed
-    from jacaros.mas.console import StandardConsole
-    from jacaros.mas.launch import launch
-    from jacaros.mas.options import RunOptions
-    from jacaros.mas.system import System
+    from jacaros.robots.artifacts.maneuver import Timed
+    from jacaros.runtime.mas.console import StandardConsole
+    from jacaros.runtime.mas.launch import launch
+    from jacaros.runtime.mas.options import RunOptions
+    from jacaros.runtime.mas.system import System
 
     if flood:
         Timed.period = 1e-5  # as fast as the loop permits

@@ -1,4 +1,4 @@
-"""Write ``ros/interfaces/jazzy.msg``: the message types of ROS 2 Jazzy, from the typestore of rosbags.
+"""Write ``robots/ros/interfaces/jazzy.msg``: the message types of ROS 2 Jazzy, from the typestore of rosbags.
 
     python tools/make_message_definitions.py
 

@@ -7,8 +7,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from jacaros.cli.main import call
-from jacaros.inspector import Recording, write_picture
+from jacaros.look import Recording, write_picture
+from jacaros.runtime.cli.main import call
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
@@ -49,7 +49,7 @@ def main() -> None:
 
 async def take_live_page(name: str, project: str, seconds: float) -> None:
     """Take a picture of the live page of a run, with the browser used by the tests."""
-    sys.path.append(str(ROOT / "tests" / "unit" / "inspector"))
+    sys.path.append(str(ROOT / "tests" / "unit" / "look"))
     from devtools import chromium
 
     jacaros = Path(sys.executable).parent / "jacaros"

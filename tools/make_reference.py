@@ -1,5 +1,5 @@
 """Generate reference pages from the code: docs/reference/cli.md, artifacts.md, grammar.md, world_keys.md, recordings.md
-and more; and what the page shares with records, src/jacaros/inspector/static/schema.js.
+and more; and what the page shares with records, src/jacaros/look/page/static/schema.js.
 
 make_reference.py [FOLDER]      FOLDER instead of these folders; a test compares the two
 """
@@ -20,17 +20,17 @@ import jacaros.agents.mind.actions.standard
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.terms.functions import ARITIES
 from jacaros.artifacts import Artifact, describe
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.artifacts.registry import BUILT_IN
-from jacaros.artifacts.robots.motion import WheeledArtifact
-from jacaros.cli.main import COMMANDS, jacaros
-from jacaros.files.entries import declared_entries
-from jacaros.inspector.recording import NOWHERE
-from jacaros.mas.history.records import EVENTS, VERSION
-from jacaros.plane.shapes import Segment
-from jacaros.sim.data import robot, world
-from jacaros.sim.data.faults import Fault
-from jacaros.sim.data.ground_truth import FIELDS, RobotState
+from jacaros.look.records.recording import NOWHERE
+from jacaros.look.records.records import EVENTS, VERSION
+from jacaros.robots.artifacts.motion import WheeledArtifact
+from jacaros.robots.kit.ros_artifact import RosArtifact
+from jacaros.robots.plane.shapes import Segment
+from jacaros.robots.registry import BUILT_IN
+from jacaros.robots.world.data import robot, world
+from jacaros.robots.world.data.faults import Fault
+from jacaros.robots.world.data.ground_truth import FIELDS, RobotState
+from jacaros.runtime.cli.main import COMMANDS, jacaros
+from jacaros.runtime.files.entries import declared_entries
 
 ROOT = Path(__file__).resolve().parent.parent
 REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"

@@ -28,7 +28,7 @@ APART = (
     "agents/mind/generated",
     "agents/mind/rules",
     "agents/mind/state",
-    "ros/drivers",
+    "robots/ros/drivers",
 )
 """Folders with their own row."""
 

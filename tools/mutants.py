@@ -2,7 +2,7 @@
 
 mutants.py                                  a sample of each subject; prints the scores and the surviving changes
 mutants.py agents/mind/rules agents/terms agents/mind/state        the mind's, whose tests are measured once
-mutants.py artifacts/robots --sample 0      all changes of one subject
+mutants.py robots/artifacts --sample 0      all changes of one subject
 mutants.py ros --sample 150 --seed 3 --shard 2/4
 mutants.py terms --files agents/terms/text.py:41:  of the sample, those of a file or a line
 mutants.py pkg=tests/pkg --root FOLDER      another package (of FOLDER/src) and its tests
@@ -47,7 +47,7 @@ ROOT = Path(__file__).resolve().parent.parent
 MIND = (
     "tests/unit/agents",
     "tests/unit/artifacts/streams",
-    "tests/unit/mas/debugging",
+    "tests/unit/runtime/mas/debugging",
     "tests/integration/test_resources.py",
     "tests/conformance",
 )
@@ -55,15 +55,15 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
     "jacaros/agents/mind/rules": MIND,
     "jacaros/agents/terms": MIND,
     "jacaros/agents/mind/state": MIND,
-    "jacaros/artifacts/robots": ("tests/unit/artifacts",),
-    "jacaros/artifacts/mapping": ("tests/unit/artifacts",),
-    "jacaros/plane": ("tests/unit/plane",),
-    "jacaros/ros": ("tests/unit/ros", "tests/contracts"),
-    "jacaros/sim": ("tests/unit/sim",),
+    "jacaros/robots/artifacts": ("tests/unit/robots",),
+    "jacaros/robots/mapping": ("tests/unit/robots",),
+    "jacaros/robots/plane": ("tests/unit/robots/plane",),
+    "jacaros/robots/ros": ("tests/unit/robots/ros", "tests/contracts"),
+    "jacaros/robots/world": ("tests/unit/robots/world",),
 }
 """Packages below ``src``, and the tests that must notice changes of them."""
 
-WITHOUT = ("ros/drivers/ros1/", "ros/drivers/ros2/")
+WITHOUT = ("robots/ros/drivers/ros1/", "robots/ros/drivers/ros2/")
 """Files whose tests need a real ROS."""
 
 NOT_HERE = "not ros1 and not ros2 and not rosbridge and not mqtt and not browser"

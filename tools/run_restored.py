@@ -15,8 +15,8 @@ from typing import Any
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.storage import NotStorable, restore, stored
-from jacaros.cli.main import main
-from jacaros.mas.agents.host import AgentHost
+from jacaros.runtime.cli.main import main
+from jacaros.runtime.mas.agents.host import AgentHost
 
 CHANCE = 0.2
 """Probability of restoring a mind after a few cycles."""

@@ -48,7 +48,7 @@ REAL_GRAPHS = {
     "contracts": (
         "tests/contracts",
         "tests/packaging/test_ament.py",
-        "tests/unit/ros/test_ros_ros1_types.py",
+        "tests/unit/robots/ros/test_ros_ros1_types.py",
     ),
 }
 """Suites that run on every real graph, those that take longest first."""
@@ -147,7 +147,7 @@ def parts() -> list[Part]:
         Part("fuzz", (PYTHON, "tools/fuzz.py", "--minutes", "1"), budget=620, repeats=True),
         Part("docs", (*PYTEST, "tests/docs", "tests/packaging", "-m", "not ros2"), budget=100),
         Part(
-            "browser", (*PYTEST, "tests/unit/inspector", "-m", "browser"), needs="chromium", skips_fail=True
+            "browser", (*PYTEST, "tests/unit/look", "-m", "browser"), needs="chromium", skips_fail=True
         ),
     ]
     for minor in (12, 13, 14):

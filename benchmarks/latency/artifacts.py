@@ -1,8 +1,8 @@
 """The artifacts of the agents: the other half of the echo, and the bumper and the load of bumper.asl."""
 
 from jacaros.artifacts import internal_operation, operation
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.node import Sample
+from jacaros.robots.kit.ros_artifact import RosArtifact
+from jacaros.robots.ros.node import Sample
 
 INT32, TWIST = "std_msgs/msg/Int32", "geometry_msgs/msg/Twist"
 

@@ -18,13 +18,13 @@ from typing import Any
 from memory import beats, start
 from pings import Pings
 
-from jacaros.mas.console import StandardConsole
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
-from jacaros.ros.backend import Backend
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import Clock, WallClock, run
+from jacaros.runtime.mas.console import StandardConsole
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 
 HERE = Path(__file__).resolve().parent
 INT32, SCAN, TWIST = "std_msgs/msg/Int32", "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist"

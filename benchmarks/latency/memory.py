@@ -19,12 +19,12 @@ from typing import Any
 from computing import compute
 from pings import PERIOD, WAYS, Measurement, Pings
 
-from jacaros.mas.console import StandardConsole
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
-from jacaros.ros.backend import Backend
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.open import open_backend
+from jacaros.runtime.mas.console import StandardConsole
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 
 BEATS = """
 import os, struct, time

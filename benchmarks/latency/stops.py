@@ -11,13 +11,13 @@ from itertools import pairwise
 from typing import Any
 
 from jacaros.agents.mind.mind import Mind
-from jacaros.artifacts.robots.odometry import Odometer
-from jacaros.cli.main import main
-from jacaros.mas.agents.host import AgentHost
-from jacaros.ros.drivers.ros1.connections import InletTransport
-from jacaros.ros.drivers.ros1.streams import Inlet, Outbox
-from jacaros.ros.drivers.ros1.topics import Ros1Publisher
-from jacaros.ros.node import TopicMultiplexer
+from jacaros.robots.artifacts.odometry import Odometer
+from jacaros.robots.ros.drivers.ros1.connections import InletTransport
+from jacaros.robots.ros.drivers.ros1.streams import Inlet, Outbox
+from jacaros.robots.ros.drivers.ros1.topics import Ros1Publisher
+from jacaros.robots.ros.node import TopicMultiplexer
+from jacaros.runtime.cli.main import main
+from jacaros.runtime.mas.agents.host import AgentHost
 
 STOPS: tuple[tuple[type, str, str], ...] = (
     (Inlet, "_read", ""),

@@ -10,8 +10,8 @@ from typing import Any
 
 from marks import Marks
 
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
 
 
 class Listener:

@@ -6,7 +6,7 @@ from typing import Any
 
 from graph import node
 
-from jacaros.mas.system import System
+from jacaros.runtime.mas.system import System
 
 ODOMETRY, TWIST = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist"
 LATENCY = Path(__file__).resolve().parent.parent / "latency"

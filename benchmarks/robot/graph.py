@@ -6,12 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from jacaros.mas.console import StandardConsole
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
-from jacaros.ros.backend import Backend
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.open import open_backend
+from jacaros.runtime.mas.console import StandardConsole
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 
 WORLD = "name: no_robots\nrobots:\n  - {name: elsewhere, namespace: elsewhere}\n"
 """A world whose robot keeps out of the way: its topics are those of another namespace."""

@@ -4,9 +4,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from jacaros.mas.console import StandardConsole
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
+from jacaros.runtime.mas.console import StandardConsole
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
 
 
 def seconds(project: str, files: dict[str, str]) -> float:

@@ -7,7 +7,7 @@ from echo import ARTIFACTS, PROGRAM, WAYS, connect
 from graph import run
 from yardstick import call
 
-from jacaros.mas.system import System
+from jacaros.runtime.mas.system import System
 
 COUNT = 5000
 WINDOW = 5

@@ -11,7 +11,7 @@ import numpy as np
 from graph import node, run
 from yardstick import call
 
-from jacaros.mas.system import System
+from jacaros.runtime.mas.system import System
 
 BEAMS, HERTZ, SECONDS = 720, 40, 40
 SCANS = 20

@@ -3,7 +3,7 @@
 import math
 import sys
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance, seen_from, turns
 

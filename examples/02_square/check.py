@@ -4,7 +4,7 @@ import math
 import sys
 from itertools import pairwise
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance, seen_from, to_segment, turns
 

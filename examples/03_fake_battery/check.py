@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict
 
 STATES = ((100, "Full Battery"), (50, "Medium Battery"), (20, "Low Battery"), (0, "empty"))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from jacaros.sim import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import Stay, distance, judge_recharging, to_segment
 

@@ -7,7 +7,7 @@ remains.
 import sys
 from collections.abc import Mapping, Sequence
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, judge_recharging
 

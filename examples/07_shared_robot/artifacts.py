@@ -3,9 +3,9 @@
 import math
 
 from jacaros.artifacts import Artifact, Atom, internal_operation, operation
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
-from jacaros.ros.node import Sample
-from jacaros.ros.qos import SENSOR_DATA
+from jacaros.robots.kit.ros_artifact import RosArtifact
+from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.qos import SENSOR_DATA
 
 
 class Shift(Artifact):

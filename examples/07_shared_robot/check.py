@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from math import hypot, remainder, tau
 
-from jacaros.sim import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, judge_recharging
 

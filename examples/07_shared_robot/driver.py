@@ -11,7 +11,7 @@ from py_trees.decorators import Inverter
 from py_trees.trees import BehaviourTree
 
 from jacaros import PythonAgent
-from jacaros.behaviour_trees import Act, FromBlackboard, HasProperty, PropertyCheck, TreeRunner
+from jacaros.artifacts.behaviour_trees import Act, FromBlackboard, HasProperty, PropertyCheck, TreeRunner
 
 CLEAR = 0.7
 """Free distance required in front of the robot, in metres."""

@@ -1,7 +1,7 @@
 """The post: parcels that wait in rooms, and parcels on the robot."""
 
 from jacaros.artifacts import Atom, operation
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.robots.kit.ros_artifact import RosArtifact
 
 
 class Post(RosArtifact):

@@ -7,7 +7,7 @@ import sys
 from itertools import pairwise
 from math import dist
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import judge_recharging
 

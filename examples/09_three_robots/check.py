@@ -6,7 +6,7 @@ Judged from the ground truth.
 import sys
 from itertools import pairwise
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import Stay, distance, stays
 

@@ -8,9 +8,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from jacaros.artifacts.map.cells import OBSTACLE, Cell
-from jacaros.artifacts.map.map_files import load
-from jacaros.sim import GroundTruth, Sample
+from jacaros.robots.map.cells import OBSTACLE, Cell
+from jacaros.robots.map.map_files import load
+from jacaros.robots.world import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance
 

@@ -8,7 +8,7 @@ from bisect import bisect_right
 from itertools import pairwise
 from typing import NamedTuple
 
-from jacaros.sim import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, Sample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance
 

@@ -12,9 +12,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from tf2_msgs.msg import TFMessage
 
-from jacaros.ros.errors import TransformUnavailable
-from jacaros.ros.message import to_seconds
-from jacaros.ros.protocols.transform import Transform, TransformBuffer
+from jacaros.robots.ros.errors import TransformUnavailable
+from jacaros.robots.ros.message import to_seconds
+from jacaros.robots.ros.protocols.transform import Transform, TransformBuffer
 
 STATIC = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

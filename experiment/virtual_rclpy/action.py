@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from jacaros.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalStatus, Outcome
 from virtual_rclpy.messages import Interface
 from virtual_rclpy.node import Node
 from virtual_rclpy.task import Future

@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.memory.graph import MemoryGraph
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
+from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock
 
 

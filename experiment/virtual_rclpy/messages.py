@@ -9,10 +9,10 @@ from functools import partial
 from types import ModuleType
 from typing import Any
 
-from jacaros.ros.errors import UnknownInterface
-from jacaros.ros.message import constant
-from jacaros.ros.names import feedback_type, goal_type, result_type
-from jacaros.ros.typestore import DefinitionSchema
+from jacaros.robots.ros.errors import UnknownInterface
+from jacaros.robots.ros.message import constant
+from jacaros.robots.ros.names import feedback_type, goal_type, result_type
+from jacaros.robots.ros.typestore import DefinitionSchema
 
 _SCHEMA = DefinitionSchema()
 _PACKAGE = re.compile(r"(\w+_msgs|std_srvs|\w+_interfaces)(?:\.(msg|srv|action))?")

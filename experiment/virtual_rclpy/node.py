@@ -5,7 +5,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from jacaros.ros.node import Publisher as GraphPublisher
+from jacaros.robots.ros.node import Publisher as GraphPublisher
 from jacaros.runtime.clock import Timer as ClockTimer
 from virtual_rclpy.graph import VirtualGraph, current
 from virtual_rclpy.messages import Interface

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Literal
 
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.qos import QoS
 
 
 class ReliabilityPolicy(Enum):

@@ -8,7 +8,7 @@ from functools import partial
 from math import dist
 from typing import Final, NamedTuple
 
-from jacaros.sim import Event, GroundTruth
+from jacaros.robots.world import Event, GroundTruth
 from jacaros.testing import Verdict, judge
 
 NEAR: Final = 1.0

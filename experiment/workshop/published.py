@@ -6,8 +6,8 @@
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from jacaros.files.yaml import plain_values
-from jacaros.metrics import CountedFile, Group, Table, as_markdown, counts_of, measure
+from jacaros.look.metrics import CountedFile, Group, Table, as_markdown, counts_of, measure
+from jacaros.runtime.files.yaml import plain_values
 
 FOLDER: Final = Path(__file__).parent
 SETTINGS: Final = ("1_fetch", "2_waste", "3_search", "4_battery")

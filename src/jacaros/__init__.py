@@ -4,7 +4,7 @@ Import the names for your Python code from here: ``from jacaros import internal_
 on first use, so ``import jacaros`` costs nothing.
 """
 
-from jacaros.exports import exported
+from jacaros.runtime.exports import exported
 
 TYPE_CHECKING = False  # True for type checkers; importing the typing module takes longer than all of this
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from jacaros.agents.python.python_agent import PythonAgent
     from jacaros.artifacts.env.errors import OperationFailed
     from jacaros.artifacts.env.values import Atom, Out, Structure
-    from jacaros.errors import InternalError, JacarosError, UsageError
-    from jacaros.mas.deployment import ProjectError
-    from jacaros.mas.embedding.mas import Mas, run
-    from jacaros.mas.embedding.waits import AgentEnded, GoalFailed, RunEnded, UnknownAgent
-    from jacaros.mas.options import RunOptions
+    from jacaros.runtime.errors import InternalError, JacarosError, UsageError
+    from jacaros.runtime.mas.deployment import ProjectError
+    from jacaros.runtime.mas.embedding.mas import Mas, run
+    from jacaros.runtime.mas.embedding.waits import AgentEnded, GoalFailed, RunEnded, UnknownAgent
+    from jacaros.runtime.mas.options import RunOptions
 
 __version__: str
 
@@ -66,11 +66,11 @@ _MODULES = {
     "jacaros.agents.python.python_agent": "PythonAgent",
     "jacaros.artifacts.env.errors": "OperationFailed",
     "jacaros.artifacts.env.values": "Atom Out Structure",
-    "jacaros.errors": "InternalError JacarosError UsageError",
-    "jacaros.mas.deployment": "ProjectError",
-    "jacaros.mas.embedding.waits": "AgentEnded GoalFailed RunEnded UnknownAgent",
-    "jacaros.mas.embedding.mas": "Mas run",
-    "jacaros.mas.options": "RunOptions",
+    "jacaros.runtime.errors": "InternalError JacarosError UsageError",
+    "jacaros.runtime.mas.deployment": "ProjectError",
+    "jacaros.runtime.mas.embedding.waits": "AgentEnded GoalFailed RunEnded UnknownAgent",
+    "jacaros.runtime.mas.embedding.mas": "Mas run",
+    "jacaros.runtime.mas.options": "RunOptions",
     "jacaros.version": "__version__=VERSION",
 }
 """Where the names are defined; views of the mind's objects have other names there."""

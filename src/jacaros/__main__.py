@@ -1,5 +1,5 @@
 """``python -m jacaros``."""
 
-from jacaros.cli.main import main
+from jacaros.runtime.cli.main import main
 
 main()

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, run_project
 from jacaros.testing.paths import angle_between, distance, turns
 

@@ -12,7 +12,7 @@ from typing import IO, Any, cast
 
 from graphs import PATIENCE, InProcesses, ProcessPeer
 
-import jacaros.ros.errors
+import jacaros.robots.ros.errors
 
 BRIDGED = (
     "rosbridge-ros1",
@@ -106,7 +106,7 @@ def result_of(answer: dict[str, Any]) -> Any:
     """Give the result, or raise what went wrong there."""
     if "error" not in answer:
         return answer["result"]
-    known = getattr(jacaros.ros.errors, answer["error"], None)
+    known = getattr(jacaros.robots.ros.errors, answer["error"], None)
     problem = (known or AssertionError)(answer["text"] if known else f"{answer}")
     if answer.get("reason") is not None:
         problem.reason = answer["reason"]

@@ -19,7 +19,7 @@ CAPABILITIES = {
 # There the peer that is asked is a node of the graph itself.
 CAPABILITIES["mqtt"] = {"topics", "transforms", "discovery"}
 CAPABILITIES["rosbridge-ros2-right"] = CAPABILITIES["memory"]
-"""Kind of graph → the capabilities (`jacaros.ros.node.Capability`) that its backend has."""
+"""Kind of graph → the capabilities (`jacaros.robots.ros.node.Capability`) that its backend has."""
 
 _SERVED_OVER_A_BRIDGE = {"refusing goals", "dying servers", "parameters"}
 BEYOND = {

@@ -17,8 +17,8 @@ from typing import IO, Any, cast
 
 import peer as peer_module
 
-import jacaros.ros.errors
-from jacaros.ros.drivers.memory.graph import MemoryGraph
+import jacaros.robots.ros.errors
+from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.runtime.clock import VirtualClock, new_event_loop
 
 PATIENCE = 90.0
@@ -167,7 +167,7 @@ class ProcessPeer:
             if answer["id"] == self._number:
                 break
         if "error" in answer:
-            known = getattr(jacaros.ros.errors, answer["error"], None)
+            known = getattr(jacaros.robots.ros.errors, answer["error"], None)
             problem = (known or AssertionError)(answer["text"] if known else f"{answer}")
             if answer["reason"] is not None:
                 problem.reason = answer["reason"]

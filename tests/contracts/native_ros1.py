@@ -11,7 +11,7 @@ from nav_msgs.msg import OccupancyGrid, Odometry
 
 
 def add_class() -> type:
-    from jacaros.ros.drivers.ros1.types import GenpySchema
+    from jacaros.robots.ros.drivers.ros1.types import GenpySchema
 
     found: type = GenpySchema().service_class("example_interfaces/srv/AddTwoInts")
     return found

@@ -17,7 +17,7 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalID
 
-from jacaros.ros.drivers.ros1.types import GenpySchema
+from jacaros.robots.ros.drivers.ros1.types import GenpySchema
 
 COUNT = "jacaros_interfaces/action/Count"
 schema = GenpySchema()

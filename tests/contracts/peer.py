@@ -20,12 +20,12 @@ from typing import Any
 from peer_actions import ActionCommands
 from peer_graph import GraphCommands
 
-from jacaros.artifacts.kit.connection import Matching
-from jacaros.ros.handoff import post
-from jacaros.ros.message import plain
-from jacaros.ros.node import Sample, TopicEvent
-from jacaros.ros.open import open_backend
-from jacaros.ros.qos import QoS
+from jacaros.robots.kit.connection import Matching
+from jacaros.robots.ros.handoff import post
+from jacaros.robots.ros.message import plain
+from jacaros.robots.ros.node import Sample, TopicEvent
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import Clock, WallClock, run
 from jacaros.runtime.trace import Cause
 

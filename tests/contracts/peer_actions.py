@@ -4,9 +4,9 @@ import asyncio
 from collections import defaultdict
 from typing import Any
 
-from jacaros.ros.action import Abort, ActionPolicy
-from jacaros.ros.backend import Backend
-from jacaros.ros.message import plain
+from jacaros.robots.ros.action import Abort, ActionPolicy
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.message import plain
 from jacaros.runtime.clock import Clock
 
 COUNT = "jacaros_interfaces/action/Count"

@@ -4,8 +4,8 @@ import asyncio
 from dataclasses import asdict
 from typing import Any
 
-from jacaros.ros.backend import Backend
-from jacaros.ros.parameter import Declaration
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.parameter import Declaration
 from jacaros.runtime.clock import Clock
 
 

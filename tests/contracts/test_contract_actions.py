@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from losses import LOST
 
-from jacaros.ros.errors import (
+from jacaros.robots.ros.errors import (
     CallFailed,
     CallTimedOut,
     GoalRejected,

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from expected import CAPABILITIES
 
-from jacaros.ros.errors import RosError
+from jacaros.robots.ros.errors import RosError
 
 Pair = tuple[Any, Any]
 ADD = "example_interfaces/srv/AddTwoInts"

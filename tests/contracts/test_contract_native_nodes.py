@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.errors import CallTimedOut
+from jacaros.robots.ros.errors import CallTimedOut
 
 Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros1", "ros2")

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServiceError
+from jacaros.robots.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServiceError
 
 Pair = tuple[Any, Any]
 pytestmark = pytest.mark.needs("parameters")

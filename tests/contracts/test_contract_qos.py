@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.errors import CapabilityMissing
+from jacaros.robots.ros.errors import CapabilityMissing
 
 Pair = tuple[Any, Any]
 INT, TEXT = "std_msgs/msg/Int32", "std_msgs/msg/String"

@@ -13,8 +13,8 @@ from graphs import InProcesses
 from masters import Master
 from presence import is_wanted
 
-from jacaros.ros.errors import ParameterUnknown, ServiceUnavailable
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.errors import ParameterUnknown, ServiceUnavailable
+from jacaros.robots.ros.qos import QoS
 
 pytestmark = [pytest.mark.ros1, pytest.mark.slow]
 
@@ -78,7 +78,7 @@ def test_an_early_message_that_cannot_be_serialised_does_not_silence_its_topic(
     # rospy serialises only with a connection, which at this moment is a race; so its publisher is a stand-in.
     import rospy
 
-    from jacaros.ros.drivers.ros1 import topics as ros1_topics
+    from jacaros.robots.ros.drivers.ros1 import topics as ros1_topics
 
     sent: list[int] = []
 
@@ -224,7 +224,7 @@ def test_a_process_has_one_node(master: Master) -> None:
     program = """
 import asyncio
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 async def main():
     one, two = open_backend("ros1", WallClock(), "one"), open_backend("ros1", WallClock(), "two")
     await one.start()
@@ -253,7 +253,7 @@ def test_a_signal_in_the_middle_of_joining_ends_the_start(master: Master) -> Non
 import asyncio
 import rospy
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 async def main():
     backend = open_backend("ros1", WallClock(), "hasty")
     def interrupted(*_, **__):
@@ -286,7 +286,7 @@ def test_a_publisher_with_a_broken_connection_is_connected_again(master: Master,
 import asyncio, sys
 import rospy
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 async def until(condition):
     async with asyncio.timeout(60):
         while not condition():

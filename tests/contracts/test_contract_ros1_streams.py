@@ -15,7 +15,7 @@ import asyncio, threading
 import rospy
 from std_msgs.msg import String
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 
 MAIN = threading.current_thread()
 
@@ -67,8 +67,8 @@ run(main, WallClock())
 LARGE = """
 import asyncio
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.qos import QoS
 
 async def until(condition):
     async with asyncio.timeout(60):

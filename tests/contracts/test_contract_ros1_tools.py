@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.errors import GoalRejected, ParameterUnknown, ServerLost
+from jacaros.robots.ros.errors import GoalRejected, ParameterUnknown, ServerLost
 
 Pair = tuple[Any, Any]
 pytestmark = [pytest.mark.only("ros1"), pytest.mark.slow]

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from losses import lose_a_call
 
-from jacaros.ros.errors import ServerGone, ServerLost
+from jacaros.robots.ros.errors import ServerGone, ServerLost
 
 Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros2")

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.ros2
 PROGRAM = """
 import resource, signal
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 
 # No room for shared memory: Fast DDS logs a warning, and uses the network.
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

@@ -14,8 +14,8 @@ pytestmark = pytest.mark.ros2
 BEGIN = """
 import asyncio, sys
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.drivers.ros2 import receiving as ros2_receiving
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.drivers.ros2 import receiving as ros2_receiving
+from jacaros.robots.ros.open import open_backend
 
 STRING = "std_msgs/msg/String"
 clock, told, heard = WallClock(), [], []
@@ -162,7 +162,7 @@ def test_without_rclpys_inner_names_all_goes_through_its_executor(tmp_path: Path
     passes(
         tmp_path,
         """
-from jacaros.ros.errors import RosError
+from jacaros.robots.ros.errors import RosError
 
 async def test(backend, publisher, hear):
     backend.subscription("/a", STRING, hear)
@@ -208,7 +208,7 @@ def test_a_deadline_is_reported_although_the_executor_takes_no_messages(tmp_path
     passes(
         tmp_path,
         """
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.qos import QoS
 
 async def test(backend, publisher, hear):
     prompt, events = QoS(deadline=0.2), []
@@ -247,7 +247,7 @@ def test_requests_that_were_never_answered_are_forgotten_with_their_goal(tmp_pat
     passes(
         tmp_path,
         """
-from jacaros.ros.errors import CallTimedOut
+from jacaros.robots.ros.errors import CallTimedOut
 
 async def test(backend, publisher, hear):
     other = open_backend("ros2", clock, "other", log=told.append)
@@ -288,7 +288,7 @@ class _Answering(dict[Any, Any]):
 
 
 def test_a_call_may_be_answered_while_it_is_forgotten() -> None:
-    from jacaros.ros.drivers.ros2.actions import Ros2GoalWire
+    from jacaros.robots.ros.drivers.ros2.actions import Ros2GoalWire
 
     wire = Ros2GoalWire.__new__(Ros2GoalWire)
     wire._calls = _Answering({"first": None, "second": None})

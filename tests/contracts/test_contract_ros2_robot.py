@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from graphs import shared_memory
 
-from jacaros.ros.errors import GoalRejected, ParameterRefused, ParameterUnknown, ServerLost
+from jacaros.robots.ros.errors import GoalRejected, ParameterRefused, ParameterUnknown, ServerLost
 
 Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros2")

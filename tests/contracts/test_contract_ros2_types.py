@@ -12,8 +12,8 @@ pytestmark = pytest.mark.ros2
 
 PROGRAM = """
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.errors import RosError
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.errors import RosError
+from jacaros.robots.ros.open import open_backend
 
 async def main():
     backend = open_backend("ros2", WallClock(), "node")
@@ -60,8 +60,8 @@ def test_a_name_already_used_with_another_type_is_reported(
 
 WRONG_PARAMETER = """
 from jacaros.runtime.clock import WallClock, run
-from jacaros.ros.errors import ParameterRefused
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.errors import ParameterRefused
+from jacaros.robots.ros.open import open_backend
 
 async def main():
     backend = open_backend("ros2", WallClock(), "node", parameters={"use_sim_time": 5})

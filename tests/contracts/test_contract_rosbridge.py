@@ -12,7 +12,7 @@ import pytest
 from bridges import BehindBridge, BridgeServer, heard, talking
 from presence import need
 
-from jacaros.ros.errors import (
+from jacaros.robots.ros.errors import (
     CallFailed,
     CallTimedOut,
     CapabilityMissing,
@@ -21,7 +21,7 @@ from jacaros.ros.errors import (
     ServiceUnavailable,
     UnknownInterface,
 )
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import WallClock, run
 
 pytestmark = pytest.mark.rosbridge

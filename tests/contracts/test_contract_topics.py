@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from bridges import BRIDGED
 
-from jacaros.ros.errors import MessageMismatch, NameInvalid, RosError, UnknownInterface
+from jacaros.robots.ros.errors import MessageMismatch, NameInvalid, RosError, UnknownInterface
 
 Pair = tuple[Any, Any]
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.ros.errors import CapabilityMissing, TransformUnavailable
+from jacaros.robots.ros.errors import CapabilityMissing, TransformUnavailable
 
 Pair = tuple[Any, Any]
 pytestmark = [pytest.mark.needs("listening", "transforms")]

@@ -9,8 +9,8 @@ import click
 import pytest
 from pages import PAGES, ROOT, blocks, name_of
 
-from jacaros.cli.main import jacaros
-from jacaros.cli.ros_arguments import as_options, has_ros_arguments
+from jacaros.runtime.cli.main import jacaros
+from jacaros.runtime.cli.ros_arguments import as_options, has_ros_arguments
 
 
 def shell_lines() -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ import pytest
 from pages import ROOT, Block, blocks
 
 from jacaros.agents.language.diagnostics import LEVELS as LEVEL_OF
-from jacaros.cli.main import call
+from jacaros.runtime.cli.main import call
 
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]

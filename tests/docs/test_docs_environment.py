@@ -16,8 +16,8 @@ from jacaros.artifacts.env.environment import (
 )
 from jacaros.artifacts.env.operation import OPERATION
 from jacaros.artifacts.tools import Barrier, Clock, Latch
-from jacaros.files.python_modules import ProjectModules
-from jacaros.mas.agents.python_objects import actions
+from jacaros.runtime.files.python_modules import ProjectModules
+from jacaros.runtime.mas.agents.python_objects import actions
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -8,7 +8,7 @@ import pytest
 from pages import PAGES, ROOT, blocks, links, name_of
 
 from jacaros.agents.language.formatting import format_program
-from jacaros.cli.run import PROGRAM
+from jacaros.runtime.cli.run import PROGRAM
 
 
 def anchors(page: Path) -> set[str]:

@@ -10,11 +10,11 @@ import msgspec
 import pytest
 from pages import ROOT
 
-from jacaros.artifacts.registry import BUILT_IN
-from jacaros.cli.main import COMMANDS
-from jacaros.mas.history.records import EVENTS
-from jacaros.sim.data.ground_truth import FIELDS
-from jacaros.sim.files.world import shipped_worlds
+from jacaros.look.records.records import EVENTS
+from jacaros.robots.registry import BUILT_IN
+from jacaros.robots.world.data.ground_truth import FIELDS
+from jacaros.robots.world.files.world import shipped_worlds
+from jacaros.runtime.cli.main import COMMANDS
 
 REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"
 

@@ -12,20 +12,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from jacaros.mas.launch import load_deployment
-from jacaros.mas.mappings import with_mappings
-from jacaros.mas.options import RunOptions
-from jacaros.mas.ros_graph import RosGraph
-from jacaros.mas.system import System
-from jacaros.ros.backend import Backend
-from jacaros.ros.drivers.memory.graph import MemoryGraph
-from jacaros.ros.open import open_backend
-from jacaros.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.ros_clock import CLOCK_TYPE, RosClock
+from jacaros.robots.world.data.ground_truth import GroundTruth
+from jacaros.robots.world.files.world import load_world
+from jacaros.robots.world.node import SimNode
+from jacaros.robots.world.physics.world import World
 from jacaros.runtime.clock import Clock, Timer, VirtualClock, run
-from jacaros.sim.data.ground_truth import GroundTruth
-from jacaros.sim.files.world import load_world
-from jacaros.sim.node import SimNode
-from jacaros.sim.physics.world import World
+from jacaros.runtime.mas.launch import load_deployment
+from jacaros.runtime.mas.mappings import with_mappings
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.ros_graph import RosGraph
+from jacaros.runtime.mas.system import System
 
 PROGRAMS = Path(__file__).parent / "programs"
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 from faults_lab import Lab, in_lab
 
-from jacaros.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
+from jacaros.robots.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
 
 
 @pytest.mark.parametrize("topic", ["/odom", "/cmd_vel"])

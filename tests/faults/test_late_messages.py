@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jacaros.cli.main import call
-from jacaros.cli.recordings import why
+from jacaros.runtime.cli.main import call
+from jacaros.runtime.cli.recordings import why
 from jacaros.testing import run_project
 
 PROGRAMS = Path(__file__).parent / "programs"

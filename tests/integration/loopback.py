@@ -20,7 +20,7 @@ from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest, 
 from jacaros.artifacts.env.ports import OnMade, OnOutcome, UnderWay, ignore_made
 from jacaros.artifacts.env.property import ObservableProperty, Observation, Observer, Signal
 from jacaros.artifacts.env.values import Atom, Out, Structure
-from jacaros.mas.system import System
+from jacaros.runtime.mas.system import System
 from jacaros.runtime.trace import Cause
 
 HOPS = 3
@@ -443,7 +443,7 @@ def _read(data: list[Any]) -> SpeechAct:
 
 
 class RemoteAgents:
-    """The agents of the other side, as far as it has told of them: `jacaros.mas.directory.Participants`."""
+    """The agents of the other side, as far as it has told of them: `jacaros.runtime.mas.directory.Participants`."""
 
     def __init__(self, cable: Cable) -> None:
         self._mailbox = _RemoteMailbox(cable)

@@ -56,8 +56,9 @@ def test_an_endless_plan_does_not_block_other_agents(tmp_path: Path, kind: str, 
 def test_a_busy_run_leaves_the_interpreter_to_other_threads_within_a_millisecond(tmp_path: Path) -> None:
     (tmp_path / "bob.asl").write_text("!g. +!g <- .stopMAS.", encoding="utf-8")
     command = (
-        "import sys; from jacaros.mas.console import StandardConsole; from jacaros.mas.launch import launch; "
-        "from jacaros.mas.options import RunOptions; "
+        "import sys; from jacaros.runtime.mas.console import StandardConsole; "
+        "from jacaros.runtime.mas.launch import launch; "
+        "from jacaros.runtime.mas.options import RunOptions; "
         "launch('bob.asl', RunOptions(), StandardConsole(), lambda mas: print(sys.getswitchinterval()))"
     )
     done = subprocess.run(

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from jacaros.mas.system import System
+from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, run_project
 
 RATE = 0.001

@@ -39,7 +39,7 @@ def sleep_on(n: float) -> None:
 """
 ARTIFACTS = """
 import asyncio
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.artifacts import Artifact, operation
 
 class Endless(Artifact):

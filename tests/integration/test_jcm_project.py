@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 
-from jacaros.mas.checks.files import check_files
+from jacaros.runtime.mas.checks.files import check_files
 from jacaros.testing import run_project
 
 FILES = {

@@ -10,7 +10,7 @@ import pytest
 
 from jacaros.agents.mind.actions import internal_action
 from jacaros.agents.mind.actions.internal_action import InternalAction
-from jacaros.mas.system import OUT_OF_MEMORY, System
+from jacaros.runtime.mas.system import OUT_OF_MEMORY, System
 from jacaros.testing import run_project
 
 MEGABYTE = 1 << 20
@@ -92,7 +92,9 @@ def limited_to(size: int, folder: Path, program: str) -> "subprocess.Popen[str]"
         if sys.platform == "linux"
         else ""
     )
-    command = f"{limit}from jacaros.cli.main import main; import sys; sys.exit(main(['run', '{program}']))"
+    command = (
+        f"{limit}from jacaros.runtime.cli.main import main; import sys; sys.exit(main(['run', '{program}']))"
+    )
     return subprocess.Popen(
         [sys.executable, "-c", command],
         cwd=folder,

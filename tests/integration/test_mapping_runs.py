@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 
-from jacaros.cli.main import call
+from jacaros.runtime.cli.main import call
 
 ROBOT = """
     properties:

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.mas.system import System
-from jacaros.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.robots.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, run_project
 
 ARTIFACTS = Path(__file__).parent / "ros" / "programs" / "counting" / "artifacts.py"
@@ -122,7 +122,7 @@ def test_a_goal_cancelled_by_another_client_fails_as_canceled(
     async def send(*arguments: object) -> CancelledElsewhere:
         return CancelledElsewhere()
 
-    monkeypatch.setattr("jacaros.ros.action_client.ActionClient.send", send)
+    monkeypatch.setattr("jacaros.robots.ros.action_client.ActionClient.send", send)
     result = run(tmp_path, "+!go <- count(5, 1, L); .print(never).")
     assert result.of("counter") == ["action_failed canceled"]
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import jacaros
-from jacaros.ros.drivers.memory.graph import MemoryPublisher
+from jacaros.robots.ros.drivers.memory.graph import MemoryPublisher
 from jacaros.testing import run_project
 
 JOURNEY = Path(__file__).resolve().parents[2] / "docs" / "explanation" / "journey-of-a-message.md"

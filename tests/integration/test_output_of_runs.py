@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.inspector.recording import Recording
+from jacaros.look.records.recording import Recording
 
 JACAROS = [sys.executable, "-m", "jacaros"]
 

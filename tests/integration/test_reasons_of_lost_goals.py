@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.mas.system import System
-from jacaros.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.robots.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
 MAPPING = """\
@@ -99,7 +99,7 @@ def test_a_goal_cancelled_by_another_client(tmp_path: Path, monkeypatch: pytest.
     async def send(*arguments: object) -> Cancelled:
         return Cancelled()
 
-    monkeypatch.setattr("jacaros.ros.action_client.ActionClient.send", send)
+    monkeypatch.setattr("jacaros.robots.ros.action_client.ActionClient.send", send)
     message = "another client cancelled the goal of action /count"
     assert told(tmp_path, "count(5)") == expected(message, "count(5)", "canceled")
 

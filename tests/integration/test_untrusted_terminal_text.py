@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from jacaros.cli.main import COMMANDS
+from jacaros.runtime.cli.main import COMMANDS
 
 EVIL = "\x1b]0;owned\x07\x1b[2J\x9b31m\x7f\u202e"
 OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]")
@@ -57,7 +57,7 @@ RUNS: dict[str, list[list[str]]] = {
 
 EACH = """
 import json, sys
-from jacaros.cli.main import main
+from jacaros.runtime.cli.main import main
 streams = sys.stdout, sys.stderr
 for arguments in json.loads(sys.argv[1]):
     sys.stdout, sys.stderr = streams

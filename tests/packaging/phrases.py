@@ -1,6 +1,6 @@
 """Phrases that our texts avoid, and where they occur.
 
-Run it on files or folders to list them: ``python tests/packaging/phrases.py docs src/jacaros/sim``.
+Run it on files or folders to list them: ``python tests/packaging/phrases.py docs src/jacaros/robots/world``.
 """
 
 import io

@@ -91,4 +91,4 @@ def test_an_installation_by_setup_py_has_the_places_of_ros(tree: Path, tmp_path:
     assert (prefix / "share/ament_index/resource_index/packages/jacaros").is_file()
     assert (prefix / "share/jacaros/package.xml").is_file()
     assert (prefix / "lib/jacaros/jacaros").is_file(), "where `ros2 run jacaros jacaros` looks"
-    assert list(prefix.glob("**/jacaros/sim/worlds/patrol.yaml"))
+    assert list(prefix.glob("**/jacaros/robots/world/worlds/patrol.yaml"))

@@ -10,11 +10,11 @@ import cbor2
 from conversion import Mismatch, from_json, short, to_cbor, to_json
 from goals import AdvertisedAction
 
-from jacaros.errors import JacarosError
-from jacaros.ros.errors import CallFailed, CallTimedOut
-from jacaros.ros.names import message_type, request_type, response_type, service_type
-from jacaros.ros.node import Sample
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.errors import CallFailed, CallTimedOut
+from jacaros.robots.ros.names import message_type, request_type, response_type, service_type
+from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.qos import QoS
+from jacaros.runtime.errors import JacarosError
 
 if TYPE_CHECKING:
     from server import Bridge

@@ -9,8 +9,8 @@ from typing import Any
 
 import cbor2
 
-from jacaros.ros.fields import FLOATS, INTEGER_RANGES, FieldType
-from jacaros.ros.node import Node
+from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
+from jacaros.robots.ros.node import Node
 
 TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 OCTETS = ("uint8", "char")

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from conversion import Mismatch, from_json, to_json
 
-from jacaros.ros.action import Abort, GoalStatus, ServerGoal
-from jacaros.ros.errors import GoalRejected, ServerUnavailable, ServiceError
-from jacaros.ros.names import action_type, feedback_type, goal_type, result_type
+from jacaros.robots.ros.action import Abort, GoalStatus, ServerGoal
+from jacaros.robots.ros.errors import GoalRejected, ServerUnavailable, ServiceError
+from jacaros.robots.ros.names import action_type, feedback_type, goal_type, result_type
 
 if TYPE_CHECKING:
     from connection import Connection

@@ -5,8 +5,8 @@ from typing import Any
 
 from conversion import to_json
 
-from jacaros.ros.errors import CallFailed, ParameterRefused, ParameterUnknown
-from jacaros.ros.node import Node
+from jacaros.robots.ros.errors import CallFailed, ParameterRefused, ParameterUnknown
+from jacaros.robots.ros.node import Node
 
 SERVICES = {
     "get_parameters": "rcl_interfaces/srv/GetParameters",

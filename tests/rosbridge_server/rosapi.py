@@ -8,11 +8,11 @@ from typing import Any
 from conversion import short
 from parameters import ParameterServices
 
-from jacaros.ros.errors import CallFailed, JacarosError, ParameterError
-from jacaros.ros.fields import FieldType
-from jacaros.ros.interfaces import BUILT_IN, split
-from jacaros.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.ros.node import Node
+from jacaros.robots.ros.errors import CallFailed, JacarosError, ParameterError
+from jacaros.robots.ros.fields import FieldType
+from jacaros.robots.ros.interfaces import BUILT_IN, split
+from jacaros.robots.ros.names import feedback_type, goal_type, request_type, response_type, result_type
+from jacaros.robots.ros.node import Node
 
 ACTIONLIB = ("goal", "cancel", "feedback", "result", "status")
 NEEDED = 0.5

@@ -28,10 +28,10 @@ from parameters import ParameterServices
 from peer import Peer
 from rosapi import RosApi, write_ros1_types
 
-from jacaros.ros.drivers.memory.backend import MemoryBackend
-from jacaros.ros.drivers.memory.graph import MemoryGraph
-from jacaros.ros.handoff import post
-from jacaros.ros.node import NodeSettings
+from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
+from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
+from jacaros.robots.ros.handoff import post
+from jacaros.robots.ros.node import NodeSettings
 from jacaros.runtime.clock import WallClock, run
 
 DOING = 0.002

@@ -9,11 +9,11 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from jacaros.mas.deployment import Deployment
-from jacaros.mas.launch import launch, load_deployment
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
-from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.runtime.mas.deployment import Deployment
+from jacaros.runtime.mas.launch import launch, load_deployment
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, run_project
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.errors import JacarosError
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
+from jacaros.runtime.errors import JacarosError
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 

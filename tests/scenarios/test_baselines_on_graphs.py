@@ -9,7 +9,7 @@ from examples_lab import EXAMPLES, checker
 from processes import Program, WorldProcess
 from test_examples_on_graphs import HOUSE, changed, not_on_kilted
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict
 from jacaros.testing.paths import stays
 

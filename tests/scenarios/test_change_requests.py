@@ -8,8 +8,8 @@ from tempfile import TemporaryDirectory
 import pytest
 from examples_lab import EXAMPLES, falsified
 
-from jacaros.errors import JacarosError
-from jacaros.sim import Event
+from jacaros.robots.world import Event
+from jacaros.runtime.errors import JacarosError
 from jacaros.testing import RunResult, run_project
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))

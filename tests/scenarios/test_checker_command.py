@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, run_of
 
-from jacaros.sim import GroundTruth
-from jacaros.sim.data.ground_truth import header
+from jacaros.robots.world import GroundTruth
+from jacaros.robots.world.data.ground_truth import header
 
 CHECKED = {
     "01_out_and_back": "01_out_and_back/out_and_back.jcm",

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
-from jacaros.sim.files.faults import read_faults
-from jacaros.sim.files.world import load_world
+from jacaros.robots.world.files.faults import read_faults
+from jacaros.robots.world.files.world import load_world
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 

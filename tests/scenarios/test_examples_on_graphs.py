@@ -9,15 +9,15 @@ import pytest
 from examples_lab import EXAMPLES, checker
 from processes import Agents, WorldProcess
 
-import jacaros.sim
-from jacaros.sim import GroundTruth
+import jacaros.robots.world
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict
 from jacaros.testing.paths import stays
 
 RunWorld = Callable[..., WorldProcess]
 RunAgents = Callable[..., Agents]
 
-HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
+HOUSE = Path(jacaros.robots.world.__file__).parent / "worlds" / "house.yaml"
 
 
 def is_kilted() -> bool:

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from examples_lab import LONGEST, checker, falsified, run_of, spoilt, unexpected
 
-from jacaros.artifacts.map.map_files import load, save
-from jacaros.sim import GroundTruth
+from jacaros.robots.map.map_files import load, save
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, run_project
 
 PROJECT = "10_explore/explore.jcm"

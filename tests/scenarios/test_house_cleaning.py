@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 from examples_lab import checker, doing_at, falsified, run, run_of, spoilt, world_with
 
-import jacaros.sim
-from jacaros.sim import Event, GroundTruth
+import jacaros.robots.world
+from jacaros.robots.world import Event, GroundTruth
 from jacaros.testing import run_project
 
 PROJECT = "05_house_cleaning/house_cleaning.jcm"
-HOUSE = Path(jacaros.sim.__file__).parent / "worlds" / "house.yaml"
+HOUSE = Path(jacaros.robots.world.__file__).parent / "worlds" / "house.yaml"
 check = checker("05_house_cleaning").check
 
 

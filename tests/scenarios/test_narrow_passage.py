@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import LONGEST, checker, falsified, run, run_of, spoilt
 
-from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.robots.world import Event, GroundTruth, Sample
 from jacaros.testing import run_project
 
 PROJECT = "11_narrow_passage/narrow_passage.jcm"

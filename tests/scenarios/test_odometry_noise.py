@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, run, spoilt
 
-from jacaros.mas.launch import load_deployment
-from jacaros.sim.files.world import load_world
+from jacaros.robots.world.files.world import load_world
+from jacaros.runtime.mas.launch import load_deployment
 from jacaros.testing import run_project
 
 DRIVING = {

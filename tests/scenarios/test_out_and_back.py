@@ -5,7 +5,7 @@ import re
 
 from examples_lab import checker, falsified, run, run_of
 
-from jacaros.sim import Event
+from jacaros.robots.world import Event
 
 PROJECT = "01_out_and_back/out_and_back.jcm"
 check = checker("01_out_and_back").check

@@ -6,8 +6,8 @@ from math import dist
 import pytest
 from examples_lab import checker, falsified, run_of, spoilt
 
-from jacaros.files.python_modules import ProjectModules
-from jacaros.sim import Event, GroundTruth
+from jacaros.robots.world import Event, GroundTruth
+from jacaros.runtime.files.python_modules import ProjectModules
 from jacaros.testing import run_project
 
 PROJECT = "08_parcels/parcels.jcm"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, doing_at, falsified, run, run_of, spoilt, world_with
 
-from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.robots.world import Event, GroundTruth, Sample
 from jacaros.testing import run_project
 
 PROJECT = "04_patrol/patrol.jcm"

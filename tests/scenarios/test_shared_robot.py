@@ -9,8 +9,8 @@ import pytest
 from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
 
 from jacaros.artifacts import Session
-from jacaros.mas.system import System
-from jacaros.sim import Event, GroundTruth, Sample
+from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
 PROJECT = "07_shared_robot/shared_robot.jcm"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import checker, falsified, run_of, spoilt
 
-from jacaros.sim import Event, GroundTruth
+from jacaros.robots.world import Event, GroundTruth
 from jacaros.testing import run_project
 
 PROJECT = "09_three_robots/three_robots.jcm"

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.cli.main import call
-from jacaros.inspector import Recording
-from jacaros.mas.history.records import Record, is_well_formed
-from jacaros.mas.history.why import explain
-from jacaros.mas.replaying import replay_against
+from jacaros.look import Recording
+from jacaros.look.records.records import Record, is_well_formed
+from jacaros.look.why.why import explain
+from jacaros.runtime.cli.main import call
+from jacaros.runtime.mas.replaying import replay_against
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "04_patrol"
 LOW = '+diagnostics("Low Battery")'

@@ -9,7 +9,7 @@ from types import ModuleType
 import pytest
 from examples_lab import falsified, world_with
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import RunResult, Verdict, run_project
 
 FOLDER = Path(__file__).parents[2] / "experiment" / "workshop"

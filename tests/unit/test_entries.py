@@ -5,8 +5,8 @@ from typing import Annotated
 
 import pytest
 
-from jacaros.files.entries import either, flag, number, read, section, text, whole
-from jacaros.files.yaml import Problem, YamlFileError, read_document
+from jacaros.runtime.files.entries import either, flag, number, read, section, text, whole
+from jacaros.runtime.files.yaml import Problem, YamlFileError, read_document
 
 
 @dataclass(frozen=True)

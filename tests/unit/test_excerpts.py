@@ -9,8 +9,8 @@ from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span, render_all
 from jacaros.agents.language.loader import read_program
 from jacaros.agents.mind.actions.internal_action import STANDARD
-from jacaros.files.texts import LONGEST, MOST, WIDTH, escaped, marked, printable
-from jacaros.files.yaml import Problem, YamlFileError
+from jacaros.runtime.files.texts import LONGEST, MOST, WIDTH, escaped, marked, printable
+from jacaros.runtime.files.yaml import Problem, YamlFileError
 
 
 def test_control_characters_and_marks_of_direction_are_escaped() -> None:

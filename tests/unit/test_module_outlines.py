@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.cli.main import call
-from jacaros.mas.checks.files import check_files
+from jacaros.runtime.cli.main import call
+from jacaros.runtime.mas.checks.files import check_files
 
 ROOT = Path(__file__).parents[2]
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from jacaros.artifacts.map import map_files
-from jacaros.artifacts.map.cells import FREE, OBSTACLE
-from jacaros.artifacts.map.map_files import Grid
-from jacaros.files import maps
-from jacaros.inspector.graph_scene import map_drawing
-from jacaros.sim import World
-from jacaros.sim.files.map import map_of_world, read_map
+from jacaros.look.page.graph_scene import map_drawing
+from jacaros.robots.map import map_files
+from jacaros.robots.map.cells import FREE, OBSTACLE
+from jacaros.robots.map.map_files import Grid
+from jacaros.robots.world import World
+from jacaros.robots.world.files.map import map_of_world, read_map
+from jacaros.runtime.files import maps
 
 MEANINGS = [
     (-1, None),

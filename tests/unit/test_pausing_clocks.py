@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from fake_real_time import FakeTimeLoop, in_fake_time
 
-from jacaros.ros.ros_clock import RosClock
+from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import COMPACT_ABOVE, Clock, TimerQueue, VirtualClock, WallClock, of_run, run
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jacaros.files.texts import aside, close_matches, did_you_mean, suggestion
+from jacaros.runtime.files.texts import aside, close_matches, did_you_mean, suggestion
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.files.texts import UnusableFile, file_bytes, file_text, is_file
+from jacaros.runtime.files.texts import UnusableFile, file_bytes, file_text, is_file
 
 
 def test_a_byte_order_mark_does_not_belong_to_the_text(tmp_path: Path) -> None:

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.artifacts.mapping.file import MappingError, load_mapping, read_mapping
-from jacaros.files.yaml import Problem, read_document
+from jacaros.robots.mapping.file import MappingError, load_mapping, read_mapping
+from jacaros.runtime.files.yaml import Problem, read_document
 
 LAUGHS = "a: &a [1,1,1,1,1,1,1,1,1,1]\n" + "".join(
     f"{new}: &{new} [{','.join([f'*{old}'] * 10)}]\n" for old, new in zip("abcdefg", "bcdefgh", strict=True)

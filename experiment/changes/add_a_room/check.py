@@ -4,7 +4,7 @@ import runpy
 import sys
 from pathlib import Path
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict, judge
 
 house = runpy.run_path(str(Path(__file__).parents[3] / "examples" / "05_house_cleaning" / "check.py"))

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from jacaros.sim import Event, GroundTruth
+from jacaros.robots.world import Event, GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, stays
 

@@ -7,7 +7,7 @@ import runpy
 import sys
 from pathlib import Path
 
-from jacaros.sim import Event, GroundTruth
+from jacaros.robots.world import Event, GroundTruth
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance
 

@@ -6,7 +6,7 @@ Python, use a `Session`. Each name is loaded on first use. No artifact depends o
 
 from typing import TYPE_CHECKING
 
-from jacaros.exports import exported
+from jacaros.runtime.exports import exported
 
 if TYPE_CHECKING:
     from jacaros.artifacts.env.artifact import Artifact

@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
-from jacaros.files.texts import suggestion
+from jacaros.runtime.files.texts import suggestion
 
 # What is declared about streams, as data: which readings are delivered, and which events are derived.
 #
-# A `ReadingPolicy` and a `Spec` are plain values: `jacaros.artifacts.kit.reading` and `Pattern` follow them.
+# A `ReadingPolicy` and a `Spec` are plain values: `jacaros.robots.kit.reading` and `Pattern` follow them.
 
 Values = tuple[object, ...]
 

@@ -17,7 +17,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, TextIO
 
-from jacaros.files.texts import is_worth_a_line, visible
+from jacaros.runtime.files.texts import is_worth_a_line, visible
 
 LIMIT = 8 << 20
 """Maximum number of bytes waiting for a sink."""
@@ -79,7 +79,7 @@ class Output:
         patience: seconds that `write` waits if the queue is full and the sink accepts nothing; then lines are dropped until
             half of the queue is free.
         delay: seconds that text may be collected before the thread writes it; 0 waits a moment until it is written.
-        raw: write control characters as they are; otherwise they are escaped (`jacaros.files.texts.visible`).
+        raw: write control characters as they are; otherwise they are escaped (`jacaros.runtime.files.texts.visible`).
 
     Attributes:
         when_gone: called once, in any thread, instead of a warning when the reader has closed its end of a pipe.

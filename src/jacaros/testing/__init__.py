@@ -5,10 +5,10 @@ Names are imported on first use: pytest imports this package at every start, for
 
 from typing import TYPE_CHECKING
 
-from jacaros.exports import exported
+from jacaros.runtime.exports import exported
 
 if TYPE_CHECKING:
-    from jacaros.mas.embedding.running_agent import PursuedGoal
+    from jacaros.runtime.mas.embedding.running_agent import PursuedGoal
     from jacaros.testing.harness import ActionFailed, AgentHarness, RecordedAct, SentMessage
     from jacaros.testing.paths import Verdict, judge
     from jacaros.testing.run import RunResult, run_project
@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 _MODULES = {
-    "jacaros.mas.embedding.running_agent": "PursuedGoal",
+    "jacaros.runtime.mas.embedding.running_agent": "PursuedGoal",
     "jacaros.testing.harness": "ActionFailed AgentHarness RecordedAct SentMessage",
     "jacaros.testing.paths": "Verdict judge",
     "jacaros.testing.run": "RunResult run_project",

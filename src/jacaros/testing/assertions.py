@@ -32,7 +32,7 @@ from jacaros.agents.terms.values import (
     is_list,
     list_items,
 )
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 _STOP: Final = ".stopMAS"
 ERROR_MSG = functor("error_msg", 1)

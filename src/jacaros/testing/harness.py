@@ -33,14 +33,14 @@ from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.terms.substitution import free_variables
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Term, Var
-from jacaros.errors import UsageError
-from jacaros.files.python_modules import ProjectModules
-from jacaros.files.texts import file_text
-from jacaros.mas.agents.host import Ended, without_exit
-from jacaros.mas.agents.programs import Programs
-from jacaros.mas.agents.python_code import PythonCode
-from jacaros.mas.embedding.running_agent import OpenMind, PursuedGoal, literal
 from jacaros.runtime.clock import Timer, VirtualClock, run
+from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.python_modules import ProjectModules
+from jacaros.runtime.files.texts import file_text
+from jacaros.runtime.mas.agents.host import Ended, without_exit
+from jacaros.runtime.mas.agents.programs import Programs
+from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.embedding.running_agent import OpenMind, PursuedGoal, literal
 from jacaros.testing.assertions import Complete, failed, matches
 
 Action = Callable[..., object]

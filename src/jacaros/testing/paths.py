@@ -20,10 +20,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jacaros.errors import JacarosError
-from jacaros.plane.pose import Pose, normalised
-from jacaros.plane.shapes import Segment
-from jacaros.sim.data.ground_truth import Event, GroundTruth, Sample
+from jacaros.robots.plane.pose import Pose, normalised
+from jacaros.robots.plane.shapes import Segment
+from jacaros.robots.world.data.ground_truth import Event, GroundTruth, Sample
+from jacaros.runtime.errors import JacarosError
 
 
 @dataclass(slots=True)

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from jacaros.errors import JacarosError
-from jacaros.mas.deployment import Deployment
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
-from jacaros.mas.system import System
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.mas.deployment import Deployment
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.system import System
 
 TEST_RUN: Final = RunOptions(fast=True, seed=0, keep_ground_truth=True)
 """Default options of a run in a test."""
@@ -24,7 +24,7 @@ class RunResult:
         errors: other output: errors, warnings and log lines.
         exit_code: exit code that the ``jacaros`` command would return.
         seconds: duration on the clock of the run.
-        ground_truth: ground truth of the embedded world (`jacaros.sim.GroundTruth`); None without a world.
+        ground_truth: ground truth of the embedded world (`jacaros.robots.world.GroundTruth`); None without a world.
     """
 
     lines: list[str] = field(default_factory=list)

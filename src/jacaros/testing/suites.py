@@ -27,13 +27,19 @@ from jacaros.agents.language.diagnostics import AslError, Diagnostic, Span, exce
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import rebuilt
-from jacaros.errors import JacarosError, UsageError
-from jacaros.files.python_modules import ProjectModules
-from jacaros.files.texts import file_text, help_line, is_file
-from jacaros.mas.agents.programs import PROJECTS, Programs, SourcePath, project_folders, source_folders
-from jacaros.mas.agents.python_code import PythonCode
-from jacaros.mas.deployment import AgentSpec, Deployment, has_own_artifacts
-from jacaros.mas.launch import load_deployment
+from jacaros.runtime.errors import JacarosError, UsageError
+from jacaros.runtime.files.python_modules import ProjectModules
+from jacaros.runtime.files.texts import file_text, help_line, is_file
+from jacaros.runtime.mas.agents.programs import (
+    PROJECTS,
+    Programs,
+    SourcePath,
+    project_folders,
+    source_folders,
+)
+from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.deployment import AgentSpec, Deployment, has_own_artifacts
+from jacaros.runtime.mas.launch import load_deployment
 from jacaros.testing.assertions import UNTESTED, Assertion
 
 LIBRARY: Final = "tester_agent.asl"

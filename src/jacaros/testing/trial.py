@@ -19,15 +19,15 @@ from jacaros.agents.mind.rules.goals import WatchedGoal
 from jacaros.agents.mind.state.intention import PLAN, STEP, Intention
 from jacaros.agents.mind.state.pending import is_action
 from jacaros.agents.terms.text import text
-from jacaros.errors import InternalError, JacarosError
-from jacaros.mas.agents.host import AgentHost
-from jacaros.mas.agents.python_code import PythonCode
-from jacaros.mas.deployment import Deployment, ProjectError
-from jacaros.mas.launch import mapped
-from jacaros.mas.options import RunOptions
-from jacaros.mas.ros_graph import NO_WORLD
-from jacaros.mas.system import System
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, run
+from jacaros.runtime.errors import InternalError, JacarosError
+from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.deployment import Deployment, ProjectError
+from jacaros.runtime.mas.launch import mapped
+from jacaros.runtime.mas.options import RunOptions
+from jacaros.runtime.mas.ros_graph import NO_WORLD
+from jacaros.runtime.mas.system import System
 from jacaros.testing.assertions import Assertion, Fakes, Probe, actions
 from jacaros.testing.suites import AgentTest, Outcome, Problem, Suite, with_assertions
 

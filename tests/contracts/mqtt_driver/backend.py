@@ -10,12 +10,12 @@ from typing import Any
 
 import aiomqtt
 
-from jacaros.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
-from jacaros.ros.errors import ServiceUnavailable
-from jacaros.ros.handoff import in_thread, post
-from jacaros.ros.lifetime import Lifetime
-from jacaros.ros.node import Capability, NodeSettings, Parts
-from jacaros.ros.typestore import DefinitionSchema
+from jacaros.robots.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
+from jacaros.robots.ros.errors import ServiceUnavailable
+from jacaros.robots.ros.handoff import in_thread, post
+from jacaros.robots.ros.lifetime import Lifetime
+from jacaros.robots.ros.node import Capability, NodeSettings, Parts
+from jacaros.robots.ros.typestore import DefinitionSchema
 from mqtt_driver.topics import MqttMultiplexer, MqttPublisher, MqttSubscription, parts_of
 
 NODES = "jacaros/nodes"

@@ -4,9 +4,9 @@ import json
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from jacaros.ros.message import plain
-from jacaros.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
-from jacaros.ros.qos import QoS
+from jacaros.robots.ros.message import plain
+from jacaros.robots.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
+from jacaros.robots.ros.qos import QoS
 
 if TYPE_CHECKING:
     from mqtt_driver.backend import MqttBackend

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from jacaros.sim.data.ground_truth import GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, Sample
 
 Point = tuple[float, float]
 

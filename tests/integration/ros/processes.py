@@ -13,7 +13,7 @@ from typing import IO
 
 from graphs import in_use, shared_memory
 
-from jacaros.sim.data.ground_truth import GroundTruth
+from jacaros.robots.world.data.ground_truth import GroundTruth
 
 PATIENCE = 150.0
 """Seconds after which a test gives up; far more than any step takes on a busy machine."""

@@ -12,7 +12,7 @@ from typing import Any
 from processes import JACAROS, PATIENCE, Agents, WorldProcess
 from websockets.sync.client import ClientConnection, connect
 
-from jacaros.sim.data.ground_truth import GroundTruth
+from jacaros.robots.world.data.ground_truth import GroundTruth
 
 STILL = 0.8
 """Seconds after which a robot that was commanded to stand stands: 0.2 more than a signal may take, for its brakes."""

@@ -7,7 +7,7 @@ import pytest
 from graphs import ProcessPeer
 from processes import Agents, wait_until
 
-from jacaros.ros.errors import ParameterRefused
+from jacaros.robots.ros.errors import ParameterRefused
 
 MAPPING = str(Path(__file__).parent / "programs" / "tuned.yaml")
 NODE = "/r1/guard"

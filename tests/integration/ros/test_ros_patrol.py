@@ -9,7 +9,7 @@ from judging import visits
 from masters import Master
 from processes import Agents, WorldProcess, wait_until
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict
 from jacaros.testing.paths import judge_recharging, stays
 

@@ -6,7 +6,7 @@ import pytest
 from examples_lab import EXAMPLES, checker
 from processes import Agents, WorldProcess
 
-from jacaros.sim import GroundTruth
+from jacaros.robots.world import GroundTruth
 
 ROBOTS = ("robot_1", "robot_2", "robot_3")
 module = checker("09_three_robots")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from processes import Agents, WorldProcess
 
-from jacaros.errors import JacarosError
-from jacaros.inspector import Recording
+from jacaros.look import Recording
+from jacaros.runtime.errors import JacarosError
 
 
 def test_a_recording_has_the_map_and_the_robot(

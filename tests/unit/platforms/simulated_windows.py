@@ -228,6 +228,6 @@ def become_windows() -> None:
 if __name__ == "__main__":
     become_windows()
     sys.path[0] = str(Path.cwd())
-    from jacaros.cli.main import main
+    from jacaros.runtime.cli.main import main
 
     main(sys.argv[1:])

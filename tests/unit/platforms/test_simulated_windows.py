@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.files.texts import shown_from
+from jacaros.runtime.files.texts import shown_from
 from jacaros.runtime.output import PLAIN
 
 ROOT = Path(__file__).parents[3]
@@ -290,7 +290,7 @@ def test_no_posix_name_is_evaluated_at_import() -> None:
         "root = pathlib.Path(sys.argv[1])\n"
         "for file in sorted((root / 'jacaros').rglob('*.py')):\n"
         "    name = '.'.join(file.relative_to(root).with_suffix('').parts).removesuffix('.__init__')\n"
-        "    if not name.startswith(('jacaros.ros.drivers.', 'jacaros.__main__')):\n"
+        "    if not name.startswith(('jacaros.robots.ros.drivers.', 'jacaros.__main__')):\n"
         "        importlib.import_module(name)\n"
     )
     subprocess.run(

@@ -1,6 +1,6 @@
 """Stays in docks, from the ground truth."""
 
-from jacaros.sim import GroundTruth, World
+from jacaros.robots.world import GroundTruth, World
 from jacaros.testing import Verdict
 from jacaros.testing.paths import judge_recharging, stays
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.sim import GroundTruth
-from jacaros.sim.data.ground_truth import header
+from jacaros.robots.world import GroundTruth
+from jacaros.robots.world.data.ground_truth import header
 from jacaros.testing import Verdict, judge
 
 ROBOT = {"name": "r", "pose": [0, 0, 0], "radius": 0.17}

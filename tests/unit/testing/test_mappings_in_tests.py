@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from jacaros.mas.system import System
-from jacaros.ros.qos import LATCHED
+from jacaros.robots.ros.qos import LATCHED
+from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 from jacaros.testing.suites import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from jacaros.plane.pose import Pose
-from jacaros.sim import Sample, World
+from jacaros.robots.plane.pose import Pose
+from jacaros.robots.world import Sample, World
 from jacaros.testing.paths import angle_between, distance, seen_from, to_segment, turns
 
 

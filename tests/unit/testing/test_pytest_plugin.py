@@ -88,8 +88,8 @@ def test_the_plugin_imports_little() -> None:
     heavy = {
         "jacaros.agents.language",
         "jacaros.agents.mind",
-        "jacaros.mas",
-        "jacaros.sim",
+        "jacaros.runtime.mas",
+        "jacaros.robots.world",
         "numpy",
         "click",
         "rich",

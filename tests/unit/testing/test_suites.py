@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.errors import UsageError
+from jacaros.runtime.errors import UsageError
 from jacaros.testing.suites import collect, suite_of
 
 Write = Callable[..., Path]

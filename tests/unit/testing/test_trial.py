@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.agents.programs import SourcePath
-from jacaros.mas.checks.files import check_files
 from jacaros.runtime import clock
+from jacaros.runtime.mas.agents.programs import SourcePath
+from jacaros.runtime.mas.checks.files import check_files
 from jacaros.testing.suites import Outcome, suite_of
 from jacaros.testing.trial import TrialOptions, run_suite
 

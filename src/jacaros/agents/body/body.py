@@ -46,8 +46,8 @@ from jacaros.artifacts.presence.presence import (
     UnknownOperation,
     filter_of,
 )
-from jacaros.files.texts import aside
 from jacaros.runtime.clock import Clock
+from jacaros.runtime.files.texts import aside
 
 # An external action as the body reads it: its name, arguments and direction.
 #

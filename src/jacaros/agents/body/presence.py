@@ -18,7 +18,7 @@ from jacaros.artifacts.env.ports import Workspace
 from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.presence.presence import Focused, JoinedWorkspaces, Presence
-from jacaros.files.texts import aside
+from jacaros.runtime.files.texts import aside
 
 # The focused artifacts of an agent, whose properties and signals it perceives.
 

@@ -39,7 +39,7 @@ from jacaros.agents.language.cursor import is_slip_of
 from jacaros.agents.language.diagnostics import LEVELS, Diagnostic, SourceFile, Span, problem
 from jacaros.agents.language.lexer import Comment, Token, tokenize
 from jacaros.agents.language.nodes import ByKind, is_ground
-from jacaros.files.texts import did_you_mean, suggestion
+from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 # Comments that switch warnings off.
 #

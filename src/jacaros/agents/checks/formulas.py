@@ -17,7 +17,7 @@ from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.lowering import format_term
 from jacaros.agents.language.nodes import children, names_in, nodes_in, operands, variables_in, walk
 from jacaros.agents.terms.operators import BINARY
-from jacaros.files.texts import did_you_mean, suggestion
+from jacaros.runtime.files.texts import did_you_mean, suggestion
 
 Clause = nodes.Plan | nodes.Rule
 

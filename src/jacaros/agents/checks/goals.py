@@ -21,7 +21,7 @@ from jacaros.agents.language.diagnostics import Diagnostic, problem
 from jacaros.agents.language.nodes import UNDECLARED, ByKind, Declaration, parts_of
 from jacaros.agents.language.term_parser import PERFORMATIVES
 from jacaros.agents.terms.functions import ARITIES
-from jacaros.files.texts import close_matches, did_you_mean, suggestion
+from jacaros.runtime.files.texts import close_matches, did_you_mean, suggestion
 
 # Check internal actions: names, numbers of arguments, and where they are used.
 

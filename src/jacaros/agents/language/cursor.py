@@ -14,7 +14,7 @@ from jacaros.agents.language.nodes import Declaration
 from jacaros.agents.terms.functions import is_function
 from jacaros.agents.terms.operators import WORDS, symbols_of
 from jacaros.agents.terms.values import ARITHMETIC
-from jacaros.files.texts import did_you_mean
+from jacaros.runtime.files.texts import did_you_mean
 
 # Similarity of words, and mistakes known from other languages, for better messages than "expected X, found Y".
 

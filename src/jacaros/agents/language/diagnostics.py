@@ -15,8 +15,8 @@ from functools import cached_property
 from typing import Any, Final, NamedTuple
 from typing import Literal as OneOf
 
-from jacaros.errors import JacarosError
-from jacaros.files.texts import MOST, escaped, help_line, marked, printable
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.files.texts import MOST, escaped, help_line, marked, printable
 
 # Source files and positions in them.
 
@@ -81,7 +81,7 @@ class Diagnostic:
     def render(self, with_code: bool = False) -> str:
         """Return the message as printed: location, message (with its code, if wanted), excerpt with carets, help.
 
-        Control characters are escaped, and long lines are cut: see `jacaros.files.texts`.
+        Control characters are escaped, and long lines are cut: see `jacaros.runtime.files.texts`.
         """
         code = f" [{self.code}]" if with_code and self.code else ""
         lines = [f"{self.place()}{self.severity}: {printable(self.message)}{code}"]

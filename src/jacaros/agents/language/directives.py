@@ -33,7 +33,7 @@ from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.program_parser import ProgramParser, WrongDirective
 from jacaros.agents.language.term_parser import Namespaces
 from jacaros.agents.terms.unifier import Trail, unify
-from jacaros.files.texts import suggestion
+from jacaros.runtime.files.texts import suggestion
 
 # Shared parts of goal patterns: their arguments, and the plans they add.
 #

@@ -18,7 +18,7 @@ from jacaros.agents.language.lexer import Comment, tokenize
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.language.nodes import Declaration
 from jacaros.agents.terms.operators import BINARY
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 _ALIGNED: Final = 60
 """Comments of consecutive lines are aligned in one column, unless the code of a line is longer than this."""

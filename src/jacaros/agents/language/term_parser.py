@@ -16,7 +16,7 @@ from jacaros.agents.terms.functions import ARITIES
 from jacaros.agents.terms.operators import AND, BINARY, NOT, OR, PREFIX, SUM, Operator
 from jacaros.agents.terms.text import unquoted
 from jacaros.agents.terms.values import ARITHMETIC, RELATION, number
-from jacaros.files.texts import close_matches, did_you_mean
+from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 DEFAULT_NAMESPACE: Final = "default"
 THIS_NAMESPACE: Final = "this_ns"

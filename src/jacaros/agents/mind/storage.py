@@ -60,7 +60,7 @@ from jacaros.agents.terms.values import (
     listed,
     make_list,
 )
-from jacaros.errors import JacarosError
+from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.trace import Cause
 
 Value = Any

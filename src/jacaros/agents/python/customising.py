@@ -20,9 +20,9 @@ from jacaros.agents.python.agent import Agent, Message, Option, agent_of, give_f
 from jacaros.agents.python.declaring import FAULTS, crash_text
 from jacaros.agents.terms.unifier import bind, undo
 from jacaros.agents.terms.values import Term, Var, arguments_of
-from jacaros.errors import JacarosError
-from jacaros.files.python_modules import ProjectModules
-from jacaros.files.texts import aside
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.files.python_modules import ProjectModules
+from jacaros.runtime.files.texts import aside
 
 # Find the classes that a project file names, and create objects of them.
 

@@ -25,9 +25,15 @@ from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.artifacts.kernel import declaration as operations
 from jacaros.artifacts.kernel.faults import error_text
-from jacaros.errors import InternalError
-from jacaros.files.python_modules import INCOMPLETE, UNSEEN, ModuleUnreadable, ProjectModules, place_of
-from jacaros.files.texts import suggestion
+from jacaros.runtime.errors import InternalError
+from jacaros.runtime.files.python_modules import (
+    INCOMPLETE,
+    UNSEEN,
+    ModuleUnreadable,
+    ProjectModules,
+    place_of,
+)
+from jacaros.runtime.files.texts import suggestion
 
 # Calls of project functions by the mind: terms become values, results are unified, exceptions become failures.
 

@@ -13,8 +13,8 @@ from jacaros.agents.terms.values import Term
 from jacaros.artifacts.env.values import text
 from jacaros.artifacts.presence.presence import PropertyChange, ReceivedSignal
 from jacaros.artifacts.presence.session import ActOptions, Session
-from jacaros.errors import JacarosError
 from jacaros.runtime.clock import Clock
+from jacaros.runtime.errors import JacarosError
 
 T = TypeVar("T")
 Given = ParamSpec("Given")

@@ -272,7 +272,7 @@ class Artifact:
     def has_untaken(self, name: str) -> bool:
         """Return whether an observer has not yet processed an earlier change of properties called *name* (backpressure).
 
-        For sensors that change faster than agents reason: see `jacaros.artifacts.kit.reading`.
+        For sensors that change faster than agents reason: see `jacaros.robots.kit.reading`.
         """
         return self._steps.publication.has_untaken(name)
 

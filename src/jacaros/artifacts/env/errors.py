@@ -13,8 +13,8 @@ OperationFailed               an agent's request failed; carries the reason term
 from collections.abc import Iterable
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.errors import JacarosError
-from jacaros.files.texts import aside
+from jacaros.runtime.errors import JacarosError
+from jacaros.runtime.files.texts import aside
 
 
 class WorkspaceError(JacarosError):

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from jacaros.artifacts.env.errors import ArtifactId, InvalidArtifact, UnknownProperty
 from jacaros.artifacts.env.values import SCALARS, equal, plain
-from jacaros.files.texts import aside
+from jacaros.runtime.files.texts import aside
 from jacaros.runtime.trace import Cause
 
 

@@ -34,8 +34,8 @@ from jacaros.artifacts.kernel.faults import error_text, is_interruption
 from jacaros.artifacts.kernel.publication import Setting, mistakes_in
 from jacaros.artifacts.kernel.registry import Registry
 from jacaros.artifacts.kernel.steps import Steps
-from jacaros.errors import InternalError
-from jacaros.files.texts import aside
+from jacaros.runtime.errors import InternalError
+from jacaros.runtime.files.texts import aside
 from jacaros.runtime.trace import Cause
 
 # Create artifacts: find the type, connect object and kernel, and report why creation failed.

@@ -15,7 +15,7 @@ from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import INIT, INTERNAL, LINK, OPERATION, Mark, WhenPreempted, marks_of
 from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.artifacts.kernel.acceptance import Accept, Unsuitable, kind_of, shown
-from jacaros.files.texts import aside
+from jacaros.runtime.files.texts import aside
 
 # The parameters of an operation: the number of arguments, their kinds, and the outputs.
 

@@ -13,10 +13,10 @@ from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.kernel.declaration import Interface, WrongArguments
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK", "SIGALRM", "SIGILL")
-"""Those that `jacaros.ros.lifetime` and `jacaros.runtime.clock` handle, on any system."""
+"""Those that `jacaros.robots.ros.lifetime` and `jacaros.runtime.clock` handle, on any system."""
 
 
 def is_interruption(error: BaseException) -> bool:

@@ -24,8 +24,8 @@ from jacaros.artifacts.env.property import (
     Signal,
     SlowObserver,
 )
-from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import Cause, Tracer
 
 # Statements without effect: ``self.value("path").append(x)`` changes a copy, ``self.sleep(1)`` lacks its ``await``.

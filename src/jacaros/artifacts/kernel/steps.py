@@ -29,8 +29,8 @@ from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, W
 from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
-from jacaros.errors import InternalError
 from jacaros.runtime.clock import Clock
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import CURRENT, Cause
 
 # Release what an artifact holds, when the last of its operations has ended.

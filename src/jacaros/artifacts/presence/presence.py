@@ -31,8 +31,8 @@ from jacaros.artifacts.env.property import (
 )
 from jacaros.artifacts.env.values import Atom, Out, Structure, equal, plain
 from jacaros.artifacts.env.workspace import artifact_named, chosen_artifact
-from jacaros.files.texts import aside, close_matches
 from jacaros.runtime.clock import Clock
+from jacaros.runtime.files.texts import aside, close_matches
 
 # The joined workspaces, and the order in which they are searched.
 

@@ -8,7 +8,7 @@ import json
 import sys
 from typing import Any
 
-from jacaros.ros.open import open_backend
+from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import WallClock, run
 
 PATIENCE = 100.0

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from jacaros.mas.launch import launch
-from jacaros.mas.options import RunOptions
+from jacaros.runtime.mas.launch import launch
+from jacaros.runtime.mas.options import RunOptions
 
 
 class ListConsole:

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from jacaros.agents.terms.values import number
-from jacaros.cli.main import call
-from jacaros.mas.history.words import json_value
+from jacaros.look.records.words import json_value
+from jacaros.runtime.cli.main import call
 
 BIG = 2**53 + 1
 

@@ -12,7 +12,7 @@ from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import failed_number, observe_goals
 from jacaros.agents.mind.state.act import Act, Completion
 from jacaros.agents.mind.state.intention import ANNOTATIONS, EVENT_ANNOTATIONS, EVENT_GOAL, GOAL, SERIAL
-from jacaros.mas.history.goals import GoalRecords
+from jacaros.runtime.mas.history.goals import GoalRecords
 
 CASES = Path(__file__).parents[3] / "conformance"
 BEGUN = ("pursued", "suspended", "resumed")

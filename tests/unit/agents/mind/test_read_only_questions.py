@@ -9,7 +9,7 @@ from jacaros.agents.mind.state.budget import SearchLimit
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text
-from jacaros.mas.embedding.running_agent import question
+from jacaros.runtime.mas.embedding.running_agent import question
 
 PROGRAM = """
 { register_function("my.sum", 2, "sum") }

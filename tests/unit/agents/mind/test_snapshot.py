@@ -16,7 +16,7 @@ from jacaros.agents.mind.mind import Mind, new_engine
 from jacaros.agents.mind.state.act import Completion
 from jacaros.agents.mind.storage import NotStorable, restore, stored
 from jacaros.agents.terms.values import Reference, atom, structure
-from jacaros.mas.agents.host import AgentHost
+from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.testing import run_project
 
 sys.path.insert(0, str(Path(__file__).parents[4] / "tools"))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from extension_lab import write
 
-from jacaros.mas.checks.files import check_files
+from jacaros.runtime.mas.checks.files import check_files
 from jacaros.testing import RunResult, run_project
 
 HEAD = "from jacaros import *\n\n"

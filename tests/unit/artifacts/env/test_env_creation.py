@@ -4,7 +4,7 @@ import pytest
 from creation_lab import Counter, Fussy, Slow, why
 
 from jacaros.artifacts import Artifact, Atom, UnknownArtifact
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 
 class Labelled(Artifact):

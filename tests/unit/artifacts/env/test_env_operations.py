@@ -3,7 +3,7 @@
 import pytest
 
 from jacaros.artifacts import UNSET, Artifact, Atom, InvalidArtifact, Out, Structure, operation
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 
 class Counter(Artifact):

@@ -4,8 +4,8 @@ import pytest
 
 from jacaros.artifacts import Artifact, Environment, OperationRequest, operation
 from jacaros.artifacts.kernel.publication import Setting
-from jacaros.errors import InternalError
 from jacaros.runtime.clock import VirtualClock
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import Cause
 
 

@@ -51,7 +51,7 @@ from jacaros.agents.terms.values import (
     make_list,
     structure,
 )
-from jacaros.errors import JacarosError, UsageError
+from jacaros.runtime.errors import JacarosError, UsageError
 from jacaros.version import VERSION
 
 ERROR = functor("error", 1)

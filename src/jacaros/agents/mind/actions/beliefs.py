@@ -44,7 +44,7 @@ from jacaros.agents.terms.values import (
     list_items,
     make_list,
 )
-from jacaros.errors import JacarosError
+from jacaros.runtime.errors import JacarosError
 
 
 @internal_action(".abolish", arity=1)

@@ -39,7 +39,7 @@ from jacaros.agents.terms.values import (
     make_list,
 )
 from jacaros.agents.terms.values import NIL as EMPTY
-from jacaros.errors import JacarosError
+from jacaros.runtime.errors import JacarosError
 
 CODE_LINE, CODE_SRC = functor("code_line", 1), functor("code_src", 1)
 

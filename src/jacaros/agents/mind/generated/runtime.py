@@ -64,7 +64,7 @@ from jacaros.agents.terms.values import (
     deref,
     make_list,
 )
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 NESTED = 100
 """So many generators may be nested: each is a level of Python's stack, of which a thousand are allowed."""

@@ -36,7 +36,7 @@ from jacaros.agents.mind.state.triggers import (
 )
 from jacaros.agents.terms.unifier import Trail, undo, unify, unify_annotations
 from jacaros.agents.terms.values import BY_SELF, Annotated, Term, Var, arguments_of, deref
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import Cause
 
 # Select a plan for an event: rules RelPl, ApplPl and SelAppl.

@@ -30,7 +30,7 @@ from jacaros.agents.terms.values import (
     functor,
     functor_of,
 )
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import Cause
 
 Annotations = tuple[Term, ...]

@@ -17,7 +17,7 @@ from jacaros.agents.mind.state.intention import (
 from jacaros.agents.mind.state.pending import GOAL_CONDITION, Waiting
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import undo
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 
 def pop_finished(agent: Circumstance, intention: Intention) -> bool:

@@ -22,7 +22,7 @@ from jacaros.agents.mind.state.triggers import EventAnnotations, Goal
 from jacaros.agents.terms.operators import RUNNING
 from jacaros.agents.terms.unifier import undo
 from jacaros.agents.terms.values import BY_SELF
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 
 def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - the whole cycle is here

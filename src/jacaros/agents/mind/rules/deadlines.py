@@ -66,7 +66,7 @@ from jacaros.agents.terms.values import (
     functor_of,
     structure,
 )
-from jacaros.files.texts import is_worth_a_line
+from jacaros.runtime.files.texts import is_worth_a_line
 
 WITHIN, HARD_DEADLINE, EVERY = functor("within", 1), functor("hard_deadline", 1), functor("every", 1)
 RETRY, RETRY_AFTER = functor("retry", 1), functor("retry", 2)

@@ -32,7 +32,7 @@ from jacaros.agents.terms.substitution import ATOMIC, resolve
 from jacaros.agents.terms.text import display, text
 from jacaros.agents.terms.unifier import undo
 from jacaros.agents.terms.values import List, String, Term, Var, atom, functor
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 _ENV_FAILURE_REASON, _BIND_PARAM_ERROR = functor("env_failure_reason", 1), functor("bind_param_error", 2)
 

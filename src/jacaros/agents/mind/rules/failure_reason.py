@@ -23,7 +23,7 @@ from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import excerpt, text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Functor, String, Term, Var, deref, functor, functor_of
-from jacaros.files.texts import close_matches, did_you_mean
+from jacaros.runtime.files.texts import close_matches, did_you_mean
 
 # Steps of plans as text, with the values of their variables.
 

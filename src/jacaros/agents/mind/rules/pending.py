@@ -30,7 +30,7 @@ from jacaros.agents.terms.values import (
     deref,
     functor_of,
 )
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 
 def now(agent: Circumstance) -> float:

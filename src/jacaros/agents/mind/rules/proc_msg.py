@@ -45,7 +45,7 @@ from jacaros.agents.terms.values import (
     list_items,
     make_list,
 )
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 ERROR = functor("error", 1)
 _IMMEDIATE = frozenset({"tell", "achieve", "signal"})

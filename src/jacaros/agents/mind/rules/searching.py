@@ -12,7 +12,7 @@ from jacaros.agents.mind.state.plan import Answers, Failure
 from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.unifier import Trail, each_annotation_match, undo, unify
 from jacaros.agents.terms.values import String, Term, Var, atom, functor
-from jacaros.errors import InternalError
+from jacaros.runtime.errors import InternalError
 
 # Calls of internal actions from generated code, and the failure of calls that are invalid.
 

@@ -229,7 +229,8 @@ class AgentSystem(Protocol):
         """
 
     def explain(self, question: str, agent: str) -> Mapping[str, Any]:
-        """Answer a question of an agent about the run so far, as plain data; see `jacaros.mas.history.Explanation.data`.
+        """Answer a question of an agent about the run so far, as plain data; see `Explanation.data` in
+        `jacaros.look.why.explanation`.
 
         Raises:
             UsageError: the question is invalid.

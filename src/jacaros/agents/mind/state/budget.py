@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from jacaros.agents.mind.state.plan import Failure
 from jacaros.agents.terms.values import String, atom, functor
-from jacaros.files.texts import is_worth_a_line
+from jacaros.runtime.files.texts import is_worth_a_line
 
 # Agent options, named as in Jason's project files.
 

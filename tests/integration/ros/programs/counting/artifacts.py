@@ -3,7 +3,7 @@
 from typing import Any
 
 from jacaros.artifacts import Out, internal_operation, operation
-from jacaros.artifacts.kit.ros_artifact import RosArtifact
+from jacaros.robots.kit.ros_artifact import RosArtifact
 
 
 class CountingRobot(RosArtifact):

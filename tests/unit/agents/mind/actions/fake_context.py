@@ -12,7 +12,7 @@ from jacaros.agents.terms.substitution import resolve
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import String, Term, Var, atom, make_list, structure
-from jacaros.errors import JacarosError
+from jacaros.runtime.errors import JacarosError
 
 
 def term(value: object) -> Term:

@@ -1,0 +1,173 @@
+"""The live pages of a running system: records, commands and server."""
+
+import asyncio
+import contextlib
+import time
+from collections.abc import AsyncIterator, Callable, Iterable
+from contextlib import asynccontextmanager
+
+from jacaros.look.page.live.access import Access
+from jacaros.look.page.live.commands import (
+    Commands,
+    Text,
+    artifact_commands,
+    debug_commands,
+    world_commands,
+)
+from jacaros.look.page.live.live_view import LiveView
+from jacaros.look.page.live.mind_commands import mind_commands
+from jacaros.look.page.live.server import LiveServer, bound_socket
+from jacaros.look.page.watch import Watch, watch_of
+from jacaros.look.records import records
+from jacaros.look.records.records import Number, Record
+from jacaros.look.why.why import explain
+from jacaros.robots.world import World
+from jacaros.runtime.clock import outside_run, start_thread
+from jacaros.runtime.mas.embedding.mas import Mas
+from jacaros.runtime.mas.system import System
+
+FIRST_VISIT = 5.0
+"""Seconds that the end of a run waits for an opened browser that has not shown the run yet."""
+
+REST = 4.0
+"""Seconds between two explanations per second that the first one took."""
+SIGNALS = 128
+"""Exit codes from here on mean that a signal ended the run, which must then not wait."""
+
+
+class RunView:
+    """Serves the live pages of one run.
+
+    Args:
+        system: the run; already started.
+        address: address of this machine; only this machine reaches the loopback address.
+        port: port; 0 for a free one.
+        token: token in the path; None for a random one.
+
+    Attributes:
+        watcher: receives the run.
+        address: address of the page.
+        awaited: whether a browser was opened, so that the end of the run waits until the page has shown something.
+
+    Raises:
+        UsageError: the address cannot be used, or the token is invalid.
+    """
+
+    def __init__(self, system: System, address: str, port: int, token: str | None) -> None:
+        self._system = system
+        self.awaited = False
+        self.commands = Commands(self._note)
+        self.watcher = LiveView(system.deployment.name, self.commands)
+        access = Access(address, token)
+        self._server = LiveServer(bound_socket(address, port), access, self.watcher)
+        self.address = self._server.address
+        self._explaining = asyncio.Lock()
+        self._rested_at = 0.0
+        self._serving: asyncio.Task[None] | None = None
+        self._end_debug: Callable[[], None] = lambda: None
+
+    def begin(self, watch: Watch) -> None:
+        """Serve until the run ends or `close` is called.
+
+        Args:
+            watch: watch of the run, with `watcher` among its watchers.
+        """
+        system = self._system
+        self.commands.add({**mind_commands(system), **artifact_commands(system)}, changes=True)
+        self.commands.add({"why": self._why})
+        # The world may be created later, when an agent first needs a robot.
+        system.ros.watch_world(lambda world: self._let_change(world, watch.look))
+        self._debug()
+        with outside_run():  # a paused run must be able to continue
+            self._serving = asyncio.create_task(self._serve())
+        system.close_last(self.close)  # pages show the end of the run
+        # A task that is cancelled before its first step executes no `finally`.
+        self._serving.add_done_callback(lambda _: self._server.release())
+
+    def _let_change(self, world: World, look: Callable[[], None]) -> None:
+        self.commands.add(world_commands(self._system, world, look), changes=True)
+        self.watcher.commands_changed()
+
+    def _debug(self) -> None:
+        """Add the debugger's commands, and show its state."""
+        debugger, history = self._system.debugger, self._system.history()
+        self.commands.add(debug_commands(debugger))
+        history.record(records.Debug(**debugger.state.data()))
+        self._end_debug = debugger.listen(lambda state: history.record(records.Debug(**state.data())))
+
+    async def close(self) -> None:
+        """Send waiting records, and disconnect the pages."""
+        self._end_debug()
+        if self._serving is not None:
+            self._serving.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._serving
+
+    async def _serve(self) -> None:
+        try:
+            await self._server.start()
+            await asyncio.get_running_loop().create_future()
+        finally:
+            # The run has ended, or was interrupted.
+            code = self._system.exit_code
+            if self.awaited and code is not None and code < SIGNALS:
+                await self._server.close(FIRST_VISIT, visited=True)
+            else:
+                await self._server.close()
+
+    async def _why(self, question: Text, at: Number | None = None) -> str:
+        """Answer a question about the run so far, as lines; in a thread, because many records take seconds."""
+        async with self._explaining:
+            records = self._system.keep_history().all()
+            return await start_thread(lambda: self._explain(records, question, at))
+
+    def _explain(self, records: Iterable[Record], question: str, at: float | None) -> str:
+        """Answer in a thread, which first rests: explanations take at most a fifth of the time, however many are wanted."""
+        time.sleep(max(0.0, self._rested_at - time.monotonic()))
+        begun = time.monotonic()
+        try:
+            return explain(records, question, at).text()
+        finally:
+            now = time.monotonic()
+            self._rested_at = now + REST * (now - begun)
+
+    def _note(self, what: str) -> None:
+        self._system.history().record(records.Intervention(what))
+
+
+@asynccontextmanager
+async def view(
+    mas: Mas, *, address: str = "127.0.0.1", port: int = 0, token: str | None = None
+) -> AsyncIterator[str]:
+    """Serve live pages of a running system inside an ``async with``.
+
+    ::
+
+        async with Mas("patrol.jcm") as mas, view(mas) as page:
+            print(page)
+            await mas.ended()
+
+    Args:
+        mas: the running system.
+        address: address of this machine; by default one that only this machine can reach.
+        port: port; a free one by default.
+        token: token in the path, at least 16 letters and digits; random by default.
+
+    Returns:
+        The address of the page.
+
+    Raises:
+        UsageError: the address cannot be used, or the token is invalid.
+        RunEnded: the system is not running.
+    """
+    shown = RunView(mas.system, address, port, token)
+    watch = watch_of(mas.system, [shown.watcher], live=True)
+    watch.start()
+    end_prints = mas.on_print(watch.text)
+    shown.begin(watch)
+    try:
+        yield shown.address
+    finally:
+        end_prints()
+        watch.stop()
+        await shown.close()

@@ -1,0 +1,131 @@
+"""Terms, values of the environment and ROS messages in records: short, with the names that users gave."""
+
+import math
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
+from jacaros.agents.terms.operators import ArithmeticFault
+from jacaros.agents.terms.substitution import is_flat
+from jacaros.agents.terms.text import excerpt, text
+from jacaros.agents.terms.values import Term
+from jacaros.artifacts.env.operation import OperationRequest
+from jacaros.artifacts.env.values import Out
+from jacaros.artifacts.env.values import text as value_text
+from jacaros.robots.ros.message import field_names
+
+LONGEST = 300
+"""Maximum number of characters of a recorded term."""
+_UNNAMED = re.compile(r'"(?:[^"\\]|\\.)*"|\b_\w+')
+
+
+def shown(term: Term) -> str:
+    """Return a term as text: the beginning of a large one, and ``_`` for unnamed variables."""
+    if is_flat(term):
+        return cut(text(term))
+    try:
+        return cut(named(text(excerpt(term))))
+    except (ArithmeticFault, RecursionError):
+        return "..."
+
+
+def shown_event(goal: Goal, annotations: EventAnnotations = ()) -> str:
+    """Return a goal or event with its operator, such as ``+!go(dock)`` or ``+battery(12)``."""
+    kind = goal[0]
+    return f"{kind.operator}{kind.kind}{shown(literal_of(goal, annotations))}"
+
+
+def named(told: str) -> str:
+    """Replace unnamed variables such as ``_22`` with ``_``."""
+    return _UNNAMED.sub(_name, told) if "_" in told else told
+
+
+def _name(found: re.Match[str]) -> str:
+    word = found.group()
+    return word if word[0] == '"' else "_"
+
+
+def cut(told: str) -> str:
+    """Return the beginning of a long text."""
+    return told if len(told) <= LONGEST else f"{told[: LONGEST - 3]}..."
+
+
+# ---- values and messages
+
+LONGEST_VALUE = 200
+"""Maximum number of characters of a recorded value or message."""
+_FIELDS = 12
+"""Maximum number of fields of a message."""
+_LARGEST = 10**15
+
+
+def limited(words: str) -> str:
+    """Return *words*, cut to `LONGEST_VALUE` characters."""
+    return words if len(words) <= LONGEST_VALUE else f"{words[: LONGEST_VALUE - 3]}..."
+
+
+def json_value(value: object) -> object:
+    """Return a plain value of the environment as JSON data: numbers, Booleans and strings unchanged, others as text."""
+    kind = type(value)
+    if kind is float:
+        return value if math.isfinite(value) else str(value)  # type: ignore[arg-type]
+    if value is None or kind is bool:
+        return value
+    if kind is int and -_LARGEST < value < _LARGEST:  # type: ignore[operator]
+        return value
+    return limited(_value_text(value))
+
+
+def json_values(values: Iterable[object]) -> list[object]:
+    """Return plain values as JSON data."""
+    return [json_value(value) for value in values]
+
+
+def call_text(name: str, arguments: Iterable[object]) -> str:
+    """Return an operation or a signal with its arguments as agents write it. Output parameters are ``_``."""
+    written = ",".join("_" if isinstance(each, Out) else _value_text(each, quoted=True) for each in arguments)
+    return limited(f"{name}({written})" if written else name)
+
+
+def request_text(request: OperationRequest) -> str:
+    """Return a request to an artifact as agents write it."""
+    return call_text(request.operation, request.arguments)
+
+
+def output_texts(request: OperationRequest) -> list[str | None]:
+    """Return the values of the output parameters of an operation as agents write them; None for unset ones."""
+    outputs = (each for each in request.arguments if isinstance(each, Out))
+    return [limited(_value_text(each.value, quoted=True)) if each.is_set else None for each in outputs]
+
+
+def _value_text(value: object, quoted: bool = False) -> str:
+    try:
+        return value_text(value, quoted)
+    except Exception:  # an error in a user's __str__ must not make a record fail
+        return type(value).__name__
+
+
+def message_text(message: Any) -> str:
+    """Return the numbers, strings and Booleans of a message that are not 0 or empty, by field."""
+    found: list[str] = []
+    _add_fields(message, "", 4, found)
+    if len(found) > _FIELDS:
+        found[_FIELDS:] = ["..."]
+    return limited(", ".join(found))
+
+
+def _add_fields(message: Any, path: str, depth: int, found: list[str]) -> None:
+    for name in field_names(message) or ():
+        value = getattr(message, name)
+        if isinstance(value, float):
+            if value:
+                found.append(f"{path}{name}={value:.4g}")
+        elif isinstance(value, int | str):
+            if value:
+                found.append(f"{path}{name}={limited(str(value))}")
+        elif hasattr(value, "__len__"):
+            if len(value) and name != "covariance":
+                found.append(f"{path}{name}=[{len(value)} values]")
+        elif name != "header" and depth and len(found) <= _FIELDS:
+            _add_fields(value, f"{path}{name}.", depth - 1, found)

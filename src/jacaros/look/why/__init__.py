@@ -1,0 +1,1 @@
+"""Why something happened: explanations found in the records of a run."""

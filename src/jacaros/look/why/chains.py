@@ -1,0 +1,121 @@
+"""Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message."""
+
+import re
+from typing import Any
+
+from jacaros.look.records import records
+from jacaros.look.records.words import named
+from jacaros.look.why.explanation import Fact
+from jacaros.look.why.past import Link, Past
+
+_OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
+
+LONGEST_CHAIN = 40
+"""Maximum number of links shown. Of a longer chain, those next to the effect and the first one."""
+
+LONGEST_ROUND = 12
+"""Maximum number of links of a round of a loop."""
+
+
+def chain(past: Past, number: Any) -> tuple[Fact, ...]:
+    """Return the links from one back to the beginning, as facts."""
+    links = _without_rounds([_fact(past, link) for link in past.chain(number)])
+    if len(links) > LONGEST_CHAIN:
+        left = len(links) - LONGEST_CHAIN
+        return (*links[: LONGEST_CHAIN - 1], Fact("note", f"{left} more causes"), links[-1])
+    return tuple(links)
+
+
+def _without_rounds(links: list[Fact]) -> list[Fact]:
+    """Keep the newest round of each loop, and count the earlier ones."""
+    kept: list[Fact] = []
+    places = [
+        (each.kind, each.agent, each.file, each.line) if each.line else re.sub(r"[-\d.]+", "#", each.text)
+        for each in links
+    ]
+    at = 0
+    while at < len(links):
+        size, rounds = _loop(places[at:])
+        kept += links[at : at + size]
+        at += size * rounds
+        if rounds > 1:
+            kept.append(Fact("note", f"{rounds - 1} earlier rounds like this", links[at - 1].t))
+    return kept
+
+
+def _loop(places: list[Any]) -> tuple[int, int]:
+    """Return how many links the loop has that *places* begin with, and the number of its rounds; 1 and 1 without one."""
+    for size in range(1, LONGEST_ROUND + 1):
+        rounds = 1
+        while places[:size] == places[size * rounds : size * (rounds + 1)]:
+            rounds += 1
+        if rounds > 2:
+            return size, rounds
+    return 1, 1
+
+
+def _fact(past: Past, link: Link) -> Fact:
+    """Return a link as a line of an answer."""
+    t, cause, record = link
+    agent = cause.agent or ""
+    match cause.sort, record:
+        case _, records.Deliberation():
+            plan = past.plan(agent, record.chosen)
+            how = f", handled by {plan_name(plan)}" if plan else ""
+            return Fact("event", f"{shown(record.trigger)}{how}", t, agent, *place_of(plan))
+        case _, records.Message():
+            return Fact("message", message_text(record), t)
+        case "act", _:
+            plan, file, line = past.plan(agent, cause.plan), *place_of(cause)
+            written = source_line(past, file, line)
+            step = f"`{written}`" if written else cause.what.removeprefix(f"{agent} ")
+            return Fact("act", f"step {step}{f' of {plan_name(plan)}' if plan else ''}", t, agent, file, line)
+        case "operation", _:
+            known = past.operations.get(cause.id)
+            artifact = f" of {cause.artifact}" if cause.artifact else ""
+            end = f", {known.outcome}" if known is not None else ""
+            return Fact("operation", f"{cause.what}{artifact}{end}", t)
+        case "sample", _ if cause.topic and cause.topic not in cause.what:
+            return Fact("sample", f"{cause.topic}: {cause.what}", t)
+    return Fact(cause.sort, cause.what, t)
+
+
+def message_text(message: records.Message) -> str:
+    """Return a message between agents as text."""
+    return f"{message.sender} to {message.receiver}: {message.performative} {message.content}"
+
+
+def plan_name(plan: records.Plan) -> str:
+    """Return a plan as text: label, or trigger, with its context."""
+    return f"@{plan.label}" if is_written(plan.label) else f"`{plan_text(plan)}`"
+
+
+def is_written(label: str | None) -> bool:
+    """Return whether a label is from the program. Others are generated."""
+    return bool(label) and not str(label).startswith("p__")
+
+
+def plan_text(plan: records.Plan | None) -> str:
+    """Return trigger and context of a plan."""
+    if plan is None:
+        return "?"
+    return shown(f"{plan.trigger}{f' : {plan.context}' if plan.context else ''}")
+
+
+def shown(text: object) -> str:
+    """Return a recorded text with `_` for unnamed variables, and without the annotations that all percepts have."""
+    return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
+
+
+def place_of(record: records.Plan | records.Cause | records.Belief | records.Step | None) -> tuple[str, int]:
+    """Return the file and line that a record names; empty and 0 without one."""
+    return ("", 0) if record is None else (record.file or "", record.line or 0)
+
+
+def source_line(past: Past, file: str, line: int) -> str:
+    """Return the code of a line of a program, without surrounding punctuation; empty if it is unknown."""
+    lines = past.sources.get(file, [])
+    if not 0 < line <= len(lines):
+        return ""
+    code = lines[line - 1].partition("//")[0].strip()
+    return code.removeprefix("<-").strip().rstrip(";.")

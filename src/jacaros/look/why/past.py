@@ -1,0 +1,203 @@
+"""The records of a run until a moment, indexed by what they concern."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, TypeVar
+
+from msgspec import ValidationError
+
+from jacaros.look.records import records
+from jacaros.look.records.records import Record, decoded
+from jacaros.robots.world.data.ground_truth import FIELDS
+
+Found = TypeVar("Found", bound=Any)
+Timed = list[tuple[float, Found]]
+"""Records with their times, the oldest first."""
+
+
+class Link(NamedTuple):
+    """A link of a causal chain: its time, its record of a cause, and for an event or a message its own record."""
+
+    t: float
+    cause: records.Cause
+    of: records.Deliberation | records.Message | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An operation of an artifact.
+
+    Attributes:
+        data: record of its beginning.
+        began, ended: seconds; *ended* is None while it runs.
+        last: record of its end; None while it runs.
+    """
+
+    data: records.Operation
+    began: float
+    ended: float | None = None
+    last: records.Operation | None = None
+
+    @property
+    def reason(self) -> str:
+        """The reason of its failure; empty if it has not failed."""
+        return (self.last.reason or "") if self.last is not None else ""
+
+    @property
+    def outcome(self) -> str:
+        """How and when it ended, as text."""
+        if self.last is None or self.ended is None:
+            return "still running"
+        reason = f": {self.reason}" if self.reason else ""
+        return f"{self.last.state} at {self.ended:.3f} s{reason}"
+
+
+@dataclass
+class Past:
+    """The records of a run until a moment.
+
+    Attributes:
+        end: seconds of the last record.
+        links: the links of causal chains by id.
+        deliberations, beliefs, goals: with their times, the oldest first.
+        programs: the plans of each agent by id, as in the newest ``program``.
+        rules: the rules of each agent as text.
+        intentions: the newest record of each, by agent and id.
+        operations: by id.
+        agents: their newest state by name.
+        began: when each agent began, in seconds.
+        robots_of: the robots that artifacts drive or sense, by path.
+        sources: texts of the programs by file.
+        world: events of robots and the world, as (t, event, robot), the oldest first.
+        robots: names of robots that appear in records.
+        debug: the newest record of the debugger.
+        exit_code: exit code of the run; None if it had not ended.
+    """
+
+    end: float = 0.0
+    links: dict[Any, Link] = field(default_factory=dict)
+    deliberations: Timed[records.Deliberation] = field(default_factory=list)
+    beliefs: Timed[records.Belief] = field(default_factory=list)
+    goals: Timed[records.Goal] = field(default_factory=list)
+    programs: dict[str, dict[Any, records.Plan]] = field(default_factory=dict)
+    rules: dict[str, list[str]] = field(default_factory=dict)
+    intentions: dict[tuple[str, Any], tuple[float, records.Intention]] = field(default_factory=dict)
+    operations: dict[Any, Operation] = field(default_factory=dict)
+    agents: dict[str, tuple[float, str]] = field(default_factory=dict)
+    began: dict[str, float] = field(default_factory=dict)
+    robots_of: dict[str, str] = field(default_factory=dict)
+    sources: dict[str, list[str]] = field(default_factory=dict)
+    world: list[tuple[float, str, str]] = field(default_factory=list)
+    robots: set[str] = field(default_factory=set)
+    debug: records.Debug | None = None
+    exit_code: int | None = None
+
+    @classmethod
+    def of(cls, happened: Iterable[Record], until: float | None = None) -> "Past":
+        """Read records. Those after *until* (seconds), of unknown kinds or malformed are skipped."""
+        past = cls()
+        for t, event, data in happened:
+            if (until is not None and t > until) or not isinstance(data, Mapping):
+                continue
+            past.end = max(past.end, t)
+            try:
+                past._take(t, None if event in FIELDS else decoded(event, data))
+            except ValidationError:
+                continue
+            if isinstance(robot := data.get("robot"), str) and event not in _WITH_ROBOT:
+                past.world.append((t, event, robot))
+                past.robots.add(robot)
+        return past
+
+    def _take(self, t: float, data: Any) -> None:
+        match data:
+            case records.Cause():
+                known = self.links.get(data.id)
+                at = t if data.at is None else data.at
+                # The record of a deliberation or an operation has more details than its link.
+                self.links[data.id] = Link(at, data) if known is None else known._replace(t=at)
+            case records.Deliberation():
+                self.deliberations.append((t, data))
+                cause = records.Cause(data.id, "event", data.trigger, data.parent or 0, agent=data.agent)
+                self.links[data.id] = Link(self.links[data.id].t if data.id in self.links else t, cause, data)
+            case records.Operation():
+                self._take_operation(t, data)
+            case records.Message(id=int(number)) if number not in self.links:
+                cause = records.Cause(number, "message", data.content, data.cause or 0)
+                self.links[number] = Link(t, cause, data)
+            case _:
+                self._take_state(t, data)
+
+    def _take_state(self, t: float, data: Any) -> None:
+        match data:
+            case records.Program():
+                self.programs[data.agent] = {each.id: each for each in data.plans or ()}
+                self.rules[data.agent] = list(data.rules or ())
+            case records.Intention(state="over"):
+                self.intentions.pop((data.agent, data.id), None)
+            case records.Intention():
+                self.intentions[data.agent, data.id] = t, data
+            case records.Agent():
+                self.agents[data.agent] = t, data.state
+                self.began.setdefault(data.agent, t)
+                if data.state == "ended":
+                    for key in [key for key in self.intentions if key[0] == data.agent]:
+                        del self.intentions[key]
+            case records.Source():
+                self.sources[data.file] = data.text.split("\n")
+            case records.Artifact(robot=str(robot)):  # the record of a disposed artifact has no robot
+                self.robots_of[data.artifact] = robot
+                self.robots.add(robot)
+            case records.Debug():
+                self.debug = data
+            case records.Ended():
+                self.exit_code = data.code
+            case records.Belief():
+                self.beliefs.append((t, data))
+            case records.Goal():
+                self.goals.append((t, data))
+
+    def _take_operation(self, t: float, data: records.Operation) -> None:
+        if data.state != "began":
+            known = self.operations.get(data.id, Operation(data, t))
+            self.operations[data.id] = Operation(known.data, known.began, t, data)
+            return
+        self.operations[data.id] = Operation(data, t)
+        if data.id not in self.links:
+            cause = records.Cause(
+                data.id,
+                "operation",
+                data.operation,
+                data.cause or 0,
+                agent=data.agent,
+                artifact=data.artifact,
+            )
+            self.links[data.id] = Link(t, cause)
+
+    def plan(self, agent: str | None, plan: Any) -> records.Plan | None:
+        """Return a plan of an agent; None if it is unknown."""
+        return self.programs.get(agent or "", {}).get(plan)
+
+    def plans(self, agent: str = "") -> Iterator[tuple[str, records.Plan]]:
+        """Iterate over all plans with their agents, or the plans of *agent*."""
+        for name, plans in self.programs.items():
+            if agent in ("", name):
+                for each in plans.values():
+                    yield name, each
+
+    def chain(self, number: Any) -> Iterator[Link]:
+        """Iterate over the links from one back to the beginning of its chain."""
+        seen = set()
+        while number in self.links and number not in seen:
+            seen.add(number)
+            yield self.links[number]
+            number = self.links[number].cause.parent
+
+
+def of_agent(timed: Timed[Found], agent: str) -> Timed[Found]:
+    """Return the records of one agent; all if *agent* is empty."""
+    return [each for each in timed if agent in ("", each[1].agent)]
+
+
+_WITH_ROBOT = frozenset({"laser", "path", "believed", "artifact"})
+"""Records that name a robot but are not events."""

@@ -1,6 +1,0 @@
-"""Debug a running system: pause, step, speed, breakpoints, and reload of changed programs."""
-
-from jacaros.mas.debugging.breakpoints import Breakpoint
-from jacaros.mas.debugging.debugger import Debugger, DebugState, Step
-
-__all__ = ["Breakpoint", "DebugState", "Debugger", "Step"]

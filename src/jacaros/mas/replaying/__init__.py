@@ -1,6 +1,0 @@
-"""Replay a recorded run against a changed program, to see where it decides differently."""
-
-from jacaros.mas.replaying.differences import Comparison, Decision
-from jacaros.mas.replaying.rerun import replay_against
-
-__all__ = ["Comparison", "Decision", "replay_against"]

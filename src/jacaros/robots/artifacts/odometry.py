@@ -1,0 +1,319 @@
+"""The pose of a robot: ``ArtOdometry``, frames in which it drives, and advice about drift."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+from weakref import WeakSet
+
+from jacaros.artifacts.env.artifact import Out, operation
+from jacaros.artifacts.streams import ReadingPolicy
+from jacaros.robots.artifacts.drive_model import Velocity
+from jacaros.robots.kit.faults import Header
+from jacaros.robots.kit.options import text
+from jacaros.robots.kit.reading import READING_OPTIONS, Reading
+from jacaros.robots.kit.ros_artifact import RosArtifact
+from jacaros.robots.plane.pose import Pose, normalised, yaw_of
+from jacaros.robots.ros.backend import Backend
+from jacaros.robots.ros.errors import TransformUnavailable
+from jacaros.robots.ros.message import to_seconds
+from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.qos import SENSOR_DATA
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+NO_ODOMETRY = "no_odometry"
+NO_TRANSFORM = "no_transform"
+
+
+@dataclass(slots=True)
+class Odometry:
+    """One odometry message; immutable.
+
+    Attributes:
+        position: x, y, z in metres.
+        pose: x, y and heading.
+        velocity: forward and angular.
+        sample: the original message.
+    """
+
+    position: tuple[float, float, float]
+    pose: Pose
+    velocity: Velocity
+    sample: Sample
+
+
+def read_odometry(sample: Sample) -> Odometry:
+    """Read the relevant fields of a ``nav_msgs/msg/Odometry``."""
+    pose: Any = sample.message.pose.pose
+    twist: Any = sample.message.twist.twist
+    position = (float(pose.position.x), float(pose.position.y), float(pose.position.z))
+    q = pose.orientation
+    return Odometry(
+        position,
+        Pose(position[0], position[1], yaw_of(q.x, q.y, q.z, q.w)),
+        Velocity(float(twist.linear.x), float(twist.angular.z)),
+        sample,
+    )
+
+
+def not_finite(sample: Sample) -> tuple[str, float] | None:
+    """Return the first NaN or infinite number of an odometry message with its field; None if none exists."""
+    pose: Any = sample.message.pose.pose
+    twist: Any = sample.message.twist.twist
+    p, q = pose.position, pose.orientation
+    # A sum is finite only if all its terms are: one test for nearly all messages.
+    if math.isfinite(p.x + p.y + p.z + q.x + q.y + q.z + q.w + twist.linear.x + twist.angular.z):
+        return None
+    fields = [(f"pose.pose.position.{name}", getattr(p, name)) for name in "xyz"]
+    fields += [(f"pose.pose.orientation.{name}", getattr(q, name)) for name in "xyzw"]
+    fields += [("twist.twist.linear.x", twist.linear.x), ("twist.twist.angular.z", twist.angular.z)]
+    return next(((name, number) for name, number in fields if not math.isfinite(number)), None)
+
+
+Placed = Callable[[Odometry], Odometry | None]
+"""Converts odometry to another frame; returns None while the transform is unknown."""
+
+
+class Odometer:
+    """The newest odometry of one robot; bad messages are counted and not used.
+
+    Args:
+        artifact: subscribes to the topic, and reports bad messages.
+        topic: the robot's topic.
+        on_reading: called with every good message.
+        frame: see `Header`.
+        placed: converts odometry to the driving frame, None while that is unknown; see `driving_frame`.
+
+    Attributes:
+        faults: bad messages.
+        header: checks frames and stamps.
+        newest: None until the first message.
+        count: number of good messages.
+        trusted: False if the newest message was unusable or its frame has no transform: the robot's present pose is
+            unknown.
+        lacking: the failure reason for missing odometry: ``no_odometry``, or ``no_transform`` if messages arrive and
+            only the frame is unknown.
+    """
+
+    def __init__(
+        self,
+        artifact: RosArtifact,
+        topic: str,
+        on_reading: Callable[[Odometry], None],
+        frame: str = "",
+        placed: Placed | None = None,
+    ) -> None:
+        self.newest: Odometry | None = None
+        self.count = 0
+        self.trusted, self.lacking = True, NO_ODOMETRY
+        self.faults = artifact.faults_of(topic)
+        self.header = Header(self.faults, artifact.clock, frame)
+        self._on_reading, self._placed = on_reading, placed
+        artifact.subscription(topic, ODOMETRY, self.take, SENSOR_DATA)
+
+    def take(self, sample: Sample) -> None:
+        """Handle a message; the callback of the subscription."""
+        wrong = not_finite(sample)
+        if wrong is not None:
+            self.trusted, self.lacking = False, NO_ODOMETRY
+            self.faults.not_finite(*wrong)
+            return
+        if not self.header.accepts(sample):
+            return
+        read = read_odometry(sample)
+        odometry = read if self._placed is None else self._placed(read)
+        if odometry is None:
+            self.trusted, self.lacking = False, NO_TRANSFORM
+            return
+        self.newest = odometry
+        self.trusted, self.lacking = True, NO_ODOMETRY
+        self.count += 1
+        self._on_reading(odometry)
+
+    def age(self, now: float) -> float | None:
+        """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
+        return None if self.newest is None else now - self.newest.sample.stamp + self.header.late
+
+
+class ArtOdometry(RosArtifact):
+    """Shows the odometry of ``/odom``.
+
+    The robot's name is the prefix of the topic only, as in the thesis. No signal is sent with an update: the event of
+    the property is the only event of a message. Operations that ask for odometry wait for the first message and fail
+    with ``no_odometry(5)`` if none arrives within 5 s.
+
+    Options:
+        mode(verbose) or mode(on_demand), rate(Hz), dead_band(D), latest_only(false), expire(S): see `ReadingPolicy`;
+            a dead band has one number for each field of the property.
+        topic(T): another topic.
+        frame(F): the only frame in which odometry is accepted; default: that of the first message.
+
+    Properties:
+        odom(X, Y, Z): position in metres; 0, 0, 0 before the first message. With `expire` the property does not exist
+            then.
+        pose(X, Y, Heading): metres, and degrees in (-180, 180].
+    """
+
+    known_options: ClassVar = {**READING_OPTIONS, "topic": text, "frame": text}
+    on_demand: ClassVar[bool] = False
+
+    _position: Reading
+    _pose: Reading
+
+    def open(self) -> None:
+        """Define the properties and subscribe."""
+        policy = ReadingPolicy.from_options(self.options, self.on_demand)
+        self._position = self.reading("odom", policy, 0, 0, 0)
+        self._pose = self.reading("pose", policy, 0, 0, 0)
+        Odometer(self, self.option("topic", "odom"), self._take, self.option("frame", ""))
+
+    def _take(self, odometry: Odometry) -> None:
+        position, pose = (self._position, odometry.position), (self._pose, pose_values(odometry))
+        self.take_together(odometry.sample.cause, position, pose)
+
+    @operation(name="getCurrentOdom")
+    async def get_current_odom(self) -> None:
+        """Update the properties to the newest values, whatever mode, rate and dead band are."""
+        await self.refresh("odom", self._position, NO_ODOMETRY)
+        await self.refresh("pose", self._pose, NO_ODOMETRY)
+
+    @operation(name="getCurrentOdom")
+    async def give_current_odom(self, x: Out, y: Out, z: Out) -> None:
+        """Give the newest position to the caller."""
+        await self.give_newest(self._position, NO_ODOMETRY, x, y, z)
+
+    @operation(name="getCurrentPose")
+    async def give_current_pose(self, x: Out, y: Out, heading: Out) -> None:
+        """Give the newest pose to the caller: metres, metres, degrees."""
+        await self.give_newest(self._pose, NO_ODOMETRY, x, y, heading)
+
+
+class ArtOdometryOnDemand(ArtOdometry):
+    """Shows odometry only when an agent requests it with ``getCurrentOdom``."""
+
+    on_demand = True
+
+
+def pose_values(odometry: Odometry) -> tuple[float, float, float]:
+    """x and y in metres, heading in degrees."""
+    pose = odometry.pose
+    return (pose.x, pose.y, math.degrees(pose.yaw))
+
+
+# The frame in which a robot drives: odometry's own, or one that localisation corrects, such as ``map``.
+
+OLDEST_TRANSFORM = 2.0
+"""Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
+
+
+def driving_frame(ros: Backend, name: str) -> Placed:
+    """Return the conversion of odometry to another frame (REP 105), by the newest transform; None while it is unknown.
+
+    Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in
+    ``map``.
+
+    Args:
+        ros: the graph; its tf is subscribed to from now on.
+        name: name of the frame.
+
+    Raises:
+        CapabilityMissing: the graph has no tf.
+    """
+    ros.tf_listen()
+
+    def placed(odometry: Odometry) -> Odometry | None:
+        header = odometry.sample.message.header
+        try:
+            transform = ros.tf_lookup(name, header.frame_id)
+        except TransformUnavailable:
+            return None
+        told = to_seconds(header.stamp)
+        # Both stamps are from the robot's clock, which may be wrong but is the same for both.
+        if told and transform.stamp and told - transform.stamp > OLDEST_TRANSFORM:
+            return None
+        position = transform.apply(odometry.position)
+        heading = normalised(odometry.pose.yaw + transform.yaw)
+        return replace(odometry, position=position, pose=Pose(position[0], position[1], heading))
+
+    return placed
+
+
+# Advice for robots that drive by odometry although a localisation finds them elsewhere.
+
+LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
+TOLERANCE = (0.05, math.radians(3.0))
+"""Metres and radians that odometry may drift: the accuracy of a navigation goal."""
+LEAP = (0.5, math.radians(30.0))
+"""A larger change between two poses is a new estimate, as after a pose from rviz, and not a drift."""
+OUTDATED, AHEAD = 1.0, 0.1
+"""Seconds over which the motion is extrapolated: from the newest odometry back to a pose, and forward to one. Over a slow
+network odometry does not yet show that the robot turns, and a pose that is further ahead would look like a drift."""
+
+_advised: WeakSet[Backend] = WeakSet()
+
+
+class Drift:
+    """Compare odometry with localised poses (``amcl_pose``), and log once per run that they drift apart.
+
+    Args:
+        ros: the graph.
+        odometer: odometry of the robot in its own frame.
+        driving: whether a motion relies on that odometry now.
+        log: takes the advice.
+    """
+
+    def __init__(
+        self, ros: Backend, odometer: Odometer, driving: Callable[[], bool], log: Callable[[str], None]
+    ) -> None:
+        self._ros, self._odometer, self._driving, self._log = ros, odometer, driving, log
+        self._first: Pose | None = None
+        self._last: Pose | None = None
+
+    def take(self, sample: Sample) -> None:
+        """Handle a localised pose; the callback of the subscription."""
+        at = self._odometry_at(to_seconds(sample.message.header.stamp))
+        if at is None or self._ros in _advised:
+            return
+        correction = Pose.of(sample.message.pose.pose).then(at.inverse())
+        if (
+            self._first is None
+            or self._last is None
+            or _exceeds(self._apart(self._last, correction, at), LEAP)
+        ):
+            self._first = correction
+        self._last = correction
+        metres, angle = self._apart(self._first, correction, at)
+        if _exceeds((metres, angle), TOLERANCE) and self._driving():
+            _advised.add(self._ros)
+            self._log(
+                f"note: odometry and localisation have drifted {metres:.2f} m and {math.degrees(angle):.1f} degrees "
+                "apart; the option `frame(map)` corrects it"
+            )
+
+    def _odometry_at(self, stamp: float) -> Pose | None:
+        """Return the pose in odometry at *stamp*, extrapolated from the newest: localisation is late by its computation."""
+        odometer = self._odometer
+        newest = odometer.newest
+        if newest is None or not odometer.trusted:
+            return None
+        late = to_seconds(newest.sample.message.header.stamp) - stamp
+        if not -AHEAD <= late <= OUTDATED:
+            return None
+        ahead = newest.pose.yaw - 0.5 * late * newest.velocity.angular
+        metres = late * newest.velocity.linear
+        return Pose(
+            newest.pose.x - metres * math.cos(ahead),
+            newest.pose.y - metres * math.sin(ahead),
+            newest.pose.yaw - late * newest.velocity.angular,
+        )
+
+    @staticmethod
+    def _apart(one: Pose, other: Pose, at: Pose) -> tuple[float, float]:
+        """Return how far two corrections put the robot apart: metres and radians."""
+        a, b = one.then(at), other.then(at)
+        return math.dist(a[:2], b[:2]), abs(normalised(a.yaw - b.yaw))
+
+
+def _exceeds(apart: tuple[float, float], limits: tuple[float, float]) -> bool:
+    return any(value > limit for value, limit in zip(apart, limits, strict=True))

@@ -1,0 +1,412 @@
+"""Mapping files: found, read, and checked as far as possible without message types."""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated
+
+from jacaros.artifacts.streams import OPERATORS, Spec
+from jacaros.robots.mapping.fields import (
+    NOTHING,
+    START,
+    UNNAMED,
+    Place,
+    Written,
+    each_of,
+    entry,
+    place_of,
+    read_namespace,
+    value_names,
+)
+from jacaros.robots.mapping.operations import OperationKind, OperationPart, read_operation
+from jacaros.robots.mapping.properties import (
+    DerivedPart,
+    FramePart,
+    ParameterPart,
+    TopicPart,
+    read_derived,
+    read_frame,
+    read_parameter,
+    read_property,
+    read_signal,
+)
+from jacaros.runtime.files.entries import Entry, declared_entries, values
+from jacaros.runtime.files.texts import is_file, suggestion
+from jacaros.runtime.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys
+
+SHIPPED = Path(__file__).parent.parent / "mappings"
+"""Folder of the mappings that come with the package."""
+
+_NAME = re.compile(r"[^\s#/]+")
+
+
+def _operations(node: Node) -> tuple[OperationPart, ...]:
+    """Read operations; a list has several of one name."""
+    found: list[OperationPart] = []
+    for name, value in node.entries():
+        if isinstance(value.value, list) and any(isinstance(item, dict) for item in value.value):
+            for item in value.sequence():
+                named = Node(name.value, item.line, item.column, item.problems, name.what)
+                found.append(read_operation(named, item))
+        else:
+            found.append(read_operation(name, value))
+    return tuple(found)
+
+
+def _tf_prefix(node: Node) -> str:
+    if node.value is not None:
+        node.text()
+    return str(node.value).strip("/") if node.value else ""
+
+
+def _connected(node: Node) -> bool | float:
+    if isinstance(node.value, bool):
+        return node.value
+    value = node.value
+    if isinstance(value, int | float) and 0.0 < value < float("inf"):
+        return float(value)
+    help = "write true" if str(value).lower() in ("yes", "on") else "write true, or a number such as 2"
+    node.wrong("`connected` must be true, false, or a number of seconds above zero", help)
+    return True
+
+
+def _named(read: Callable[[Node, Node], object]) -> Entry:
+    """Return the entry of a mapping from names to parts, each read by *read*."""
+    return entry(lambda node: tuple(read(*pair) for pair in node.entries()))
+
+
+@dataclass(frozen=True, slots=True)
+class ArtifactPart:
+    """One artifact.
+
+    Attributes:
+        tf_prefix: None: the namespace.
+        connected: whether to show that topics are connected; a number: seconds without a message after which they are
+            not.
+        interfaces: folders with definitions of types.
+        properties, signals: from topics.
+        derived: properties derived from events of others.
+    """
+
+    name: str
+    place: Place
+    description: Annotated[str, entry(Node.text)] = ""
+    namespace: Annotated[str, entry(read_namespace)] = ""
+    tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
+    connected: Annotated[bool | float, entry(_connected)] = False
+    interfaces: Annotated[tuple[Path, ...], Entry("")] = ()
+    properties: Annotated[tuple[TopicPart, ...], _named(read_property)] = ()
+    signals: Annotated[tuple[TopicPart, ...], _named(read_signal)] = ()
+    frames: Annotated[tuple[FramePart, ...], _named(read_frame)] = ()
+    parameters: Annotated[tuple[ParameterPart, ...], _named(read_parameter)] = ()
+    derived: Annotated[tuple[DerivedPart, ...], _named(read_derived)] = ()
+    operations: Annotated[tuple[OperationPart, ...], entry(_operations)] = ()
+
+    @property
+    def topics(self) -> tuple[TopicPart, ...]:
+        """Properties and signals from topics."""
+        return (*self.properties, *self.signals)
+
+    def arity(self, operation: OperationPart) -> int:
+        """Return the number of arguments of an operation, including outputs."""
+        return len(operation.parameters) + len(self.output_names(operation))
+
+    def output_names(self, operation: OperationPart) -> list[str]:
+        """Return names for the output parameters of an operation."""
+        if operation.kind is not OperationKind.READ:
+            return value_names(operation.outputs)
+        wanted = operation.properties[0].text if operation.properties else ""
+        fields = {each.name: each.fields or () for each in self.properties}
+        fields |= {each.name: each.fields for each in self.frames}
+        return value_names(fields.get(wanted, ()))
+
+
+_KEYS = tuple(declared_entries(ArtifactPart))
+"""The keys of an artifact."""
+
+
+@dataclass(frozen=True, slots=True)
+class MappingFile:
+    """A complete file.
+
+    Attributes:
+        file: its name, as shown in messages.
+        text: its text, for excerpts.
+        artifacts: by name, in the order of the file.
+    """
+
+    file: str
+    text: str = field(repr=False)
+    artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
+
+    def where(self, place: Place) -> str:
+        """Format a position for the log."""
+        return f"{self.file}:{place.line}"
+
+
+class MappingError(YamlFileError):
+    """Raised for a mapping file with mistakes; holds all of them."""
+
+
+def shipped_mappings() -> list[str]:
+    """Return the file names of the mappings that come with the package."""
+    return sorted(path.name for path in SHIPPED.glob("*.yaml"))
+
+
+def find_mapping(name: str, folders: Sequence[Path] = (Path(),)) -> Path | None:
+    """Return the file of a mapping, first below *folders*, then among those of the package; None if it does not
+    exist."""
+    for folder in folders:
+        if is_file(path := folder / name):
+            return path
+    shipped = SHIPPED / name
+    return shipped if "/" not in name and is_file(shipped) else None
+
+
+def is_mapping(path: Path) -> bool:
+    """Return whether a YAML file is a mapping file, even a faulty one: it declares artifacts or parts of one."""
+    return bool(top_keys(path) & {"artifacts", "properties", "signals", "operations"})
+
+
+def load_mapping(path: Path) -> MappingFile:
+    """Read a mapping file.
+
+    Raises:
+        MappingError: with all its mistakes.
+    """
+    mapping, problems = read_with_problems(path)
+    if problems:
+        raise MappingError(mapping.file, mapping.text, problems)
+    return mapping
+
+
+def read_with_problems(path: Path) -> tuple[MappingFile, list[Problem]]:
+    """Return the readable content of a file, and its mistakes."""
+    name = _shown(path)
+    try:
+        text, wrong = read_text(path)
+    except FileNotFoundError:
+        help = f"give the path of a mapping file, or one that comes with jacaros: {', '.join(shipped_mappings())}"
+        return MappingFile(name, ""), [Problem(1, 1, "mapping file not found", help)]
+    except OSError as error:
+        return MappingFile(name, ""), [Problem(1, 1, f"cannot read the file: {error}")]
+    if wrong is not None:
+        return MappingFile(name, text), [wrong]
+    problems: list[Problem] = []
+    artifacts = _read(read_document(text, problems, "a mapping file"), path, problems)
+    return MappingFile(name, text, artifacts), sorted(problems, key=lambda each: (each.line, each.column))
+
+
+def _shown(path: Path) -> str:
+    """Return a path relative to the current folder if it is below it."""
+    whole, here = path.resolve(), Path.cwd()
+    return str(whole.relative_to(here)) if whole.is_relative_to(here) else str(path)
+
+
+def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
+    """Read the text of a mapping file called *name*.
+
+    Raises:
+        MappingError: with all its mistakes.
+    """
+    problems: list[Problem] = []
+    artifacts = _read(read_document(text, problems, "a mapping file"), Path(name), problems)
+    if problems:
+        raise MappingError(name, text, problems)
+    return MappingFile(name, text, artifacts)
+
+
+def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
+    if document.value is None:
+        if not problems:
+            document.wrong("the file is empty", "begin with properties: or operations:")
+        return {}
+    if not isinstance(document.value, dict) or "artifacts" not in document.value:
+        return {path.stem: _artifact(path.stem, START, document, path.parent)}
+    entries = document.mapping("artifacts", *_KEYS, anchors=True)
+    for name, _ in document.entries():
+        if name.value in _KEYS and name.value != "interfaces":
+            text = f"`{name.value}` is on the same level as `artifacts`"
+            name.wrong(text, "indent it, below the name of an artifact")
+    shared = _interfaces(entries["interfaces"], path.parent) if "interfaces" in entries else ()
+    found = {}
+    for name, node in entries["artifacts"].entries():
+        if not isinstance(name.value, str) or not _NAME.fullmatch(name.value):
+            name.wrong(f"{name.value!r} is not a name for an artifact", "write a word")
+            continue
+        found[str(name.value)] = _artifact(str(name.value), place_of(name), node, path.parent, shared)
+    if not found and not problems:
+        entries["artifacts"].wrong("no artifacts", "write the name of one below `artifacts`")
+    return found
+
+
+def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
+    """Return the folders with definitions of types; relative paths start at the file's folder."""
+    found = []
+    for item in each_of(node):
+        path = (folder / item.text()).resolve()
+        if path.is_dir():
+            found.append(path)
+        elif isinstance(item.value, str):
+            text = f"folder not found: `{item.value}`"
+            item.wrong(text, "name a folder, relative to this file, that contains PACKAGE/msg/NAME.msg")
+    return tuple(found)
+
+
+def _artifact(
+    name: str, place: Place, node: Node, folder: Path, shared: tuple[Path, ...] = ()
+) -> ArtifactPart:
+    part = ArtifactPart(name, place, interfaces=shared)
+    found = values(
+        node.mapping(*_KEYS, anchors=True),
+        part,
+        interfaces=lambda folders, _: (*shared, *_interfaces(folders, folder)),
+    )
+    part = replace(part, **found)
+    for check in (_names, _arities, _references, _streams, _switches, _own_parameters):
+        node.problems += check(part)
+    return part
+
+
+# What is checked of a whole artifact.
+
+
+def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
+    """Yield kind, name and position of everything that agents perceive."""
+    for topic in part.topics:
+        yield ("signal" if topic.signal else "property"), topic.name, topic.place
+    for kind, parts in (
+        ("frame", part.frames),
+        ("parameter", part.parameters),
+        ("derived entry", part.derived),
+    ):
+        for each in parts:
+            yield kind, each.name, each.place
+    for operation in part.operations:
+        for feedback in operation.feedback:
+            yield "feedback", feedback.name, feedback.place
+
+
+def _names(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield names that are used twice in an artifact. A signal may share one with a property, as events do with
+    beliefs."""
+    seen: dict[str, tuple[str, Place]] = {}
+    for kind, name, place in _observable(part):
+        if name == UNNAMED:
+            continue  # already reported
+        if name in seen and (kind != "feedback" or seen[name][0] != "feedback"):
+            first, before = seen[name]
+            text = f"the {kind} `{name}` has the same name as the {first} on line {before.line}"
+            yield place.problem(text, "give it another name")
+        seen.setdefault(name, (kind, place))
+
+
+def _arities(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield operations that agents cannot tell apart: same name, same number of arguments."""
+    seen: dict[tuple[str, int], Place] = {}
+    for operation in part.operations:
+        key = (operation.name, part.arity(operation))
+        before = seen.setdefault(key, operation.place)
+        if before is not operation.place and operation.name != UNNAMED:
+            yield operation.place.problem(
+                f"duplicate operation `{operation.name}` with {key[1]} arguments; the first is on line {before.line}",
+                "give it another name, or other parameters",
+            )
+
+
+def _switches(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield operations that are named to pause and resume others, but do not exist or are not able to."""
+    plain = {each.name: each for each in part.operations if part.arity(each) == 0}
+    able = [name for name, each in plain.items() if each.is_switch]
+    for operation in part.operations:
+        for wanted in (operation.pause, operation.resume):
+            if wanted is NOTHING or not wanted.text or wanted.text in able:
+                continue
+            known = any(each.name == wanted.text for each in part.operations)
+            yield wanted.place.problem(
+                f"`{wanted.text}` cannot pause or resume a goal: it takes arguments, or runs for a while"
+                if known
+                else f"unknown operation `{wanted.text}`",
+                "name one without arguments that calls a service, publishes once or sets a parameter; "
+                f"{'possible: ' + ', '.join(able) if able else 'none exists yet'}",
+            )
+
+
+def _own_parameters(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield operations on parameters of our own that the artifact does not declare."""
+    own = [each.parameter for each in part.parameters if not each.node]
+    for operation in part.operations:
+        if operation.kind not in (OperationKind.SET, OperationKind.GET) or operation.node:
+            continue
+        if operation.target.text not in own:
+            yield operation.target.place.problem(
+                f"`{operation.name}` names no node, and `{operation.target.text}` is not a parameter of our own",
+                f"our own parameters: {', '.join(own)}"
+                if own
+                else "write the node that has the parameter: node: controller_server",
+            )
+
+
+def _references(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield unknown properties in operations and ranges of view, and properties on demand without an operation that
+    requests them."""
+    own: dict[str, TopicPart | None] = {each.name: each for each in part.properties}
+    own |= {each.name: None for each in part.frames}
+    told = ", ".join(own) or "none"
+    asked: Counter[str] = Counter()
+    for operation in part.operations:
+        for wanted in operation.properties:
+            asked[wanted.text] += 1
+            if wanted.text not in own:
+                text = f"unknown property `{wanted.text}`"
+                yield wanted.place.problem(text, f"properties from topics and frames: {told}")
+                continue
+            topic = own[wanted.text]
+            if topic is not None and topic.each is not None:
+                text = f"`{wanted.text}` is one property for each element, and always up to date"
+                yield wanted.place.problem(text, "leave it out")
+            elif operation.kind is OperationKind.READ and topic is not None and topic.fields is None:
+                text = f"the number of values of `{wanted.text}` is not known"
+                yield wanted.place.problem(text, f"give `{wanted.text}` fields")
+    for topic in part.topics:
+        if topic.view is not None and (origin := topic.view.origin) is not None and origin.text not in own:
+            text = f"unknown property `{origin.text}`"
+            yield origin.place.problem(text, f"properties from topics and frames: {told}")
+        if topic.policy.on_demand and topic.name not in asked:
+            text = f"no operation requests `{topic.name}`, which is updated on demand"
+            yield topic.place.problem(text, f"add an operation: look: {{refresh: {topic.name}}}")
+
+
+_EVENTS = frozenset({"count", "absent"})
+"""Operators that use only the events, not their values, so each element of an array may be one."""
+
+
+def _streams(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield streams that the artifact does not have, or that an operator cannot use."""
+    topics: dict[str, TopicPart] = {each.name: each for each in part.topics}
+    known = [*topics, *(each.name for each in part.frames)]
+    for derived in part.derived:
+        for source in derived.sources:
+            if source.text and source.text not in known:
+                yield _unknown_stream(source, known)
+            elif (topic := topics.get(source.text)) is not None and derived.spec is not None:
+                yield from _unfit(derived.spec, topic, source.place)
+        known.append(derived.name)
+
+
+def _unknown_stream(source: Written, known: list[str]) -> Problem:
+    listed = f"properties, signals, frames and entries above this one: {', '.join(known) or 'none'}"
+    return source.place.problem(f"unknown property `{source.text}`", suggestion(source.text, known, listed))
+
+
+def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
+    if topic.each is not None and spec.operator not in _EVENTS:
+        text = f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one"
+        yield place.problem(text, f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`")
+    needed = spec.place + 1
+    if OPERATORS[spec.operator].valued and topic.fields is not None:
+        count = sum(field.count for field in topic.fields)
+        if count < needed:
+            yield place.problem(f"`{topic.name}` has {count} values, not {needed}", "write a smaller `value`")

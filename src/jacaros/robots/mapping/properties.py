@@ -1,0 +1,551 @@
+"""What agents perceive: ``properties``, ``signals``, ``frames``, ``parameters`` and ``derived``, and how they are read."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+from jacaros.artifacts.streams import (
+    LONGEST,
+    OPERATORS,
+    PARTNERS_WAIT,
+    Fault,
+    ReadingPolicy,
+    Spec,
+    faults,
+    unknown,
+)
+from jacaros.robots.mapping.fields import (
+    START,
+    UNITS,
+    UNNAMED,
+    WHOLE,
+    FieldPart,
+    Path,
+    Place,
+    Written,
+    belief_name,
+    constant,
+    each_of,
+    entry,
+    is_type,
+    path_of,
+    place_of,
+    read_field,
+    read_fields,
+    read_path,
+    ros_name,
+    shown,
+    type_of,
+    units_of,
+    with_entries,
+    written,
+)
+from jacaros.robots.ros.errors import ParameterRefused
+from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
+from jacaros.robots.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, QoS
+from jacaros.runtime.files.yaml import Node, Problem
+
+
+def positive(node: Node) -> float:
+    """Read a number above zero."""
+    value = node.number(default=1.0)
+    if value <= 0.0:
+        text = f"{node.what} is {value:g}, but must be above zero"
+        node.wrong(text, f"leave {node.what} out, or write a number")
+        return 1.0
+    return value
+
+
+PROFILES = {"sensor_data": SENSOR_DATA, "default": DEFAULT_QOS, "latched": LATCHED}
+
+
+_CHOICES = {"reliability": ("reliable", "best_effort"), "durability": ("volatile", "transient_local")}
+_PARTS = {word: f"write qos: {{{key}: {word}}}" for key, words in _CHOICES.items() for word in words}
+"""What to write for a part of a quality of service that is given alone."""
+
+
+def read_qos(node: Node) -> QoS:
+    """Read a quality of service; the default one after a mistake."""
+    if not isinstance(node.value, dict):
+        if node.value not in PROFILES:
+            listed = f"write {', '.join(PROFILES)}, or {{reliability: ..., durability: ..., depth: ..., deadline: ...}}"
+            node.wrong(f"unknown QoS profile {shown(node.value)}", _PARTS.get(str(node.value), listed))
+        return PROFILES.get(node.value, DEFAULT_QOS)
+    entries = node.mapping("reliability", "durability", "depth", "deadline")
+    given: dict[str, Any] = {key: entries[key].choice(*_CHOICES[key]) for key in _CHOICES if key in entries}
+    if "depth" in entries:
+        given["depth"] = entries["depth"].whole(1, DEFAULT_QOS.depth)
+    if "deadline" in entries:
+        given["deadline"] = entries["deadline"].number(0.0, default=1.0) or None
+        if given["deadline"] is None:
+            entries["deadline"].wrong("`deadline` is 0, but must be above zero", "write seconds")
+    return replace(DEFAULT_QOS, **given)
+
+
+def read_annotations(node: Node) -> tuple[FieldPart, ...]:
+    """Read annotations by name; the name of the annotation is that of the field."""
+    return tuple(replace(read_field(value), name=belief_name(name)) for name, value in node.entries())
+
+
+def _coordinates(node: Node) -> tuple[Path, ...]:
+    at = tuple(path_of(item) for item in node.sequence())
+    if len(at) != 2:
+        node.wrong("`at` must be the paths of two coordinates", "write [position.x, position.y]")
+        return ()
+    return at
+
+
+@dataclass(frozen=True, slots=True)
+class ViewPart:
+    """The range within which elements are shown.
+
+    Attributes:
+        metres: maximum distance.
+        distance: path of the distance; empty if positions are given.
+        at: paths of the position's coordinates x and y.
+        origin: the property whose first values are the origin; None: the robot itself.
+    """
+
+    place: Place
+    metres: Annotated[float, entry(positive)] = 1.0
+    distance: Annotated[Path | None, entry(path_of)] = None
+    at: Annotated[tuple[Path, ...], entry(_coordinates)] = ()
+    origin: Annotated[Written | None, entry(written, "from")] = None
+
+
+def _view(node: Node) -> ViewPart:
+    entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
+    if isinstance(node.value, dict):
+        if "distance" in entries and ("at" in entries or "from" in entries):
+            node.wrong("`distance` and `at` are alternatives", "remove one of them")
+        if "distance" not in entries and "at" not in entries:
+            text = "`range_of_view` needs a position"
+            node.wrong(text, "add `at: [position.x, position.y]`, or `distance: range`")
+    return with_entries(ViewPart(place_of(node)), entries)
+
+
+ALWAYS = ReadingPolicy()
+"""Every change is published."""
+
+
+@dataclass(frozen=True, slots=True)
+class TopicPart:
+    """A property or signal from a topic, or from the feedback of an action.
+
+    Attributes:
+        topic: name of the topic; None for feedback.
+        type_name: message type; None: found at run time.
+        frame: the only frame whose messages are shown; None: any.
+        fields: None: the whole message.
+        each: the array whose elements each have a property or signal.
+        key: identifies an element; None: the first field.
+        initial: values before the first message; None: no property until then.
+        when_changed: send a signal only if its values differ from the previous ones.
+    """
+
+    name: str
+    place: Place
+    topic: Annotated[Written | None, entry(ros_name)] = None
+    type_name: Annotated[Written | None, type_of("msg")] = None
+    frame: Annotated[Written | None, entry(written)] = None
+    fields: Annotated[tuple[FieldPart, ...] | None, entry(read_fields)] = None
+    each: Annotated[Path | None, entry(path_of)] = None
+    each_place: Place = START
+    key: Annotated[FieldPart | None, entry(read_field)] = None
+    annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
+    qos: Annotated[QoS | None, entry(read_qos)] = None
+    description: Annotated[str, entry(Node.text)] = ""
+    policy: ReadingPolicy = ALWAYS
+    initial: tuple[object, ...] | None = None
+    view: Annotated[ViewPart | None, entry(_view, "range_of_view")] = None
+    when_changed: Annotated[bool, entry(Node.truth)] = False
+    signal: bool = False
+
+
+_MESSAGE = ("topic", "type", "frame", "fields", "each", "key", "annotations", "qos", "description")
+_POLICY = ("mode", "rate", "dead_band", "latest_only", "expire")
+PROPERTY = (*_MESSAGE, *_POLICY, "initial", "range_of_view")
+SIGNAL = (*_MESSAGE, "rate", "when_changed")
+FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
+
+
+def read_property(name: Node, node: Node) -> TopicPart:
+    """Read one property from a topic."""
+    part, entries = _from_topic(name, node, PROPERTY, "a property")
+    if not entries:
+        return part
+    policy = read_policy(entries, part.fields)
+    if policy.on_demand and part.each is not None:
+        entries["mode"].wrong("a property for each element is always up to date", "leave `mode` out")
+    initial = _initial(entries["initial"], part) if "initial" in entries else None
+    return replace(part, policy=policy, initial=initial)
+
+
+def read_signal(name: Node, node: Node) -> TopicPart:
+    """Read one signal."""
+    part, entries = _from_topic(name, node, SIGNAL, "a signal")
+    if "annotations" in entries:
+        entries["annotations"].wrong("signals have no annotations", "write the field in `fields`")
+    policy = read_policy(entries, part.fields, latest_only=False) if entries else ALWAYS
+    return replace(part, policy=policy, signal=True)
+
+
+def _from_topic(
+    name: Node, node: Node, keys: tuple[str, ...], what: str
+) -> tuple[TopicPart, dict[str, Node]]:
+    """Read what properties and signals share. Return the entries, too; none of a short form."""
+    place = place_of(name)
+    if is_misplaced(name, node, keys, what):
+        return TopicPart(UNNAMED, place, Written("unnamed", place)), {}
+    if isinstance(node.value, str):
+        return TopicPart(belief_name(name), place, ros_name(node)), {}
+    entries = node.mapping(*keys, required=("topic",))
+    return _of_message(TopicPart(belief_name(name), place), entries), entries
+
+
+def read_feedback(name: Node, node: Node) -> TopicPart:
+    """Read a property from the feedback of an action."""
+    part = TopicPart(belief_name(name), place_of(name))
+    if node.value is None or isinstance(node.value, str | list):
+        return replace(part, fields=read_fields(node) if node.value is not None else None)
+    entries = node.mapping(*FEEDBACK)
+    part = _of_message(part, entries)
+    return replace(part, policy=read_policy(entries, part.fields))
+
+
+def _of_message(part: TopicPart, entries: dict[str, Node]) -> TopicPart:
+    each = entries.get("each")
+    if "key" in entries and each is None:
+        entries["key"].wrong("`key` needs `each`", "write the array with the elements: each: detections")
+    part = replace(with_entries(part, entries), each_place=place_of(each) if each is not None else part.place)
+    if part.fields == ():
+        entries["fields"].wrong("`fields` is empty", "name a field, or leave `fields` out for all of them")
+    for field in part.fields or ():
+        if each is None and (field.path.of_message or "i" in field.path.steps):
+            entries["fields"].problems.append(
+                field.place.problem(
+                    f"`{field.path.text}` needs `each`", "without `each` write the path alone"
+                )
+            )
+    return part
+
+
+def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bool:
+    """Report a key of a property (*what*) used where the name of a property is expected. Return whether it was."""
+    if name.value not in keys or isinstance(node.value, dict):
+        return False
+    if isinstance(node.value, str) and not is_type(node.value):
+        return False  # a property may have this name, and this be its topic
+    text = f"`{name.value}` is used like the name of {what}"
+    name.wrong(text, "indent it, below the name that it belongs to")
+    return True
+
+
+def _initial(node: Node, part: TopicPart) -> tuple[object, ...]:
+    if part.each is not None:
+        node.wrong("a property for each element has no initial values", "leave `initial` out")
+    values = tuple(map(constant, each_of(node)))
+    if part.fields is not None and len(values) != (count := sum(field.count for field in part.fields)):
+        text = f"`initial` has {len(values)} values, but the property has {count}"
+        node.wrong(text, "write one for each value")
+    return values
+
+
+def read_policy(
+    entries: dict[str, Node], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
+) -> ReadingPolicy:
+    """Read when to update."""
+    mode = entries["mode"].choice("verbose", "on_demand") if "mode" in entries else "verbose"
+    rate, expire = entries.get("rate"), entries.get("expire")
+    latest = entries.get("latest_only")
+    return ReadingPolicy(
+        on_demand=mode == "on_demand",
+        rate=positive(rate) if rate is not None else None,
+        dead_band=_bands(entries.get("dead_band"), fields),
+        latest_only=latest.truth() if latest is not None else latest_only,
+        expire=positive(expire) if expire is not None else None,
+        finite=False,  # fields have their own replacements for such numbers
+    )
+
+
+def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
+    """Read one number for all values, or one for each value."""
+    own = any(field.dead_band is not None for field in fields or ())
+    if node is None:
+        return _each_band(fields or (), 0.0) if own else 0.0
+    if not isinstance(node.value, list):
+        band = node.number(0.0)
+        return _each_band(fields or (), band) if own else band
+    given = tuple(item.number(0.0) for item in node.sequence())
+    if fields is not None and len(given) != (count := sum(field.count for field in fields)):
+        text = f"`dead_band` has {len(given)} numbers, but the property has {count} values"
+        node.wrong(text, "write one number for all, or one for each value")
+    return given
+
+
+def _each_band(fields: tuple[FieldPart, ...], usual: float) -> tuple[float, ...]:
+    return tuple(
+        usual if field.dead_band is None else field.dead_band for field in fields for _ in range(field.count)
+    )
+
+
+# Frames.
+
+TRANSFORM = {
+    **dict.fromkeys(("x", "y", "z"), "length"),
+    **dict.fromkeys(("roll", "pitch", "yaw"), "angle"),
+    "stamp": "time",
+}
+"""The parts of a transform that can be shown, and their kinds."""
+
+
+@dataclass(frozen=True, slots=True)
+class FramePart:
+    """A property from tf.
+
+    Attributes:
+        target, source: frames, as written.
+        fields: have paths of one step, ``x`` to ``stamp``.
+        rate: look-ups per second.
+        oldest: maximum age of a transform, in seconds; None: any.
+    """
+
+    name: str
+    place: Place
+    target: Annotated[str, entry(Node.text)] = ""
+    source: Annotated[str, entry(Node.text)] = ""
+    fields: Annotated[tuple[FieldPart, ...], entry(read_fields)] = ()
+    annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
+    description: Annotated[str, entry(Node.text)] = ""
+    rate: float = 10.0
+    oldest: float | None = None
+    policy: ReadingPolicy = ALWAYS
+
+
+FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
+
+
+def read_frame(name: Node, node: Node) -> FramePart:
+    """Read a property from tf."""
+    entries = node.mapping(*FRAME, required=("target", "source"))
+    place = place_of(name)
+    pose = tuple(FieldPart(read_path(each), place, name=each) for each in ("x", "y", "yaw"))
+    part = with_entries(FramePart(belief_name(name), place, fields=pose), entries)
+    for field in (*part.fields, *part.annotations):
+        node.problems += _of_transform(field)
+    for key in ("target", "source"):
+        if key in entries and entries[key].value == "":
+            entries[key].wrong(f"`{key}` is empty", "write the name of a frame, such as base_link")
+    policy = read_policy(entries, part.fields)
+    rest = replace(policy, rate=None, expire=None)
+    return replace(part, rate=policy.rate or part.rate, oldest=policy.expire, policy=rest)
+
+
+def _of_transform(field: FieldPart) -> Iterator[Problem]:
+    place, conversion = field.path.text, field.conversion
+    if place not in TRANSFORM:
+        yield field.place.problem(f"a transform has no `{place}`", f"it has {', '.join(TRANSFORM)}")
+    elif conversion.kind or conversion.names or field.shares is not None:
+        text = f"{place} of a transform is a number"
+        yield field.place.problem(text, "it can only have a unit, scale, offset and round")
+    elif conversion.unit and UNITS[conversion.unit].kind != (wanted := TRANSFORM[place]):
+        kind, unit = UNITS[conversion.unit].kind, conversion.unit
+        told = f"{place} of a transform is a {wanted}, but {unit} is a unit of {kind}"
+        yield field.place.problem(told, f"units of {wanted} are {', '.join(units_of(wanted))}")
+
+
+# Parameters: of other nodes, and of our own.
+
+
+def _field(node: Node) -> FieldPart | None:
+    fields = read_fields(node)
+    if len(fields) != 1 or fields[0].path.steps:
+        node.wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
+        return None
+    kind = fields[0].conversion.kind
+    if kind not in ("", "atom") or fields[0].shares is not None or fields[0].otherwise is not None:
+        told = "`otherwise`" if fields[0].otherwise is not None else f"`as: {kind}`" if kind else "`sample`"
+        text = f"{told} is for messages"
+        node.wrong(text, "a parameter can have: as: atom, names, unit, scale, offset, round")
+    return replace(fields[0], path=WHOLE)
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterPart:
+    """A property from a parameter of a node.
+
+    Attributes:
+        parameter: its name.
+        node: the node; empty for our own.
+        declaration: declaration of a parameter of our own.
+        rate: polling rate for middlewares that do not report changes.
+    """
+
+    name: str
+    place: Place
+    parameter: Annotated[str, entry(Node.text)]
+    node: Annotated[str, entry(lambda node: ros_name(node).text)] = ""
+    field: Annotated[FieldPart | None, entry(_field, "fields")] = None
+    rate: Annotated[float, entry(positive)] = 1.0
+    description: Annotated[str, entry(Node.text)] = ""
+    declaration: Declaration | None = None
+    policy: ReadingPolicy = ALWAYS
+
+
+_SHOWN = ("parameter", "fields", "dead_band", "description")
+OTHER = ("node", *_SHOWN, "rate")
+OWN = ("default", *_SHOWN, "minimum", "maximum", "read_only")
+
+
+def read_parameter(name: Node, node: Node) -> ParameterPart:
+    """Read a property from a parameter, of another node or of our own."""
+    part = ParameterPart(belief_name(name), place_of(name), str(name.value))
+    if not isinstance(node.value, dict):
+        return replace(part, declaration=_declaration(node, {}))  # short for {default: ...}
+    own = not {"node", "rate"} & {str(key) for key in node.value}
+    entries = node.mapping(*(OWN if own else OTHER), required=() if own else ("node",))
+    if own and "default" not in entries:
+        node.wrong(
+            f"the parameter `{name.value}` has neither a node nor a default",
+            "write the node that has it, node: controller_server, or its value if it is our own, default: 0.5",
+        )
+    part = with_entries(part, entries)
+    declaration = _declaration(entries["default"], entries) if "default" in entries else None
+    if part.field is not None and declaration is not None:
+        _require_shown(entries["default"], part.field, declaration.default)
+    band = {key: each for key, each in entries.items() if key == "dead_band"}
+    policy = read_policy(band, (part.field,) if part.field is not None else None)
+    # No field has a replacement for numbers that are not finite.
+    return replace(part, declaration=declaration, policy=replace(policy, finite=True))
+
+
+def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> None:
+    """Check the default of a parameter of our own: as it keeps its type, its conversion works for every value."""
+    values = (default or [""]) if isinstance(default, list) else [default]
+    wrong = [each for each in values if isinstance(each, bool) or not isinstance(each, int | float)]
+    if wrong and field.conversion.needs_number:
+        found, name = json.dumps(wrong[0], ensure_ascii=False), node.what.strip("'")
+        help = "leave out its unit, scale, offset and round"
+        node.wrong(f"parameter `{name}`: expected a number, found {found}", help)
+
+
+def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
+    """Read the declaration of a parameter of our own; *node* is its default."""
+    default = _value(node)
+    limits = {key: entries[key].number() for key in ("minimum", "maximum") if key in entries}
+    if limits and (isinstance(default, bool) or not isinstance(default, int | float)):
+        text = f"only numbers have a range, but the default is {default!r}"
+        entries[next(iter(limits))].wrong(text, "leave minimum and maximum out")
+        limits = {}
+    declaration = Declaration(
+        default,
+        entries["description"].text() if "description" in entries else "",
+        entries["read_only"].truth() if "read_only" in entries else False,
+        limits.get("minimum"),
+        limits.get("maximum"),
+    )
+    if (fault := fault_of(default, declaration)) is not None:
+        text = f"the default is outside its range: it is {fault}"
+        node.wrong(text, "write another default, or another range")
+    return declaration
+
+
+def _value(node: Node) -> ParameterValue:
+    if node.value is None:
+        node.wrong("the parameter has no default", "write a number, true or false, a text, or a list of them")
+        return 0
+    try:
+        return checked_value(constant(node))
+    except ParameterRefused as refused:
+        node.wrong(str(refused), "write numbers of one type in a list: [1.0, 2.5]")
+        return 0
+
+
+# Derived: events composed of those of other properties and signals of the file.
+
+_COMMON = ("value", "lateness", "description")
+_EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
+
+
+@dataclass(frozen=True, slots=True)
+class DerivedPart:
+    """A property derived from events of others.
+
+    Attributes:
+        spec: the pattern; None after a mistake.
+        sources: the properties and signals, as written.
+    """
+
+    name: str
+    place: Place
+    spec: Spec | None = None
+    sources: tuple[Written, ...] = ()
+    description: Annotated[str, entry(Node.text)] = ""
+
+
+def read_derived(name: Node, node: Node) -> DerivedPart:
+    """Read one derived property."""
+    part = DerivedPart(belief_name(name), place_of(name))
+    if not isinstance(node.value, dict):
+        node.wrong(f"`{name.value}` has no operator", _EXAMPLE)
+        return part
+    entries = node.mapping()
+    operator = _operator(name, node, entries)
+    if operator is None:
+        return part
+    streams = entries[operator]
+    sources = tuple(map(written, each_of(streams) if operator == "together" else [streams]))
+    names = tuple(each.text for each in sources)
+    options = {
+        key: constant(each) if key == "equals" else each.value
+        for key, each in entries.items()
+        if key not in (operator, *_COMMON)
+    }
+    wrong = list(faults(operator, names, options))
+    for fault in wrong:
+        _report(fault, entries, node)
+    value, lateness = entries.get("value"), entries.get("lateness")
+    if value is not None and not OPERATORS[operator].valued:
+        value.wrong(f"`{operator}` does not use values", "leave `value` out")
+    if lateness is not None and operator != "together":
+        lateness.wrong(f"`{operator}` waits for nothing", "leave `lateness` out: delayed messages count")
+    usual = PARTNERS_WAIT if operator == "together" else 0.0
+    spec = Spec(
+        operator,
+        names,
+        options,
+        value.whole(1, 1) - 1 if value is not None else 0,
+        usual if lateness is None else lateness.number(0.0, LONGEST),
+    )
+    return with_entries(replace(part, spec=None if wrong else spec, sources=sources), entries)
+
+
+def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
+    """Return the operator of an entry; None after reporting a mistake."""
+    named = [key for key in entries if key in OPERATORS]
+    if len(named) == 1:
+        return named[0]
+    if len(named) > 1:
+        text = f"`{named[0]}` and `{named[1]}` are alternatives"
+        entries[named[1]].wrong(text, "derive one name for each operator")
+    elif entries:
+        first = next(iter(entries))
+        fault = unknown(first)
+        help_ = fault.help if fault.help.startswith("did") else f"{_EXAMPLE}; {fault.help}"
+        _at_key(node, first).wrong(f"`{name.value}` has no operator", help_)
+    else:
+        name.wrong(f"`{name.value}` has no operator", _EXAMPLE)
+    return None
+
+
+def _report(fault: Fault, entries: dict[str, Node], node: Node) -> None:
+    if fault.option in entries and fault.message.endswith(f"has no option `{fault.option}`"):
+        _at_key(node, fault.option).wrong(fault.message, fault.help)
+    else:
+        entries.get(fault.option, node).wrong(fault.message, fault.help)
+
+
+def _at_key(node: Node, key: str) -> Node:
+    """Return the position of a key of a mapping."""
+    return next((name for name, _ in node.entries() if str(name.value) == key), node)

@@ -1,0 +1,359 @@
+"""Topics of a mapped artifact: each message updates the properties and signals that show parts of it.
+
+For an array there is one property per element: new elements are defined, changed ones updated, missing ones removed.
+"""
+
+import dataclasses
+import itertools
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from jacaros.artifacts.env.values import Structure
+from jacaros.robots.kit.faults import Faults, Stamps
+from jacaros.robots.kit.reading import RangeOfView, Reading
+from jacaros.robots.mapping.decoding import Extract, Row, Unshowable, extractor, perceived
+from jacaros.robots.mapping.deriving import stamp_of
+from jacaros.robots.mapping.host import LOOK, Host, type_in
+from jacaros.robots.mapping.properties import TopicPart
+from jacaros.robots.ros.backend import GraphContents
+from jacaros.robots.ros.errors import CapabilityMissing, RosError
+from jacaros.robots.ros.message import to_seconds
+from jacaros.robots.ros.node import Sample, Subscription
+from jacaros.robots.ros.qos import SENSOR_DATA, STATE
+from jacaros.robots.ros.waiting import MISSING_AFTER
+from jacaros.runtime.clock import Timer
+from jacaros.runtime.files.yaml import Problem
+from jacaros.runtime.trace import Cause
+
+
+class TopicMultiplexer:
+    """Deliver the messages of one subscription to all its properties and signals.
+
+    Args:
+        host: the artifact.
+        updaters: receive the messages; they have the same topic, type and quality of service.
+
+    Attributes:
+        written: the topic.
+        name: its absolute name.
+    """
+
+    def __init__(self, host: Host, updaters: "list[Updater]") -> None:
+        topic = updaters[0].part.topic
+        assert topic is not None
+        self.written, self.name = topic, host.ros.resolve(host.robot_topic(topic.text))
+        self._host, self._updaters = host, updaters
+        self._stamps: Stamps | None = None
+        self._subscription: Subscription | None = None
+
+    def listen(self, type_name: str) -> None:
+        """Subscribe. Without a quality of service in the mapping it is that of a sensor; a property also receives
+        stored messages."""
+        host, written = self._host, self.written
+        problems: list[Problem] = []
+        for updater in self._updaters:
+            updater.prepare(type_name, problems)
+        if problems:
+            host.report(problems)
+        self._updaters = [updater for updater in self._updaters if updater.ready]
+        if not self._updaters:
+            return
+        if "header" in host.ros.fields(type_name) and any(updater.is_state for updater in self._updaters):
+            self._stamps = Stamps(host.faults_at(self.name), host.clock)
+        report = host.on_topic_event(written.text, written.place)
+        try:
+            states = any(not updater.part.signal for updater in self._updaters)
+            qos = self._updaters[0].part.qos or (STATE if states else SENSOR_DATA)
+            self._subscription = host.subscription(written.text, type_name, self._take, qos, report)
+        except CapabilityMissing as error:
+            host.fail(f"{host.mapping.where(written.place)}: {error}", "ros_error", host.name)
+
+    def _take(self, sample: Sample) -> None:
+        stamps = self._stamps
+        # Latched messages are old when they arrive, and valid.
+        latched = self._subscription is not None and self._subscription.latched
+        old = (
+            not latched
+            and stamps is not None
+            and not stamps.accept(to_seconds(sample.message.header.stamp), sample.stamp)
+        )
+        for updater in self._updaters:
+            if not (old and updater.is_state):
+                updater.take(sample, latched)
+
+
+async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
+    """Query the graph until the types of *topics* are known, and subscribe to them; a process of the artifact."""
+    began, told, missed = host.clock.elapsed, False, False
+    while topics:
+        try:
+            contents = await host.step(host.ros.contents())
+        except CapabilityMissing as error:
+            for each in topics:
+                help = "write the type: type: package/msg/Type"
+                host.report_once(each, each.written.place, str(error), help)
+            return
+        except RosError:
+            contents = GraphContents()
+        for each in list(topics):
+            if found := type_in(contents, "topic", each.name):
+                topics.remove(each)
+                each.listen(found)
+        if not topics:
+            return
+        if not told:
+            for each in topics:
+                host.log(f"waiting for topic {each.name}, to find its type")
+        late = host.clock.elapsed - began >= MISSING_AFTER
+        if late and not missed:
+            for each in topics:
+                text = f"no node uses topic {each.name}, so its type is unknown; still waiting"
+                help = "start the node that publishes it, or write its type: type: package/msg/Type"
+                host.report_once(each, each.written.place, text, help)
+        told, missed = True, missed or late
+        await host.sleep(LOOK)
+
+
+Show = Callable[[list[Row], Cause | None], None]
+"""Shows the rows of a message."""
+
+
+class Updater:
+    """Update a property, or send signals, from messages.
+
+    Args:
+        host: the artifact.
+        part: its declaration.
+    """
+
+    def __init__(self, host: Host, part: TopicPart) -> None:
+        self.part = part
+        self._host = host
+        self._extract: Extract | None = None
+        self._reading: Reading | None = None
+        self._faults: Faults | None = None
+        self._taps = host.taps.get(part.name, ())
+        self._latched = False
+        self._frame = host.frame(part.frame.text) if part.frame is not None else None
+        if part.signal:
+            show = Signals(host, part).take
+        elif part.each is not None:
+            show = Elements(host, part).take
+        else:
+            self._reading = host.reading_of(part.name, part.policy, *map(perceived, part.initial or ()))
+            show = partial(self._show, self._reading)
+        self._take_rows = self._in_view(show)
+
+    def _in_view(self, show: Show) -> Show:
+        """Return what takes the rows of a message, and shows those in the range of view."""
+        view = self.part.view
+        if view is None or view.distance is not None:
+            return show
+        seen = RangeOfView(
+            view.metres, lambda rows, cause: show([row for *_, row in rows if isinstance(row, Row)], cause)
+        )
+        if view.origin is None:
+            seen.stand(0.0, 0.0)
+        else:
+            self._host.follow_property(view.origin.text, partial(_stand, seen))
+        return lambda rows, cause: seen.take([(*row.place, row) for row in rows], cause)
+
+    @property
+    def is_state(self) -> bool:
+        """Whether only the newest message counts: not for signals, nor if each message contains only some elements."""
+        return not self.part.signal and self.part.each is None
+
+    @property
+    def ready(self) -> bool:
+        """Whether the type is known and has all fields."""
+        return self._extract is not None
+
+    def prepare(self, type_name: str, problems: list[Problem]) -> None:
+        """Prepare for messages of a type; *problems* receives mismatches."""
+        self._extract = extractor(self.part, type_name, self._host.ros, problems)
+
+    def take(self, sample: Sample, latched: bool) -> None:
+        """Handle a message; *latched*: its stamp may be old."""
+        self._latched = latched
+        if self._frame is not None:
+            message: Any = sample.message
+            given = message.header.frame_id.strip("/")
+            if given != self._frame:
+                text = f"expected frame {self._frame}, found {given or 'none'}"
+                wrong = Unshowable(given, text, "if that is its frame, write it", "wrong_frame")
+                self._refuse(wrong, sample.topic)
+                return
+        self.take_message(sample.message, sample.cause, sample.topic)
+
+    def take_message(self, message: object, cause: Cause | None, topic: str) -> None:
+        """Handle a message, or the feedback of an action."""
+        assert self._extract is not None
+        try:
+            rows = self._extract(message)
+        except Unshowable as error:
+            self._refuse(error, topic)
+            return
+        if self._taps:
+            stamp = stamp_of(message, self._latched)
+            for tap in self._taps:
+                for row in rows:
+                    tap(stamp, row.values, cause)
+        self._take_rows(rows, cause)
+
+    def _show(self, reading: Reading, rows: list[Row], cause: Cause | None) -> None:
+        if rows:
+            self._host.annotate(self.part.name, rows[0].annotations)
+            reading.take(rows[0].values, cause)
+        else:
+            reading.withdraw()
+
+    def withdraw(self) -> None:
+        """Remove the property."""
+        if self._reading is not None:
+            self._reading.withdraw()
+
+    def _refuse(self, error: Unshowable, topic: str) -> None:
+        """Report a message that was not shown: by one log line with the position, and by a signal to agents."""
+        part, host = self.part, self._host
+        text = f"`{part.name}` is not shown: {error}"
+        host.report_once((part.name, error.path), part.place, text, error.help)
+        if self._faults is None:
+            self._faults = Faults(topic, lambda why, _: host.start(host.report_bad_message, topic, why))
+        self._faults.add(Structure(error.functor, (error.path,)), str(error))
+
+
+def _stand(view: RangeOfView, values: tuple[object, ...]) -> None:
+    """Use the position in a property as origin."""
+    x, y = (*values, 0, 0)[:2]
+    if isinstance(x, int | float) and isinstance(y, int | float):
+        view.stand(float(x), float(y))
+
+
+class Signals:
+    """The signals of a topic: all, those that differ from the last ones, or at most some each second.
+
+    Args:
+        host: the artifact.
+        part: its declaration.
+    """
+
+    def __init__(self, host: Host, part: TopicPart) -> None:
+        self._host, self._part = host, part
+        self._sent: dict[object, tuple[object, ...]] = {}
+        self._held: tuple[list[Row], Cause | None] | None = None
+        self._pause: Timer | None = None
+        host.at_dispose(self._close)
+
+    def take(self, rows: list[Row], cause: Cause | None) -> None:
+        """Handle a message; during the pause after a signal the newest one is held back."""
+        if self._pause is not None:
+            self._held = (rows, cause)
+            return
+        if self._part.when_changed:
+            before, self._sent = self._sent, {row.key: row.values for row in rows}
+            rows = [row for row in rows if before.get(row.key) != row.values]
+        if not rows:
+            return
+        if (rate := self._part.policy.rate) is not None:
+            self._pause = self._host.clock.call_later(1.0 / rate, self._go_on)
+        self._host.start(self._host.send_signals, self._part.name, [row.values for row in rows], cause=cause)
+
+    def _go_on(self) -> None:
+        held, self._pause, self._held = self._held, None, None
+        if held is not None:
+            self.take(*held)
+
+    def _close(self) -> None:
+        if self._pause is not None:
+            self._pause.cancel()
+
+
+class Elements:
+    """The elements of the newest message, by their keys.
+
+    Args:
+        host: the artifact.
+        part: its declaration.
+    """
+
+    def __init__(self, host: Host, part: TopicPart) -> None:
+        self._host, self._part = host, part
+        self._wanted: dict[object, Row] = {}
+        self._shown: dict[object, Row] = {}
+        self._seen: dict[object, float] = {}
+        self._expiry: Timer | None = None
+        self._versions = itertools.count()
+        self._coming = False
+        policy = dataclasses.replace(part.policy, dead_band=0.0, expire=None)
+        self._reading = Reading(policy, host.clock, self._deliver, behind=self._is_behind)
+        host.at_dispose(self.close)
+
+    def take(self, rows: list[Row], cause: Cause | None) -> None:
+        """Handle the elements of a message."""
+        now, expire = self._host.clock.elapsed, self._part.policy.expire
+        new = {row.key: self._kept(row) for row in rows}
+        if expire is not None:
+            self._seen.update(dict.fromkeys(new, now))
+            new = {**self._alive(now, expire), **new}
+            if self._expiry is None:
+                self._expiry = self._host.clock.call_later(expire, self._look)
+        self._want(new, cause)
+
+    def _kept(self, row: Row) -> Row:
+        """Return the row that is already shown if the new one hardly differs."""
+        old = self._wanted.get(row.key)
+        if old is None or self._part.policy.differ(old.values, row.values):
+            return row
+        return old
+
+    def _want(self, new: dict[object, Row], cause: Cause | None) -> None:
+        if new != self._wanted:
+            self._wanted = new
+            self._reading.take((next(self._versions),), cause)
+
+    def _is_behind(self) -> bool:
+        return self._coming or self._host.has_untaken(self._part.name)
+
+    def _deliver(self, values: tuple[object, ...], cause: Cause | None) -> None:
+        self._coming = True
+        self._host.start(self._host.show_property, self._part.name, self.show, cause=cause)
+
+    def show(self) -> None:
+        """Update the properties, within an operation."""
+        self._coming = False
+        host, name = self._host, self._part.name
+        before, self._shown = self._shown, self._wanted
+        for key, row in before.items():
+            if key not in self._shown:
+                host.remove_property(name, *row.values)
+        for key, row in self._shown.items():
+            old = before.get(key)
+            if old is None:
+                host.define_property(name, *row.values, annotations=row.annotations)
+            elif old != row:
+                host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
+
+    def _alive(self, now: float, expire: float) -> dict[object, Row]:
+        alive = {
+            key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
+        }
+        self._seen = {key: at for key, at in self._seen.items() if key in alive or at == now}
+        return alive
+
+    def _look(self) -> None:
+        expire = self._part.policy.expire
+        assert expire is not None
+        now = self._host.clock.elapsed
+        alive = self._alive(now, expire)
+        self._want(alive, None)
+        self._expiry = None
+        if alive:
+            oldest = min(self._seen.get(key, now) for key in alive)
+            self._expiry = self._host.clock.call_later(max(0.001, oldest + expire - now), self._look)
+
+    def close(self) -> None:
+        """Stop the timer."""
+        self._reading.close()
+        if self._expiry is not None:
+            self._expiry.cancel()

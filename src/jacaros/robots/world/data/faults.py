@@ -1,0 +1,102 @@
+"""Faults as plain data, read from fault files (`jacaros.robots.world.files.faults`)."""
+
+import math
+import random
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Final, NamedTuple
+
+from jacaros.robots.plane.pose import ORIGIN, Pose
+from jacaros.robots.world.data.world import PersonDescription
+from jacaros.runtime.files.entries import Entry, choice, number, whole
+
+
+class Kind(NamedTuple):
+    """A kind of faults.
+
+    Attributes:
+        keys: its keys in a fault file, beside ``at``, ``for`` and ``robot``.
+        robot: whether it concerns a robot.
+        lasts: whether it has a duration.
+    """
+
+    keys: tuple[str, ...]
+    robot: bool = False
+    lasts: bool = True
+
+
+MESSAGES: Final[Mapping[str, Kind]] = {
+    "dead": Kind(("topic",), True),
+    "frozen": Kind(("topic",), True),
+    "nan": Kind(("topic",), True),
+    "lost": Kind(("topic", "share"), True),
+    "delayed": Kind(("topic", "seconds", "jitter"), True),
+    "duplicated": Kind(("topic", "copies"), True),
+}
+"""Kinds that affect the messages of a topic."""
+
+KINDS: Final[Mapping[str, Kind]] = {
+    "wheel_slip": Kind(("share",), True),
+    "blocked_wheel": Kind(("wheel",), True),
+    "kidnapped_robot": Kind(("to",), True, lasts=False),
+    "battery_drop": Kind(("to",), True, lasts=False),
+    "dead_dock": Kind(("dock",)),
+    "closed_door": Kind(("door",)),
+    "stuck_door": Kind(("door", "share")),
+    "person": Kind(("path", "radius", "speed", "loop", "careless")),
+    **MESSAGES,
+    "aborted_action": Kind(("action", "share"), True),
+}
+
+
+def _seconds(help: str, key: str = "") -> Entry:
+    return number(0.0, math.inf, "s", help, key)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One fault.
+
+    Attributes:
+        name: name in the ground truth and in its service.
+        kind: one of `KINDS`.
+        at: start in seconds of the world; None: only on request.
+        lasts: duration in seconds; None: until `Faults.end`.
+        robot: name of the affected robot, "" for none.
+        topic, action: absolute names.
+        door, dock: names.
+        share: mean loss of slipping wheels, or of messages, goals or requests; 0 to 1.
+        wheel: ``left``, ``right`` or ``both``.
+        pose: new pose of a kidnapped robot.
+        level: remaining charge of the battery, in percent.
+        person: person who appears.
+        seconds, jitter: delay of messages, and maximum of its random part, in seconds.
+        copies: number of deliveries of each message.
+    """
+
+    name: str
+    kind: str
+    at: Annotated[float | None, _seconds("beginning; without it, only on request")] = None
+    lasts: Annotated[float | None, _seconds("duration; without it, until you end it", "for")] = None
+    robot: str = ""
+    topic: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
+    action: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
+    door: Annotated[str, Entry("text", "name of a door")] = ""
+    dock: Annotated[str, Entry("text", "name of a dock")] = ""
+    share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
+    wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
+    pose: Pose = ORIGIN
+    level: float = 0.0
+    person: PersonDescription | None = None
+    seconds: Annotated[float, _seconds("delay")] = 0.5
+    jitter: Annotated[float, _seconds("largest random extra delay")] = 0.0
+    copies: Annotated[int, whole(2, "deliveries of each message")] = 2
+
+    def draw(self, seed: int, purpose: str) -> Callable[[], float]:
+        """Return random numbers from 0 to 1 for a world with that seed: the same ones in each run."""
+        return random.Random(f"{seed}/{self.name}/{purpose}").random
+
+    def chance(self, seed: int) -> Callable[[], bool]:
+        """Return a function that decides each time whether the fault happens, with the probability ``share``."""
+        draw = self.draw(seed, self.kind)
+        return lambda: draw() < self.share

@@ -1,0 +1,166 @@
+"""Fault files: YAML text to `Fault` objects, which declare their entries, checked against their world."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from jacaros.robots.plane.pose import Pose
+from jacaros.robots.world.data.faults import KINDS, Fault, Kind
+from jacaros.robots.world.data.robot import absolute
+from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
+from jacaros.robots.world.files.floor import place_problem, read_path
+from jacaros.robots.world.files.map import open_document
+from jacaros.robots.world.files.robot import read_pose
+from jacaros.runtime.files.entries import Reader, values
+from jacaros.runtime.files.yaml import Node, Problem, read_document, top_keys
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_REQUIRED = {
+    "topic": "add a topic of the world, such as 'topic: /scan'",
+    "action": "add an action of the world, such as 'action: /navigate_to_pose'",
+    "door": "add 'door: NAME'",
+    "dock": "add 'dock: NAME'",
+    "path": "add 'path: [[1, 0]]', in metres",
+    "to": "add the remaining percent, 'to: 15', or the new place, 'to: {x: 1, y: 2, yaw_degrees: 90}'",
+}
+"""Keys without a default, and how to add them."""
+
+
+def read_faults(source: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
+    """Read a fault file, or the text of one.
+
+    Raises:
+        WorldError: the file does not exist, has mistakes, or does not match the *world*; the text lists all mistakes.
+    """
+    document: Node | None
+    text, problems = str(source), list[Problem]()
+    if isinstance(source, str) and "\n" in source:
+        name, document = "faults", read_document(text, problems, "a fault file")
+    else:
+        name = text
+        text, problems, document = _open(Path(source))
+    faults = _faults(document, world)
+    if problems:
+        raise WorldError(name, text, problems)
+    return faults
+
+
+def is_fault_file(path: Path) -> bool:
+    """Return whether a YAML file is a fault file: it has the key ``faults``, and none of a world."""
+    keys = top_keys(path)
+    return "faults" in keys and "robots" not in keys and "artifacts" not in keys
+
+
+def fault_file_problems(path: Path) -> tuple[str, list[Problem]]:
+    """Return the text of a fault file, and all mistakes that do not depend on a world."""
+    text, problems, document = _open(path)
+    _faults(document, None)
+    return text, problems
+
+
+def _open(path: Path) -> tuple[str, list[Problem], Node | None]:
+    return open_document(path, "a fault file", "give the path of a file that begins with `faults:`")
+
+
+def _faults(document: Node | None, world: WorldDescription | None) -> tuple[Fault, ...]:
+    entries = document.mapping("faults", required=("faults",)) if document is not None else {}
+    given = entries["faults"].entries() if "faults" in entries else ()
+    return tuple(_fault(key, item, world) for key, item in given)
+
+
+def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
+    name = key.text()
+    if not _NAME.fullmatch(name):
+        key.wrong(f"invalid fault name '{name}'", "begin with a letter, and use letters, digits and _ only")
+    word = node.value.get("kind") if isinstance(node.value, dict) else None
+    every = tuple(dict.fromkeys(key for kind in KINDS.values() for key in kind.keys))
+    kind = KINDS.get(word) if isinstance(word, str) else None
+    entries = node.mapping("kind", "at", "for", "robot", *(kind.keys if kind else every), required=("kind",))
+    if kind is None:
+        if "kind" in entries:
+            entries["kind"].choice(*KINDS)
+        return Fault(name, "dead")
+    for key_name in kind.keys:
+        if key_name in _REQUIRED and key_name not in entries:
+            node.wrong(f"{node.what} lacks the key '{key_name}'", _REQUIRED[key_name])
+    if not kind.lasts and "for" in entries:
+        entries["for"].wrong(f"'{word}' has no duration", "remove 'for'")
+    usual = Fault(
+        name,
+        str(word),
+        robot=_robot(node, entries.get("robot"), str(word), kind, world),
+        share=0.3 if word == "wheel_slip" else 1.0,
+    )
+    prefix = _prefix(usual.robot, world)
+    fault = replace(
+        usual,
+        **values(
+            entries,
+            usual,
+            topic=lambda node, _: absolute(node.text(), prefix),
+            action=lambda node, _: absolute(node.text(), prefix),
+            door=_one_of("door", world and world.doors),
+            dock=_one_of("dock", world and world.docks),
+        ),
+    )
+    if word == "person":
+        person = PersonDescription(name, ((0.0, 0.0),))
+        return replace(fault, person=replace(person, **values(entries, person, path=read_path)))
+    if word == "battery_drop" and "to" in entries:
+        return replace(fault, level=entries["to"].number(0.0, 100.0))
+    if word == "kidnapped_robot" and "to" in entries:
+        return replace(fault, pose=_landing(entries["to"], fault.robot, world))
+    return fault
+
+
+def _robot(node: Node, given: Node | None, word: str, kind: Kind, world: WorldDescription | None) -> str:
+    """Read the affected robot; by default, the only one."""
+    if not kind.robot:
+        if given is not None:
+            given.wrong(f"'{word}' does not concern a robot", "remove 'robot'")
+        return ""
+    if world is None:
+        return ""
+    names = [robot.name for robot in world.robots]
+    if given is None:
+        if len(names) > 1 and not {"topic", "action"} & set(kind.keys):
+            node.wrong(f"{node.what} lacks the key 'robot'", f"add a robot of the world: 'robot: {names[0]}'")
+        return names[0] if len(names) == 1 else ""
+    name = given.text()
+    if name not in names:
+        given.wrong(f"unknown robot '{name}'", f"robots of the world: {', '.join(names) or 'none'}")
+    return name
+
+
+def _prefix(robot: str, world: WorldDescription | None) -> str:
+    robots = () if world is None else world.robots
+    namespace = next((each.namespace for each in robots if each.name == robot), "")
+    return f"/{namespace}" if namespace else ""
+
+
+def _one_of(what: str, things: Any) -> Reader:
+    """Read the name of one of the *things* of a world; None for any name."""
+
+    def read(node: Node, _: object) -> str:
+        name = node.text()
+        names = None if things is None else [each.name for each in things]
+        if names is not None and name not in names:
+            node.wrong(f"unknown {what} '{name}'", f"{what}s of the world: {', '.join(names) or 'none'}")
+        return name
+
+    return read
+
+
+def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
+    """Read where a robot is put down; closed doors are ignored, because they may be open by then."""
+    mistakes = len(node.problems)
+    pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
+    robots = () if world is None or len(node.problems) > mistakes else world.robots
+    for robot in robots:
+        if world is not None and robot.name == name:
+            problem, help = place_problem(robot, pose, world, world.segments)
+            if problem:
+                where = f"it puts the robot '{name}' at [{pose.x:g}, {pose.y:g}], {problem}"
+                node.wrong(where, help or "write another place under 'to'")
+    return pose

@@ -1,0 +1,186 @@
+"""The ``robots`` part of a world file: one mapping to a `RobotDescription`, which declares its entries.
+
+Among its ``topics``, ``services`` and ``actions``, a name of the simulator with another name renames it, or adds it to a
+robot whose kind lacks it. A new name with a type adds a topic or a service::
+
+    topics:
+      scan: front/scan                                        # below the namespace; /front/scan: not
+      temperature: {type: sensor_msgs/msg/Temperature, message: {temperature: 21.5}, rate: 1}    # published
+      horn: {type: std_msgs/msg/Bool, receive: true}          # subscribed to
+    services:
+      reset: {type: std_srvs/srv/Trigger, response: {success: true}}
+    actions:
+      navigate_to_pose: go_to
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+
+from jacaros.robots.plane.pose import Pose
+from jacaros.robots.plane.trigonometry import radians
+from jacaros.robots.world.data.robot import (
+    ACTIONS,
+    KINDS,
+    SERVICES,
+    TOPICS,
+    USUAL,
+    Added,
+    CleaningTool,
+    Interface,
+    NavigationSettings,
+    RobotDescription,
+)
+from jacaros.runtime.files.entries import declared_entries, read, values
+from jacaros.runtime.files.texts import suggestion
+from jacaros.runtime.files.yaml import Node
+
+_NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
+
+_REACH = 0.35
+"""Default reach of a gripper, in metres."""
+
+
+def read_robot(node: Node) -> RobotDescription:
+    """Read one robot; the defaults are those of its kind, at the origin."""
+    given = node.mapping("kind", *declared_entries(RobotDescription), *SECTIONS)
+    usual = KINDS[given["kind"].choice(*KINDS)] if "kind" in given else KINDS[USUAL]
+    described = values(
+        given,
+        usual,
+        namespace=_namespace,
+        pose=_pose,
+        footprint=_footprint,
+        navigation=_navigation,
+        gripper_reach=_gripper_reach,
+        tools=_tools,
+    )
+    if "footprint" in given:
+        if "radius" in given:
+            given["radius"].wrong("'radius' and 'footprint' are alternatives", "remove one of them")
+        length, width = described["footprint"]
+        described["radius"] = 0.5 * math.sqrt(length * length + width * width)  # of the circle around it
+    return replace(usual, interface=read_interface(given, usual.interface), **described)
+
+
+def _footprint(node: Node, _: object) -> tuple[float, float]:
+    length, width = node.pair()
+    if not (0.04 <= length <= 4.0 and 0.04 <= width <= 4.0):
+        node.wrong("a footprint is from 0.04 to 4 m long and wide", "write [length, width], in metres")
+    return length, width
+
+
+def read_pose(entries: dict[str, Node]) -> Pose:
+    """Read a pose from the keys ``x``, ``y`` (metres) and ``yaw_degrees``, each 0 by default."""
+
+    def value(key: str) -> float:
+        return entries[key].number() if key in entries else 0.0
+
+    return Pose(value("x"), value("y"), radians(value("yaw_degrees")))
+
+
+def _pose(node: Node, _: object) -> Pose:
+    return read_pose(node.mapping("x", "y", "yaw_degrees"))
+
+
+def _namespace(node: Node, _: object) -> str:
+    text = node.text()
+    if text and not _NAMESPACE.fullmatch(text):
+        node.wrong(
+            f"'{text}' is not a ROS namespace", "use letters, digits and _, with / between parts: robot_1"
+        )
+    return text.strip("/")
+
+
+def _gripper_reach(node: Node, _: object) -> float:
+    if isinstance(node.value, dict):
+        given = node.mapping("reach")
+        return given["reach"].number(0.05, 5.0, _REACH) if "reach" in given else _REACH
+    return _REACH if node.truth() else 0.0
+
+
+def _navigation(node: Node, usual: NavigationSettings) -> NavigationSettings:
+    if isinstance(node.value, dict):
+        return read(node, usual)
+    return replace(usual, enabled=node.truth())
+
+
+def _tools(node: Node, _: object) -> tuple[CleaningTool, ...]:
+    return tuple(read(tool, CleaningTool(name.text(), ()), removes=_removes) for name, tool in node.entries())
+
+
+def _removes(node: Node, _: object) -> tuple[str, ...]:
+    if not node.value:
+        node.wrong("a tool removes at least one kind of dirt", "write the kinds: [dust, crumbs]")
+    return tuple(kind.text() for kind in node.sequence())
+
+
+SECTIONS = ("topics", "services", "actions")
+_KNOWN: Mapping[str, tuple[str, ...]] = {"topics": TOPICS, "services": SERVICES, "actions": ACTIONS}
+_TYPES: Mapping[str, str] = {"topics": "msg", "services": "srv"}
+_KEYS = {"topics": ("type", "message", "rate", "receive"), "services": ("type", "response")}
+_NAME = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
+_FASTEST = 20.0
+"""Highest rate of an added topic, in messages per second: that of the world's ticks."""
+
+
+def read_interface(entries: Mapping[str, Node], usual: Interface) -> Interface:
+    """Read the names of one robot; *usual* are those of its kind."""
+    renamed: dict[str, str] = {}
+    added: dict[str, list[Added]] = {section: [] for section in _TYPES}
+    for section in SECTIONS:
+        given = list(entries[section].entries()) if section in entries else []
+        others = set(_KNOWN[section]) - usual.lacking - {key.value for key, _ in given}
+        used = {name: name for name in others}
+        for key, value in given:
+            name = _name(key)
+            if key.value in _KNOWN[section]:
+                renamed[name] = offered = _name(value)
+            elif section == "actions" or not isinstance(value.value, dict):
+                _unknown(key, section)
+                continue
+            else:
+                added[section].append(_added(offered := name, value, section))
+            if offered in used:
+                value.wrong(
+                    f"`{offered}` is also the name of `{used[offered]}`", "give one of them another name"
+                )
+            used[offered] = name
+    return Interface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
+
+
+def _name(node: Node) -> str:
+    text = node.text()
+    if text and not _NAME.fullmatch(text):
+        node.wrong(
+            f"'{text}' is not a ROS name", "use letters, digits and _, with / between parts: front/scan"
+        )
+    return text
+
+
+def _unknown(key: Node, section: str) -> None:
+    other = f"known names: {', '.join(_KNOWN[section])}"
+    if section in _TYPES:
+        other = f"to add it, give its type: `{key.value}: {{type: PACKAGE/{_TYPES[section]}/TYPE}}`"
+    key.wrong(
+        f"unknown name in '{section}': `{key.value}`", suggestion(str(key.value), _KNOWN[section], other)
+    )
+
+
+def _added(name: str, node: Node, section: str) -> Added:
+    entries = node.mapping(*_KEYS[section], required=("type",))
+    kind, type_name = _TYPES[section], entries["type"].text() if "type" in entries else ""
+    if type_name and not re.fullmatch(rf"[a-z]\w*/{kind}/[A-Z]\w*", type_name):
+        entries["type"].wrong(f"'{type_name}' is not a type", f"write it as PACKAGE/{kind}/TYPE")
+    if "receive" in entries and entries["receive"].truth():
+        for key in ("message", "rate"):
+            if key in entries:
+                entries[key].wrong(
+                    f"a topic that is received has no '{key}'", f"remove '{key}', or 'receive'"
+                )
+        return Added(name, type_name, rate=0.0)
+    given = entries.get("message", entries.get("response"))
+    fields = {str(key.value): value.value for key, value in given.entries()} if given is not None else {}
+    rate = entries["rate"].number(0.01, _FASTEST, 1.0) if "rate" in entries else 1.0
+    return Added(name, type_name, fields, rate)

@@ -1,0 +1,182 @@
+"""The faults of a running world: when they begin and end, and what they affect."""
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from jacaros.robots.world.data.faults import MESSAGES, Fault
+from jacaros.runtime.errors import UsageError
+
+Undo = Callable[[], object]
+Abort = Callable[[str], object]
+"""Aborts a goal because of a fault."""
+
+
+@dataclass(slots=True)
+class Disturbance:
+    """An active fault of the messages of a topic.
+
+    Attributes:
+        fault: the fault.
+        draw: returns a random number from 0 to 1.
+        first: the first message since its start.
+    """
+
+    fault: Fault
+    draw: Callable[[], float]
+    first: Any = None
+
+
+class Faults:
+    """The faults of a world, by name.
+
+    Each start and end is an event ``fault`` of the ground truth, with ``fault`` (its name), ``kind`` and ``state``:
+    ``begins``, ``ends``, or ``refused`` with ``why``.
+
+    Args:
+        faults: its faults.
+        seed: seed of the world.
+        now: returns the time of the world, in seconds.
+        happen: lets a fault happen in the world, and returns what ends it; None for faults without duration. It raises
+            `UsageError` if the fault cannot happen now.
+        note: takes the events, with the affected robot ("" for none).
+
+    Attributes:
+        by_name: faults by name.
+        next: time of the next start or end, in seconds of the world; infinite without one.
+        topics, actions: all topics and actions with faults, active or not.
+    """
+
+    def __init__(
+        self,
+        faults: Iterable[Fault],
+        seed: int,
+        now: Callable[[], float],
+        happen: Callable[[Fault], Undo | None],
+        note: Callable[[str, dict[str, Any]], object],
+    ) -> None:
+        self._seed, self._now, self._happen, self._note = seed, now, happen, note
+        self.by_name = {fault.name: fault for fault in faults}
+        self.topics = frozenset(fault.topic for fault in self.by_name.values() if fault.topic)
+        self.actions = frozenset(fault.action for fault in self.by_name.values() if fault.action)
+        self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
+        self._ends: dict[str, float] = {}
+        self._undo: dict[str, Undo] = {}
+        self._disturbances: dict[str, dict[str, Disturbance]] = {}
+        self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
+        """Active faults that abort goals: their actions, and a function that decides about the next goal."""
+        self._goals: dict[Abort, str] = {}
+        self._look_ahead()
+
+    @property
+    def at_work(self) -> list[str]:
+        """Names of the active faults, oldest first."""
+        return list(self._undo)
+
+    def disturbances(self, topic: str) -> Iterable[Disturbance]:
+        """Return the active faults of the messages of a topic, oldest first."""
+        return self._disturbances.get(topic, {}).values()
+
+    def watch_goal(self, action: str, abort: Abort) -> Undo:
+        """Call *abort* with the name of each fault that aborts goals of *action*; immediately if one is active.
+
+        Returns:
+            A function that stops this.
+        """
+        for name, (meant, happens) in self._aborting.items():
+            if meant == action and happens():
+                abort(name)
+                break
+        self._goals[abort] = action
+        return partial(self._goals.pop, abort, None)
+
+    def step(self, time: float) -> None:
+        """End and start the faults that are due at *time* (seconds of the world), ends first."""
+        for name in [name for name, end in self._ends.items() if end <= time]:
+            self.end(name)
+        for name in [name for name, begin in self._begins.items() if begin <= time]:
+            del self._begins[name]
+            self.begin(name)
+        self._look_ahead()
+
+    def _look_ahead(self) -> None:
+        self.next = min((*self._begins.values(), *self._ends.values()), default=math.inf)
+
+    def begin(self, name: str) -> str | None:
+        """Start a fault; an active fault continues.
+
+        Returns:
+            Why it cannot start, or None.
+
+        Raises:
+            UsageError: the fault is unknown.
+        """
+        fault = self._named(name)
+        if name in self._undo:
+            return None
+        try:
+            undo = self._effect(fault)
+        except UsageError as refused:
+            self._tell(fault, "refused", why=str(refused))
+            return str(refused)
+        if undo is not None:
+            self._undo[name] = undo
+            if fault.lasts is not None:
+                self._ends[name] = self._now() + fault.lasts
+                self._look_ahead()
+        self._tell(fault, "begins")
+        return None
+
+    def end(self, name: str) -> None:
+        """End a fault, if it is active.
+
+        Raises:
+            UsageError: the fault is unknown.
+        """
+        fault = self._named(name)
+        self._ends.pop(name, None)
+        self._look_ahead()
+        undo = self._undo.pop(name, None)
+        if undo is not None:
+            undo()
+            self._tell(fault, "ends")
+
+    def switch(self, name: str, on: bool) -> str | None:
+        """Start or end a fault; return why it cannot start, or None.
+
+        Raises:
+            UsageError: the fault is unknown.
+        """
+        if on:
+            return self.begin(name)
+        self.end(name)
+        return None
+
+    def _named(self, name: str) -> Fault:
+        if name not in self.by_name:
+            raise UsageError(f"unknown fault '{name}'; faults: {', '.join(self.by_name) or 'none'}")
+        return self.by_name[name]
+
+    def _tell(self, fault: Fault, state: str, **more: str) -> None:
+        self._note(fault.robot, {"fault": fault.name, "kind": fault.kind, "state": state, **more})
+
+    def _effect(self, fault: Fault) -> Undo | None:
+        """Apply a fault, and return the function that ends it; None for faults without duration.
+
+        Raises:
+            UsageError: the fault cannot happen now.
+        """
+        if fault.kind in MESSAGES:
+            active = self._disturbances.setdefault(fault.topic, {})
+            active[fault.name] = Disturbance(fault, fault.draw(self._seed, "messages"))
+            return partial(active.pop, fault.name)
+        if fault.kind == "aborted_action":
+            happens = fault.chance(self._seed)
+            self._aborting[fault.name] = fault.action, happens
+            for abort in [abort for abort, action in self._goals.items() if action == fault.action]:
+                if happens():
+                    abort(fault.name)
+            return partial(self._aborting.pop, fault.name)
+        return self._happen(fault)

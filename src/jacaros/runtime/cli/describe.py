@@ -1,0 +1,163 @@
+"""``jacaros describe TYPE|FILE``."""
+
+import dataclasses
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from jacaros.artifacts.env.artifact import Artifact
+from jacaros.artifacts.env.errors import UnknownArtifactType
+from jacaros.artifacts.env.manual import Manual, describe
+from jacaros.runtime.cli.options import PATH, imports_option, option
+from jacaros.runtime.cli.usage import examples, usage_error
+from jacaros.runtime.errors import UsageError
+from jacaros.runtime.files.python_modules import UNSEEN, NotImported, ProjectModules
+from jacaros.runtime.files.texts import is_file
+from jacaros.runtime.mas.deployment import Deployment
+from jacaros.runtime.mas.launch import load_deployment
+
+PROJECT_FILES = (".asl", ".mas2j", ".jcm")
+
+
+@click.command(
+    "describe",
+    epilog=examples(
+        "jacaros describe ArtCmdVel", "jacaros describe robot.yaml", "jacaros describe house.jcm --json"
+    ),
+)
+@click.argument("what")
+@option(
+    "--project FOLDER",
+    "Folder with the project's own artifact types (default: the current folder).",
+    PATH,
+    default=Path(),
+    show_default=False,
+)
+@option("--json", "Print JSON.", name="as_json")
+@imports_option
+def command(what: str, project: Path, as_json: bool, imports: bool) -> None:
+    """Describe WHAT: an artifact type, a Python file or a mapping file with artifact types, or a project file.
+
+    For an artifact type: its options, observable properties, signals and operations. For a project: its agents,
+    workspaces and artifacts. Python code of the project is read, not run, unless you give --import.
+    """
+    unseen = None if imports else set[Path]()
+    if what.endswith(PROJECT_FILES):
+        deployment = load_deployment(what)
+        manuals, unknown = _project_types(deployment, unseen)
+        data: Any = _project_data(deployment, manuals)
+        text = "\n".join(_project_lines(deployment, manuals, unknown))
+    else:
+        manuals = [describe(kind) for kind in _kinds(what, project, unseen)]
+        described = [dataclasses.asdict(manual) for manual in manuals]
+        data = described[0] if len(described) == 1 else described
+        text = "\n\n".join(map(_for_people, manuals))
+    click.echo(json.dumps(data, indent=2, ensure_ascii=False) if as_json else text)
+
+
+def _kinds(what: str, project: Path, unseen: set[Path] | None) -> Sequence[type[Artifact]]:
+    """Return the artifact types that *what* names."""
+    if what.endswith(".py"):
+        return _types_in(Path(what), unseen)
+    if what.endswith((".yaml", ".yml")):
+        from jacaros.robots.mapping.file import find_mapping, load_mapping  # here: few files are mappings
+
+        path = find_mapping(what, (project,))
+        if path is None:
+            raise usage_error(f"mapping file not found: `{what}`")
+        return [_find(f"{path}#{each}", project, unseen) for each in load_mapping(path).artifacts]
+    return [_find(what, project, unseen)]
+
+
+def _for_people(manual: Manual) -> str:
+    """Return a manual as text, without the backquotes of docstrings."""
+    return str(manual).replace("`", "")
+
+
+def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
+    # Imported here: it imports all built-in artifacts.
+    from jacaros.robots.registry import type_finder
+
+    try:
+        return type_finder(ProjectModules(folder, unseen=unseen))(name)
+    except UnknownArtifactType as unknown:
+        raise UsageError(str(unknown)) from unknown
+
+
+def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
+    """Return the artifact types of a Python file, in the order of the file."""
+    if not is_file(file):
+        raise usage_error(f"file not found: `{file}`")
+    modules = ProjectModules(file.parent, unseen=unseen)
+    found = _own_types(modules, file.stem)
+    if not found:
+        for module in modules.load(file.stem):
+            for name in [name for name, value in vars(module).items() if value is UNSEEN] or [file.stem]:
+                modules.require_seen(module, name)
+        raise usage_error(
+            f"no artifact type in `{file}`",
+            "an artifact type is a class derived from jacaros.artifacts.Artifact",
+        )
+    return found
+
+
+def _own_types(modules: ProjectModules, name: str) -> list[type[Artifact]]:
+    return [
+        each
+        for module in modules.load(name)
+        for each in vars(module).values()
+        if isinstance(each, type) and issubclass(each, Artifact) and each.__module__ == module.__name__
+    ]
+
+
+def _project_types(project: Deployment, unseen: set[Path] | None) -> tuple[list[Manual], dict[str, str]]:
+    """Return the types of a project's artifacts, and why others are unknown, by name."""
+    from jacaros.robots.registry import ARTIFACTS, type_finder
+
+    modules = ProjectModules(project.base_path, *project.source_paths, unseen=unseen)
+    find = type_finder(modules)
+    unknown: dict[str, str] = {}
+    types: dict[type[Artifact], None] = {}
+    for workspace in project.workspaces:
+        for artifact in workspace.artifacts:
+            try:
+                types[find(artifact.type_name)] = None
+            except (UnknownArtifactType, NotImported) as reason:
+                unknown[artifact.type_name] = str(reason)
+    types.update(dict.fromkeys(_own_types(modules, ARTIFACTS)))
+    return [describe(kind) for kind in types], unknown
+
+
+def _project_lines(project: Deployment, manuals: list[Manual], unknown: dict[str, str]) -> Iterator[str]:
+    yield project.name
+    for agent in project.agents:
+        yield f"  agent {agent.name}: {agent.source_path}"
+    for workspace in project.workspaces:
+        yield f"  workspace {workspace.name}"
+        for artifact in workspace.artifacts:
+            reason = unknown.get(artifact.type_name)
+            yield f"    artifact {artifact.name}: {artifact.type_name}{f' ({reason})' if reason else ''}"
+    if project.world is not None:
+        yield f"  world {project.world}"
+    for manual in manuals:
+        yield f"\n{_for_people(manual)}"
+
+
+def _project_data(project: Deployment, manuals: list[Manual]) -> dict[str, Any]:
+    workspaces = [
+        {
+            "name": workspace.name,
+            "artifacts": [{"name": each.name, "type": each.type_name} for each in workspace.artifacts],
+        }
+        for workspace in project.workspaces
+    ]
+    return {
+        "name": project.name,
+        "agents": [{"name": agent.name, "source": str(agent.source_path)} for agent in project.agents],
+        "workspaces": workspaces,
+        "world": project.world,
+        "types": [dataclasses.asdict(manual) for manual in manuals],
+    }

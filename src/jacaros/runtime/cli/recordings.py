@@ -1,0 +1,139 @@
+"""``jacaros view``, ``jacaros why`` and ``jacaros replay``: commands about recorded runs."""
+
+import asyncio
+import json
+from pathlib import Path
+
+import click
+
+from jacaros.runtime.cli.options import PATH, option, place_options
+from jacaros.runtime.cli.outputs import check_output, check_view
+from jacaros.runtime.cli.usage import examples, existing, read_recording, usage_error
+
+# An event such as `-hidden(_)` must not be read as options, not even as -h.
+_QUESTIONS = {"ignore_unknown_options": True, "help_option_names": ["--help"]}
+
+
+@click.command(
+    "view",
+    epilog=examples("jacaros view run.jsonl", "jacaros view run.jsonl --output run.html"),
+)
+@click.argument("run", type=PATH)
+@option("--output FILE.html", "Write the page to a file that needs no server, and exit.", PATH)
+@place_options
+def view(run: Path, output: Path | None, view_port: int, view_address: str, view_token: str | None) -> None:
+    """Show RUN, a recording (`jacaros run FILE --record RUN`), on the same page as a live run, until you press Ctrl+C.
+
+    The address of the page is printed to the standard error output.
+    """  # fmt: skip
+    if output is not None:
+        check_output(output, "replay page")
+    else:
+        check_view(view_address, view_token)
+    recording = read_recording(run)
+    if output is not None:
+        from jacaros.look.page.page import write_replay
+
+        try:
+            write_replay(recording, output)
+        except OSError as error:
+            raise usage_error(f"cannot write `{output}`: {error.strerror}", "name another file") from error
+        click.echo(f"wrote {output}")
+        return
+    from jacaros.look.page.live.access import Access
+    from jacaros.look.page.live.live_view import LiveView
+    from jacaros.look.page.live.server import LiveServer, bound_socket
+    from jacaros.runtime.cli.watching import log_address, open_page
+
+    access = Access(view_address, view_token)
+    server = LiveServer(bound_socket(view_address, view_port), access, LiveView.of_recording(recording))
+
+    async def serve() -> None:
+        await server.start()
+        log_address(server.address, view_address, lambda text, _: click.echo(text, err=True))
+        click.echo("press Ctrl+C to stop", err=True)
+        open_page(server.address)
+        try:
+            await asyncio.get_running_loop().create_future()
+        finally:
+            await server.close()
+
+    try:
+        asyncio.run(serve())
+    except KeyboardInterrupt:
+        click.echo(err=True)
+
+
+@click.command(
+    "why",
+    context_settings=_QUESTIONS,
+    epilog=examples("jacaros why run.jsonl stopped", "jacaros why run.jsonl '+alarm(_)' --at 12.5"),
+)
+@click.argument("run", type=PATH)
+@click.argument("question", nargs=-1, required=True)
+@option(
+    "--at T",
+    "Answer for time T, in seconds since the start of the run (default: the end of the recording).",
+    float,
+)
+@option("--agent A", "Consider only this agent.", default="", show_default=False)
+@option("--robot R", "Consider only this robot.", default="", show_default=False)
+@option("--json", "Print the answer as JSON.", name="as_json")
+def why(
+    run: Path, question: tuple[str, ...], at: float | None, agent: str, robot: str, as_json: bool
+) -> None:
+    """Answer a QUESTION about RUN, a recording (`jacaros run FILE --record RUN`).
+
+    \b
+    stopped                       why the robot stopped
+    command [TOPIC]               what led to the last command
+    operation [NAME]              what led to the last operation
+    +EVENT, -EVENT                how a belief event was handled, such as '+alarm(_)'
+    !GOAL, ?TEST, -!GOAL          the same for a goal, a test goal or a failure
+    plan @LABEL, plan FILE:LINE   when a plan was selected, or why it was not
+    belief BELIEF                 what last changed a belief, such as 'battery(_)'
+    waiting                       what each intention waits for
+    nothing                       why nothing happens
+
+    Words around these are ignored: 'why did the robot stop?' asks `stopped`. Variables match anything. Quote the question
+    with single quotes, because shells interpret `!` and brackets.
+    """  # fmt: skip
+    from jacaros.look.why.why import explain
+
+    recording = read_recording(run)
+    if robot and robot not in recording.robots:
+        known = ", ".join(recording.robots) or "none"
+        raise usage_error(f"unknown robot: `{robot}`", f"robots in the recording: {known}")
+    answer = explain(recording.events, " ".join(question), at, agent, robot)
+    click.echo(json.dumps(answer.data(), ensure_ascii=False) if as_json else answer.text())
+
+
+@click.command(
+    "replay",
+    epilog=examples("jacaros replay run.jsonl --against robot.asl"),
+)
+@click.argument("run", type=PATH)
+@option("--against FILE.asl", "The changed program.", PATH, required=True)
+@option(
+    "--agent A",
+    "Agent whose percepts and messages FILE.asl receives (default: the only one).",
+    default="",
+    show_default=False,
+)
+@option("--json", "Print the comparison as JSON.", name="as_json")
+def replay(run: Path, against: Path, agent: str, as_json: bool) -> int:
+    """Run FILE.asl with the percepts and messages that an agent received in RUN, and report each different decision.
+
+    RUN is a recording (`jacaros run FILE --record RUN`). No robot moves and nothing is published. Time is virtual, and
+    each action takes the same time and has the same outcome as in RUN; an action that does not occur in RUN never ends.
+    The exit code is 1 if a decision differs.
+    """  # fmt: skip
+    from jacaros.runtime.mas.replaying import replay_against
+
+    program = existing(against, (".asl",))
+    if program.is_dir():
+        raise usage_error(f"`{against}` is a folder", "name a program in it")
+    comparison = replay_against(read_recording(run).events, program, agent)
+    text = json.dumps(comparison.data(), ensure_ascii=False) if as_json else comparison.text()
+    click.echo(text)
+    return 1 if comparison.decisions else 0

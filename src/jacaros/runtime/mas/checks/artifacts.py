@@ -1,0 +1,296 @@
+"""Check that artifacts of a project offer the actions of its programs, that the artifact types that agents use exist, and
+that plans need resources that artifacts use.
+
+Only certain errors are reported: a program may create artifacts of types computed at run time, artifacts may define
+operations at run time, and an agent architecture may run actions itself.
+"""
+
+import inspect
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from jacaros.agents.body.body import keys
+from jacaros.agents.checks.checker import needs_of
+from jacaros.agents.checks.formulas import clauses as clauses_of
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import Diagnostic
+from jacaros.agents.language.nodes import UNDECLARED, ByKind, walk
+from jacaros.agents.mind.actions.internal_action import STANDARD
+from jacaros.artifacts.env.arbiter import local_name, read_uses
+from jacaros.artifacts.env.environment import Environment
+from jacaros.artifacts.env.errors import UnknownArtifactType
+from jacaros.runtime.clock import VirtualClock
+from jacaros.runtime.files.texts import close_matches, did_you_mean
+from jacaros.runtime.mas.deployment import AgentSpec, Deployment
+
+if TYPE_CHECKING:
+    from jacaros.artifacts.env.artifact import Artifact
+
+    FindType = Callable[[str], type[Artifact]]
+
+_OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWorkspaces", "mountWorkspace"})
+"""Actions that add artifacts of other systems."""
+
+_FAKE: Final = "fake_action"
+"""The goal by which a test simulates the environment."""
+
+_CLOSED: Final = "jacaros.artifacts."
+"""Modules whose artifacts have only the operations that their classes declare."""
+
+_OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")
+"""Methods that add operations at run time."""
+
+
+def check_artifacts(
+    deployment: Deployment,
+    programs: Sequence[tuple[AgentSpec, nodes.Program]],
+    folders: Sequence[Path],
+    find_type: "FindType",
+) -> list[Diagnostic]:
+    """Return warnings about what agents do with the artifacts of a project.
+
+    Args:
+        deployment: the project.
+        programs: the agents with their programs, including included files.
+        folders: folders of the project, with its mapping files.
+        find_type: finds the artifact classes of the project.
+    """
+    named = [each for _, program in programs for each in _named_types(program)[0] if each.of_library]
+    found = list(_unknown_types(named, folders, find_type))
+    types = made_types(deployment, [program for _, program in programs], find_type)
+    if types is not None:
+        found += [*_unknown_operations(programs, types), *_unknown_resources(programs, types)]
+    return found
+
+
+# ---- operations
+
+
+def _unknown_operations(
+    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Sequence[type[Artifact]]"
+) -> Iterator[Diagnostic]:
+    if any(_is_open(program) for _, program in programs) or any(map(_offers_more, types)):
+        return
+    offered = _Offered(types)
+    for agent, program in programs:
+        for node in () if agent.agent_class else walk(*clauses_of(program)):
+            if isinstance(node, nodes.ExternalAction) and isinstance(node.action, nodes.Literal):
+                yield from offered.check(node.action)
+
+
+def _is_open(program: nodes.Program) -> bool:
+    """Return whether a program adds others at run time, or a test answers its actions."""
+    for node in walk(*clauses_of(program), *program.goals):
+        if isinstance(node, nodes.InternalAction) and STANDARD.get(node.name, UNDECLARED).brings_in:
+            return True
+        if isinstance(node, nodes.Literal) and node.functor == _FAKE:
+            return True
+    return False
+
+
+def _offers_more(artifact_type: "type[Artifact]") -> bool:
+    """Return whether artifacts of a type may define operations, or create other artifacts, at run time."""
+    for each in artifact_type.__mro__:
+        if each.__module__.startswith(_CLOSED) or each is object:
+            continue
+        try:
+            source = inspect.getsource(each)
+        except (OSError, TypeError):
+            return True
+        if any(method in source for method in _OPEN_METHODS):
+            return True
+    return False
+
+
+class _Offered:
+    """The operations that the artifacts of a project offer to agents."""
+
+    def __init__(self, types: "Sequence[type[Artifact]]") -> None:
+        self._types = types
+        self._main = Environment(VirtualClock()).workspace("/main")
+        self._personal = frozenset(keys())
+
+    def _has(self, name: str, arity: int) -> bool:
+        if f"{name}/{arity}" in self._personal or self._main.providers(name, arity):
+            return True
+        return any(each.interface.operations.find(name, arity) is not None for each in self._types)
+
+    def check(self, action: nodes.Literal) -> Iterator[Diagnostic]:
+        """Return a warning if no artifact offers *action*."""
+        span, name, arity = action.span, action.functor, len(action.arguments)
+        if span is not None and not span.file.name.startswith("$") and not self._has(name, arity):
+            message = f"unknown operation `{name}/{arity}`: no artifact of the project has it"
+            yield Diagnostic("warning", message, span, self._help(name), "unknown-operation")
+
+    def _help(self, name: str) -> str | None:
+        known = list(self._personal)
+        for artifact_type in self._types:
+            known += artifact_type.interface.operations.keys()
+        for artifact in self._main.artifacts():
+            known += self._main.offers(artifact)
+        same = [each for each in dict.fromkeys(known) if each.partition("/")[0] == name]
+        return did_you_mean(same or close_matches(name, [each.partition("/")[0] for each in known])) or None
+
+
+# ---- resources
+
+
+def _unknown_resources(
+    programs: Sequence[tuple[AgentSpec, nodes.Program]], types: "Iterable[type[Artifact]]"
+) -> Iterator[Diagnostic]:
+    """Return warnings about resources that only one plan names. They are probably misspelt.
+
+    Plans may share a resource that no artifact uses. So if several plans need it, it is reported only if its name is
+    similar to that of an artifact's resource.
+    """
+    known = sorted(set(_resources(types)))
+    found = [each for _, program in programs for each in needs_of(ByKind(*clauses_of(program)))]
+    counts = Counter(name for name, _ in found)
+    for name, item in found if known else ():
+        close = close_matches(name, known)
+        if local_name(name) not in known and (close or counts[name] == 1):
+            message = f"unknown resource `{name}`: no artifact of the project uses it"
+            help = did_you_mean(close, f"resources of the project: {', '.join(known)}")
+            yield Diagnostic("warning", message, item.span, help, "unknown-resource")
+
+
+def _resources(types: "Iterable[type[Artifact]]") -> Iterator[str]:
+    for each in types:
+        for table in (each.interface.operations, each.interface.links):
+            yield from (name for declared in table for name in declared.uses)
+        yield from read_uses(getattr(each, "further_uses", ()))
+
+
+# ---- types
+
+
+class _Place(NamedTuple):
+    """Where a type is named: an argument of an action or goal, possibly of a library of JaCaROS."""
+
+    functor: str
+    arity: int
+    argument: int
+    of_library: bool = False
+
+
+_MAKING: Final = tuple(_Place("makeArtifact", arity, 1, of_library=True) for arity in (2, 3, 4))
+
+
+class _NamedType(NamedTuple):
+    name: str
+    term: nodes.Term
+    of_library: bool
+    """Whether it is an argument of an action or of a goal of a library, which is certainly a type."""
+
+
+def _unknown_types(
+    named: Iterable[_NamedType], folders: Sequence[Path], find_type: "FindType"
+) -> Iterator[Diagnostic]:
+    for each in named:
+        try:
+            find_type(each.name)
+        except UnknownArtifactType as unknown:
+            if not is_wrong_mapping(each.name, folders):
+                yield Diagnostic("warning", str(unknown), each.term.span, code="unknown-artifact-type")
+        except Exception:
+            # The module has an error, which a run reports.
+            continue
+
+
+def is_wrong_mapping(type_name: str, folders: Sequence[Path]) -> bool:
+    """Return whether an artifact's type is a mapping file with errors, which are reported there."""
+    if not type_name.partition("#")[0].endswith((".yaml", ".yml")):
+        return False
+    from jacaros.runtime.mas.mappings import is_wrong  # here: few projects have mappings
+
+    return is_wrong(type_name, folders)
+
+
+def made_types(
+    deployment: Deployment, programs: Sequence[nodes.Program], find_type: "FindType"
+) -> "list[type[Artifact]] | None":
+    """Return the types of all artifacts of a project; None if they are not known before it runs."""
+    names = [artifact.type_name for workspace in deployment.workspaces for artifact in workspace.artifacts]
+    for program in programs:
+        named, certain = _named_types(program)
+        if not certain:
+            return None
+        names += [each.name for each in named]
+    try:
+        return [find_type(name) for name in dict.fromkeys(names)]
+    except Exception:
+        # An unknown type, or a module with an error, is reported at its location.
+        return None
+
+
+def artifact_types(program: nodes.Program) -> list[str]:
+    """Return the artifact types that a program names."""
+    return [each.name for each in _named_types(program)[0]]
+
+
+def _named_types(program: nodes.Program) -> tuple[list[_NamedType], bool]:
+    """Return the types that a program creates artifacts of, and whether it creates no others at run time.
+
+    A type may be the argument of a goal whose plan creates the artifact.
+    """
+    uses = list(_uses(program))
+    posted = {_key(literal) for literal, plan in uses if not _is_of_library(plan)}
+    certain = not any(literal.functor in _OPEN_WORLD for literal, _ in uses)
+    named: list[_NamedType] = []
+    places = list(_MAKING)
+    for place in places:  # the list grows while it is iterated
+        found = [each for each in uses if _key(each[0]) == (place.functor, place.arity)]
+        certain &= bool(found) or place.of_library  # other goals come from outside
+        for literal, plan in found:
+            wanted = literal.arguments[place.argument]
+            name = _type_of(wanted)
+            if name is not None:
+                if plan is None or not _is_of_library(plan) or _key(plan.trigger.literal) in posted:
+                    named.append(_NamedType(name, wanted, place.of_library))
+                continue
+            given = _given_by_goal(wanted, plan)
+            certain &= given is not None
+            if given is not None and given not in places:
+                places.append(given)
+    return named, certain
+
+
+def _type_of(wanted: nodes.Term) -> str | None:
+    """Return the type that a term names; None if it is computed at run time."""
+    if isinstance(wanted, nodes.String):
+        return wanted.value
+    return wanted.functor if isinstance(wanted, nodes.Literal) and not wanted.arguments else None
+
+
+def _key(literal: nodes.Literal | nodes.Variable) -> tuple[str, int]:
+    return (literal.functor, len(literal.arguments)) if isinstance(literal, nodes.Literal) else ("", 0)
+
+
+def _uses(program: nodes.Program) -> Iterator[tuple[nodes.Literal, nodes.Plan | None]]:
+    """Return all literals of a program except triggers of plans, with their plans."""
+    for plan in program.plans:
+        for node in walk(plan.context, plan.body, plan.subplans):
+            if isinstance(node, nodes.Literal):
+                yield node, plan
+    for node in walk(program.goals, program.beliefs):
+        if isinstance(node, nodes.Literal):
+            yield node, None
+
+
+def _given_by_goal(wanted: nodes.Term, plan: nodes.Plan | None) -> _Place | None:
+    """Return which argument of a plan's goal a variable is, or None."""
+    if plan is None or not isinstance(wanted, nodes.Variable) or plan.trigger.kind != "!":
+        return None
+    goal = plan.trigger.literal
+    if not isinstance(goal, nodes.Literal):
+        return None
+    for number, argument in enumerate(goal.arguments):
+        if isinstance(argument, nodes.Variable) and argument.name == wanted.name:
+            return _Place(*_key(goal), number, _is_of_library(plan))
+    return None
+
+
+def _is_of_library(plan: nodes.Plan | None) -> bool:
+    return plan is not None and plan.span is not None and plan.span.file.name.startswith("$")

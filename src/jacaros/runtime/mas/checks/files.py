@@ -1,0 +1,399 @@
+"""Check programs and projects without running them."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the table of internal actions
+from jacaros.agents.checks.checker import Suppressions, check, place, wanted
+from jacaros.agents.checks.goals import KnownActions
+from jacaros.agents.language import nodes
+from jacaros.agents.language.diagnostics import AslError, Diagnostic, SourceFile
+from jacaros.agents.language.loader import read_program
+from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModules
+from jacaros.runtime.files.texts import is_file
+from jacaros.runtime.files.yaml import Problem
+from jacaros.runtime.mas.agents.lifecycle import check_classes
+from jacaros.runtime.mas.agents.programs import (
+    NEVER_SELECTED,
+    Programs,
+    concerns_author,
+    source_folders,
+    text_of,
+    with_declared,
+)
+from jacaros.runtime.mas.agents.python_code import PythonCode
+from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
+from jacaros.runtime.mas.project.reading import read_project
+
+if TYPE_CHECKING:
+    from jacaros.artifacts.env.artifact import Artifact
+
+PROJECTS: Final = (".mas2j", ".jcm")
+MAPPINGS: Final = (".yaml", ".yml")
+_SKIPPED: Final = frozenset({"__pycache__", "node_modules", "build", "dist"})
+
+
+@dataclass
+class Findings:
+    """The result of checking files.
+
+    Attributes:
+        diagnostics: sorted by file and location, without duplicates.
+        files: all files that have been read: programs, included files and projects.
+        unseen: Python files with names that are known only after running them; None if they are run.
+    """
+
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    files: set[Path] = field(default_factory=set)
+    unseen: set[Path] | None = field(default_factory=set)
+
+
+def check_files(paths: Sequence[Path], mappings: Sequence[str] = (), imports: bool = False) -> Findings:
+    """Check programs, projects with the programs of their agents, and whole folders.
+
+    In a folder, a program is checked by itself only if no project there names it and no other program includes it.
+    World files and mapping files are checked, too. Other YAML files are skipped.
+
+    Args:
+        paths: files and folders.
+        mappings: mapping files for programs that are given by themselves. Their actions are compared with these.
+        imports: run the Python files of projects, to know everything that they declare. Otherwise they are only parsed.
+    """
+    findings = Findings(unseen=None if imports else set())
+    for path in paths:
+        if path.is_dir():
+            _check_folder(path, findings)
+        elif path.suffix in PROJECTS:
+            _check_project(path, findings)
+        elif path.suffix == ".py":
+            _check_python_agent(path, findings)
+        elif path.suffix in MAPPINGS:
+            _check_yaml(path, findings)
+        elif mappings:
+            _check_program_with_mappings(path, mappings, findings)
+        else:
+            _check_lone_program(path, findings)
+    findings.diagnostics += map(_not_imported, sorted(findings.unseen or ()))
+    findings.diagnostics = sorted(dict.fromkeys(wanted(findings.diagnostics)), key=place)
+    return findings
+
+
+def _not_imported(file: Path) -> Diagnostic:
+    return Diagnostic(
+        "note",
+        f"names from {file} were not checked: they are only known at run time",
+        None,
+        "run the Python code of the project with --import to check them",
+        "not-imported",
+    )
+
+
+def files_below(folder: Path, suffixes: Sequence[str]) -> Iterator[Path]:
+    """Return the files of these kinds in a folder and its subfolders, without hidden and generated ones, sorted."""
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name in _SKIPPED:
+            continue
+        if path.is_dir():
+            yield from files_below(path, suffixes)
+        elif path.suffix in suffixes:
+            yield path
+
+
+def _check_folder(folder: Path, findings: Findings) -> None:
+    _check_each(files_below(folder, PROJECTS), _check_project, findings)
+    _check_each(files_below(folder, (".asl",)), _check_lone_program, findings)
+    for path in files_below(folder, MAPPINGS):
+        _check_yaml(path, findings, named=False)
+
+
+def _check_each(
+    paths: Iterable[Path], check_file: Callable[[Path, Findings], Set[Path]], findings: Findings
+) -> None:
+    """Check files that have not been read. One that another one uses is checked only as part of that one."""
+    alone: dict[Path, Findings] = {}
+    used: set[Path] = set()
+    for path in paths:
+        if path.resolve() not in findings.files:
+            own = alone[path.resolve()] = Findings(unseen=findings.unseen)
+            used |= check_file(path, own)
+    for file, own in alone.items():
+        if file not in used:
+            findings.diagnostics += own.diagnostics
+        findings.files |= own.files
+
+
+def _check_project(path: Path, findings: Findings) -> Set[Path]:
+    """Check a project with all its files. Return the project files that it uses."""
+    findings.files.add(path.resolve())
+    try:
+        reading = read_project(path)
+    except ProjectError as error:
+        findings.diagnostics += map(_of_project, error.diagnostics)
+        return frozenset()
+    deployment = reading.deployment
+    findings.files |= reading.used
+    findings.diagnostics += map(_of_project, reading.diagnostics)
+    checked = _Checked(deployment, (deployment.base_path, *deployment.source_paths), findings)
+    checked.check_classes()
+    different = {(agent.source_path, agent.beliefs, agent.goals): agent for agent in deployment.agents}
+    for agent in different.values():
+        if agent.is_python:
+            findings.files.add(agent.source_path.resolve())
+        elif is_file(agent.source_path):
+            checked.check_program(agent)
+    checked.check_mappings()
+    _check_world(deployment, findings)
+    # What Python agents, and programs with errors, would add is not known.
+    is_known = len(checked.programs) == len(different)
+    if deployment.artifact_environment:
+        findings.diagnostics += checked.of_artifacts(is_known)
+    if is_known:
+        checked.check_beliefs()
+    return reading.used
+
+
+def _check_lone_program(path: Path, findings: Findings) -> Set[Path]:
+    """Check a program that no project names. Return the files that it includes."""
+    folders = source_folders(path.parent)
+    checked = _Checked(Deployment(path.stem, path.parent), folders, findings)
+    if checked.check_program(AgentSpec(path.stem, path)):
+        checked.check_beliefs()
+        checked.check_mappings()
+        from jacaros.runtime.mas.checks.artifacts import artifact_types  # here: see `_Checked.of_artifacts`
+
+        # Without any artifacts, its actions may belong to any artifact.
+        if any(artifact_types(program) for _, program in checked.programs):
+            # A run may add artifacts with --mapping: an operation unlike all known ones may be theirs.
+            findings.diagnostics += [
+                each for each in checked.of_artifacts() if each.code != "unknown-operation" or each.help
+            ]
+    return findings.files - {path.resolve()}
+
+
+def _check_program_with_mappings(path: Path, mappings: Sequence[str], findings: Findings) -> None:
+    """Check a lone program, and whether the artifacts of mapping files offer its actions."""
+    from jacaros.robots.mapping.file import find_mapping  # here: see `_check_mapping`
+    from jacaros.runtime.mas.mappings import with_mappings
+
+    agent = AgentSpec(path.stem, path, path.stem)
+    lone = Deployment(path.stem, path.parent, (agent,), artifact_environment=True)
+    checked = _Checked(lone, (path.parent,), findings)
+    is_read = checked.check_program(agent)
+    for name in mappings:
+        file = find_mapping(name, (Path(), path.parent))
+        if file is not None:
+            _check_mapping(file, findings)
+    try:
+        checked.deployment = with_mappings(lone, mappings)
+    except ProjectError as error:
+        # The errors in a file have been reported, including those that only the check finds; a missing file has not.
+        findings.diagnostics += [_of_project(each) for each in error.diagnostics if not each.code]
+        return
+    if is_read:
+        findings.diagnostics += checked.of_artifacts()
+        checked.check_beliefs()
+
+
+def _check_python_agent(path: Path, findings: Findings) -> None:
+    findings.files.add(path.resolve())
+    agent = AgentSpec(path.stem, path, path.stem)
+    _Checked(Deployment(path.stem, path.parent, (agent,)), (path.parent,), findings).check_classes()
+
+
+class _Checked:
+    """A project, or a lone program, with what belongs to it.
+
+    Attributes:
+        deployment: its declarations.
+        programs: the programs without errors, with their agents.
+    """
+
+    def __init__(self, deployment: Deployment, folders: tuple[Path, ...], findings: Findings) -> None:
+        self.deployment, self._folders, self._findings = deployment, folders, findings
+        self.programs: list[tuple[AgentSpec, nodes.Program]] = []
+
+    def _modules(self) -> ProjectModules:
+        return ProjectModules(*self._folders, unseen=self._findings.unseen)
+
+    def check_classes(self) -> None:
+        """Check the classes that agents declare."""
+        found: dict[str, Diagnostic] = {}  # a class without effect is reported once
+        wrong: tuple[Diagnostic, ...] = ()
+        try:
+            check_classes(
+                self._modules(), self.deployment.agents, lambda each: found.setdefault(each.message, each)
+            )
+        except ProjectError as error:
+            wrong = error.diagnostics
+        self._findings.diagnostics += map(_of_project, (*found.values(), *wrong))
+
+    def check_program(self, agent: AgentSpec) -> bool:
+        """Check the program of an agent with its includes and declarations. Return whether it can run."""
+        path, findings = agent.source_path, self._findings
+        findings.files.add(path.resolve())
+        code = PythonCode(self._modules())
+        programs = Programs(self._folders, lambda _: None, code)
+        sources: list[SourceFile] = []
+
+        def include(name: str, including: str) -> tuple[str, str]:
+            found, text = programs.path.include(name, including)
+            if not found.startswith("$"):
+                findings.files.add(Path(found).resolve())
+                sources.append(SourceFile(found, text))
+            return found, text
+
+        try:
+            sources.append(SourceFile(path.as_posix(), text_of(path)))
+        except AslError as error:
+            findings.diagnostics += error.diagnostics
+            return False
+        program, diagnostics = read_program(sources[0], include, code.functions, code.actions)
+        diagnostics += [replace(error, code="unreadable-file") for error in code.take_errors()]
+        errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity == "error"]
+        known = KnownActions(code.actions, code.help, code.is_unseen)
+        added = f"the declaration of {agent.declared_name}"
+        try:
+            whole = with_declared(program, agent, added)
+        except AslError:
+            whole = program  # the error has been reported in the project file
+        own = [*diagnostics, *check(whole, known, errors)]
+        if not errors:
+            own += _of_size(whole, code)
+            self.programs.append((agent, whole))
+        for source in sources:
+            own += Suppressions(source).unknown
+        for each in own:
+            if not concerns_author(each, path) or (
+                agent.agent_class is not None and each.code == NEVER_SELECTED
+            ):
+                continue
+            if each.span is not None and each.span.file.name == added:
+                each = replace(each, span=agent.span, opened=None)
+            findings.diagnostics.append(each)
+        return not errors
+
+    def check_mappings(self) -> None:
+        """Check the mapping files that the project, or ``makeArtifact`` in its programs, names."""
+        from jacaros.runtime.mas.checks.artifacts import artifact_types  # here: see `of_artifacts`
+
+        spaces = self.deployment.workspaces
+        names = [artifact.type_name for workspace in spaces for artifact in workspace.artifacts]
+        names += [name for _, program in self.programs for name in artifact_types(program)]
+        for name in dict.fromkeys(names):
+            file = name.partition("#")[0]
+            if file.endswith(MAPPINGS):
+                found = next((folder / file for folder in self._folders if is_file(folder / file)), None)
+                if found is not None:
+                    _check_mapping(found, self._findings)
+
+    def of_artifacts(self, is_known: bool = True) -> list[Diagnostic]:
+        """Return the errors in the artifacts of a project and, if all programs are known, in what agents do with them."""
+        # Imported on demand: programs without artifacts do not need them.
+        from jacaros.robots.registry import type_finder
+        from jacaros.runtime.mas.checks.artifacts import check_artifacts, is_wrong_mapping
+        from jacaros.runtime.mas.environment import types_of
+
+        artifacts = [
+            artifact
+            for workspace in self.deployment.workspaces
+            for artifact in workspace.artifacts
+            if not is_wrong_mapping(artifact.type_name, self._folders)
+        ]
+        try:
+            find_type = type_finder(self._modules())
+            types_of(artifacts, find_type)
+        except ModuleUnreadable as error:
+            return [Diagnostic("error", str(error), code="wrong-project")]
+        except ProjectError as error:
+            return list(map(_of_project, error.diagnostics))
+        programs = self.programs if is_known else []
+        return check_artifacts(self.deployment, programs, self._folders, find_type)
+
+    def check_beliefs(self) -> None:
+        """Report misspelt beliefs unless classes of the project may add more."""
+        from jacaros.runtime.mas.checks.artifacts import made_types  # here: see `of_artifacts`
+        from jacaros.runtime.mas.checks.beliefs import check_beliefs
+
+        if any(agent.agent_class for agent, _ in self.programs):
+            return
+        trees = [program for _, program in self.programs]
+
+        def types() -> "list[type[Artifact]] | None":
+            from jacaros.robots.registry import type_finder  # here: see `of_artifacts`
+
+            return made_types(self.deployment, trees, type_finder(self._modules()))
+
+        base = (
+            self.deployment.base_path.absolute()
+        )  # the working folder may be any, with any words in its files
+        own = [each for each in self._folders if each.absolute().is_relative_to(base)]
+        self._findings.diagnostics += check_beliefs(trees, types, own)
+
+
+def _check_world(deployment: Deployment, findings: Findings) -> None:
+    if deployment.world is None:
+        return
+    from jacaros.robots.world.data.world import UnknownWorld
+    from jacaros.robots.world.files.world import find_world, shipped_worlds, world_problems
+    from jacaros.runtime.mas.ros_graph import NO_WORLD  # here: most projects name none
+
+    if deployment.world in (NO_WORLD, *shipped_worlds()):
+        return
+    try:
+        _check_world_file(find_world(deployment.world), findings, world_problems)
+    except UnknownWorld as unknown:
+        span = deployment.world_span
+        findings.diagnostics.append(Diagnostic("error", unknown.message, span, unknown.help, "wrong-project"))
+
+
+def _check_yaml(path: Path, findings: Findings, named: bool = True) -> None:
+    """Check a world, fault or mapping file. Other YAML files are an error only if they are *named* on the command line."""
+    from jacaros.robots.mapping.file import is_mapping  # here: see `_check_mapping`
+    from jacaros.robots.world.files.faults import fault_file_problems, is_fault_file
+    from jacaros.robots.world.files.world import is_world, world_problems
+
+    if is_world(path):
+        _check_world_file(path, findings, world_problems)
+    elif is_fault_file(path):
+        _check_world_file(path, findings, fault_file_problems)
+    elif named or is_mapping(path):  # other YAML files belong to other programs
+        _check_mapping(path, findings)
+
+
+def _check_world_file(
+    path: Path, findings: Findings, problems_of: Callable[[Path], tuple[str, list[Problem]]]
+) -> None:
+    if path.resolve() in findings.files:
+        return
+    from jacaros.runtime.mas.mappings import WRONG_WORLD, diagnostics_of  # here: see `_check_mapping`
+
+    findings.files.add(path.resolve())
+    findings.diagnostics += diagnostics_of(str(path), *problems_of(path), wrong=WRONG_WORLD)
+
+
+def _check_mapping(path: Path, findings: Findings) -> None:
+    """Check a mapping file, once for all artifacts that come from it."""
+    if path.resolve() in findings.files:
+        return
+    from jacaros.runtime.mas.mappings import check_mapping_file  # here: programs are checked without
+
+    findings.files.add(path.resolve())
+    findings.diagnostics += check_mapping_file(path)
+
+
+def _of_project(diagnostic: Diagnostic) -> Diagnostic:
+    return diagnostic if diagnostic.code else replace(diagnostic, code="wrong-project")
+
+
+def _of_size(program: nodes.Program, code: PythonCode) -> Iterator[Diagnostic]:
+    """Return warnings about plans that run slower because they are too large for Python's compiler."""
+    from jacaros.agents.mind.generated.compiler import too_large
+    from jacaros.agents.mind.mind import new_engine  # here: only a complete program is compiled
+    from jacaros.agents.mind.state.plan_library import ProgramPlans
+
+    plans = ProgramPlans(program.plans, new_engine(code.actions)).plans
+    for plan, fault in too_large(plans, code.actions):
+        help = "write several plans, or rules for parts of it"
+        yield Diagnostic("warning", f"{fault}, so it runs slower", plan.node.span, help, "plan-too-large")

@@ -1,0 +1,178 @@
+"""Streams of output and messages, and mailboxes: participants that exchange messages with agents."""
+
+import asyncio
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+from jacaros.agents.body.values import UNKEPT, to_term
+from jacaros.agents.language.loader import parse_term
+from jacaros.agents.language.lowering import lower_value
+from jacaros.agents.mind.state.act import SpeechAct
+from jacaros.agents.python.agent import Message
+from jacaros.agents.terms.substitution import rename
+from jacaros.agents.terms.unifier import Trail, undo, unify
+from jacaros.agents.terms.values import Term, bare, is_list, list_items
+from jacaros.runtime.mas.embedding.running_agent import question, values_of
+from jacaros.runtime.mas.embedding.waits import RunEnded, Waits
+from jacaros.runtime.mas.messaging import Arrivals, Correspondent, Names, Send
+
+T = TypeVar("T")
+
+
+class Stream(Arrivals[T]):
+    """An asynchronous iterator over items as they arrive. It ends with the run, once all items have been read.
+
+    Args:
+        waits: waits of the run.
+        what: what is missing while there is no item, for errors.
+    """
+
+    def __init__(self, waits: Waits, what: str) -> None:
+        super().__init__()
+        self._waits = waits
+        self._what = what
+
+    async def get(self, timeout: float | None = None) -> T:
+        """Return the next item, waiting until it arrives.
+
+        Args:
+            timeout: time limit in seconds of the run's clock. None: no limit.
+
+        Raises:
+            TimeoutError: no item arrived in time.
+            RunEnded: the run has ended, so no item will arrive.
+        """
+        return await self.next(lambda arrival: self._waits.wait(arrival, lambda: self._what, timeout))
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __aiter__(self) -> "Stream[T]":
+        return self
+
+    async def __anext__(self) -> T:
+        try:
+            return await self.get()
+        except RunEnded:
+            raise StopAsyncIteration from None
+
+
+class Mailbox(Stream[Message]):
+    """A participant that is neither an agent nor an artifact. It receives and sends messages.
+
+    ``async for message in mailbox`` iterates over the messages as they arrive; `get` waits for one. Answers to `ask`
+    are not among them.
+
+    Args:
+        name: its name for agents.
+        send: delivers messages.
+        names: returns the names of all participants.
+        waits: waits of the run.
+
+    Attributes:
+        name: its name for agents.
+    """
+
+    def __init__(self, name: str, send: Send, names: Names, waits: Waits) -> None:
+        super().__init__(waits, f"no message for {name}")
+        self.name = name
+        self._sender = Correspondent(name, send, names)
+
+    def send(
+        self, receiver: str, performative: str, content: object, reply_to: Message | None = None
+    ) -> None:
+        """Send a message to an agent.
+
+        Args:
+            receiver: name of the agent.
+            performative: ``tell``, ``achieve``, ``askOne``, ``signal`` …
+            content: a term in the syntax of the language, as text; or a plain value (see `jacaros.artifacts.env.values`).
+            reply_to: the message that this one answers.
+
+        Raises:
+            UnknownAgent: no participant has this name.
+            AslError: the text is not a term.
+        """
+        answered = reply_to.id if reply_to is not None else None
+        self._sender.say(receiver, performative, term_of(content), answered)
+
+    async def ask(self, receiver: str, literal: str, timeout: float | None = None) -> dict[str, Any] | None:
+        """Ask an agent for one answer (``askOne``), and wait for it.
+
+        Args:
+            receiver: name of the agent.
+            literal: the question, such as ``battery(Level)``.
+            timeout: time limit in seconds of the run's clock.
+
+        Returns:
+            Plain values by variable name; None if the agent does not know.
+
+        Raises:
+            UnknownAgent: no participant has this name.
+            TimeoutError: no answer arrived in time.
+            RunEnded: the run ended first.
+        """
+        answers = await self._answers("askOne", receiver, literal, timeout)
+        return answers[0] if answers else None
+
+    async def ask_all(
+        self, receiver: str, literal: str, timeout: float | None = None
+    ) -> list[dict[str, Any]]:
+        """Ask an agent for all answers (``askAll``). See `ask`."""
+        return await self._answers("askAll", receiver, literal, timeout)
+
+    async def _answers(
+        self, performative: str, receiver: str, literal: str, timeout: float | None
+    ) -> list[dict[str, Any]]:
+        asked, names = question(literal)
+
+        def wait(answer: "asyncio.Future[SpeechAct]") -> Any:
+            missing = f"agent {receiver} did not answer {literal}"
+            return self._waits.wait(answer, lambda: missing, timeout, receiver)
+
+        message = await self._sender.question(receiver, performative, rename(asked), wait)
+        if message.performative == "untell":
+            return []
+        content = message.content
+        told = list(list_items(content)) if is_list(content) else [content]
+        return [values for each in told if (values := _bindings(asked, names, each)) is not None]
+
+    def receive(self, message: SpeechAct) -> None:
+        """Receive a message. Called by the run."""
+        if not self._sender.takes_answer(message):
+            self.put(Message(message))
+
+    def __repr__(self) -> str:
+        return f"<mailbox {self.name}, {len(self)} messages>"
+
+
+class PythonMailboxes(dict[str, Mailbox]):
+    """The mailboxes of a run by name: its `jacaros.runtime.mas.directory.Participants`."""
+
+    def find(self, name: str) -> Mailbox | None:
+        """Return the mailbox of a name, or None."""
+        return self.get(name)
+
+    def names(self) -> Sequence[str]:
+        """Return their names, in the order of creation."""
+        return tuple(self)
+
+
+def term_of(content: object) -> Term:
+    """Return the content of a message as a term.
+
+    Raises:
+        AslError: the text is not a term.
+    """
+    if type(content) is str:
+        return lower_value(parse_term(content))
+    return to_term(content, UNKEPT)
+
+
+def _bindings(asked: Term, names: Any, told: Term) -> dict[str, Any] | None:
+    """Return the values of a question's variables in one answer; None if that is another literal."""
+    trail = Trail()
+    try:
+        return values_of(names) if unify(bare(asked), bare(rename(told)), trail) else None
+    finally:
+        undo(trail, 0)

@@ -1,0 +1,215 @@
+"""``Act``: operations as behaviours."""
+
+import asyncio
+
+import pytest
+from py_trees.blackboard import Blackboard
+from py_trees.common import Status
+
+from jacaros.artifacts import Out, Structure
+from jacaros.artifacts.behaviour_trees import (
+    Act,
+    Failure,
+    FromBlackboard,
+    HasProperty,
+    PropertyCheck,
+    ToBlackboard,
+)
+
+
+def test_an_operation_runs_and_succeeds(on_rails):
+    async def scene(rails):
+        drive = Act("drive", 3)
+        assert await rails.runner(drive).run() is Status.SUCCESS
+        assert drive.outcome.ok
+        return rails.session.value("at"), rails.clock.elapsed
+
+    at, elapsed = on_rails(scene)
+    assert at == 3
+    assert elapsed == pytest.approx(3.0, abs=0.01)
+
+
+def test_a_short_operation_succeeds_in_its_first_tick(on_rails):
+    async def scene(rails):
+        await rails.runner(Act("drain", 5)).run()
+        return rails.ticks, rails.session.value("battery")
+
+    assert on_rails(scene) == ([0], 5)
+
+
+def test_while_it_is_under_way_the_tree_runs(on_rails):
+    async def scene(rails):
+        drive = Act("drive", 2)
+        runner = rails.runner(drive)
+        seen = []
+        runner.tree.add_post_tick_handler(lambda tree: seen.append((drive.status, drive.feedback_message)))
+        await runner.run()
+        return set(seen)
+
+    assert on_rails(scene) == {(Status.RUNNING, "running"), (Status.SUCCESS, "")}
+
+
+def test_a_failure_logs_its_reason_and_writes_it_to_the_blackboard(on_rails):
+    async def scene(rails):
+        drive = Act("drive", 20, name="to the end")
+        assert await rails.runner(drive).run() is Status.FAILURE
+        assert drive.feedback_message == "a wall [aborted(10)]"
+        return Blackboard.get("failure"), Blackboard.get("failure.reason")
+
+    reason = Structure("aborted", (10,))
+    assert on_rails(scene) == (Failure("to the end", "a wall", reason), reason)
+
+
+def test_the_place_of_the_failure_can_be_chosen(on_rails):
+    async def scene(rails):
+        await rails.runner(Act("drive", 20, failure_key="robot1/trouble")).run()
+        assert Blackboard.get("/robot1/trouble").message == "a wall"
+        Blackboard.clear()
+        await rails.runner(Act("drive", 20, failure_key=None)).run()
+        return Blackboard.storage
+
+    assert on_rails(scene) == {}
+
+
+@pytest.mark.parametrize(
+    ("act", "told"),
+    [
+        (lambda: Act("fly"), "has an operation fly/0 [unknown_operation"),
+        (lambda: Act("drive"), "drive/0; did you mean `drive/1` of 'cart'?"),
+        (lambda: Act("drive", "far"), "metres"),
+        (lambda: Act("drive", 1, artifact="plane"), "unknown artifact `plane`"),
+        (lambda: Act("break_down"), "no wheels"),
+        (lambda: Act("drive", FromBlackboard("far")), "the blackboard has no key `far` [not_on_blackboard"),
+        (lambda: Act("wait_for_ever", timeout=2), "did not end within 2 s [operation_timeout"),
+    ],
+)
+def test_whatever_is_wrong_is_a_failure_with_its_reason(on_rails, act, told):
+    async def scene(rails):
+        behaviour = act()
+        assert await rails.runner(behaviour).run() is Status.FAILURE
+        return behaviour.feedback_message, Blackboard.get("failure.message")
+
+    feedback, message = on_rails(scene)
+    assert told in feedback
+    assert feedback.startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("act", "told"),
+    [
+        (
+            lambda: Act("drive"),
+            [
+                (
+                    "[tree] behaviour 'drive': no artifact of workspace /main has an operation drive/0; "
+                    "did you mean `drive/1` of 'cart'?"
+                )
+            ],
+        ),
+        (lambda: Act("drive", 20), []),
+    ],
+)
+def test_a_mistake_in_the_tree_is_logged_once(on_rails, act, told):
+    async def scene(rails):
+        runner = rails.runner(act())
+        rails.clock.call_later(30, runner.stop)
+        await runner.run(forever=True)
+        return rails.told
+
+    assert on_rails(scene) == told
+
+
+def test_it_starts_again_when_it_is_ticked_again(on_rails):
+    async def scene(rails):
+        runner = rails.runner(Act("drive", 2))
+        runner.tree.add_post_tick_handler(lambda _: rails.session.value("at") == 4 and runner.stop())
+        await runner.run(forever=True)
+        return rails.clock.elapsed
+
+    assert on_rails(scene) == pytest.approx(4.1, abs=0.02)  # it rests a period between two rounds
+
+
+def test_an_interrupted_operation_is_cancelled(on_rails, reactive):
+    async def scene(rails):
+        drive = Act("drive", 9)
+        root = reactive("sequence", PropertyCheck("battery", lambda level: level > 20), drive)
+        status, _ = await asyncio.gather(rails.runner(root).run(), rails.at(2.5, "drain", 10))
+        assert status is Status.FAILURE
+        assert drive.status is Status.INVALID
+        assert drive.feedback_message == "cancelled"
+        await rails.session.until(lambda: rails.session.value("moving") == "stopped")
+        return rails.session.value("at"), rails.clock.elapsed
+
+    at, elapsed = on_rails(scene)
+    assert at == 2
+    assert elapsed == pytest.approx(2.5, abs=0.02)
+
+
+def test_what_takes_its_place_begins_when_it_has_ended(on_rails, reactive):
+    async def scene(rails):
+        low = reactive(
+            "sequence", HasProperty("battery", 10), Act("paint", "red"), Act("where", ToBlackboard("place"))
+        )
+        root = reactive("selector", low, Act("drive", 9))
+        await asyncio.gather(rails.runner(root).run(), rails.at(2.5, "drain", 10))
+        return Blackboard.get("place")
+
+    assert on_rails(scene) == 2
+
+
+def test_arguments_and_results_go_by_the_blackboard(on_rails, reactive):
+    async def scene(rails):
+        Blackboard.set("goal", Out())
+        Blackboard.get("goal").set(4)
+        drive = Act("drive", FromBlackboard("goal.value"))
+        where = Act("where", ToBlackboard("place"))
+        assert await rails.runner(reactive("sequence", drive)).run() is Status.SUCCESS
+        assert await rails.runner(where).run() is Status.SUCCESS
+        assert [drive.name, where.name] == ["drive(goal.value)", "where(-> place)"]
+        assert where.feedback_message == "place = 4"
+        return Blackboard.get("place")
+
+    assert on_rails(scene) == 4
+
+
+def test_the_artifact_can_be_named(on_rails):
+    async def scene(rails):
+        first = rails.other.lookup("cart")
+        await rails.make_cart("second")
+        await rails.runner(Act("drain", 1, artifact="second")).run()
+        await rails.runner(Act("drain", 2, artifact=first)).run()
+        rails.session.focus("second")
+        return [rails.session.value("battery", artifact=name) for name in ("cart", "second")]
+
+    assert on_rails(scene) == [2, 1]
+
+
+def test_an_artifact_disposed_under_way_is_a_failure(on_rails):
+    async def scene(rails):
+        async def dispose():
+            await rails.clock.sleep(1.5)
+            await rails.other.act("disposeArtifact", rails.other.lookup("cart"))
+
+        drive = Act("drive", 9)
+        status, _ = await asyncio.gather(rails.runner(drive).run(), dispose())
+        assert status is Status.FAILURE
+        first = drive.feedback_message
+        assert await rails.runner(drive).run() is Status.FAILURE
+        return first, drive.feedback_message
+
+    during, after = on_rails(scene)
+    assert "artifact_disposed" in during
+    assert "drive/1" in after
+
+
+def test_without_a_session_the_error_has_help():
+    with pytest.raises(
+        TypeError, match=r"behaviour `drive\(1\)` has no session; tick its tree with a TreeRunner"
+    ):
+        Act("drive", 1).setup()
+
+
+def test_names_show_the_call():
+    assert Act("say", "hello", 1.0).name == 'say("hello", 1)'
+    assert Act("stop").name == "stop"
+    assert Act("stop", name="halt").name == "halt"

@@ -1,0 +1,229 @@
+"""Lines and compressed bytes, checked by hand-made counts of small sources, and by the rule of the thesis."""
+
+import gzip
+from pathlib import Path
+
+import pytest
+
+from jacaros.agents.language.diagnostics import SourceFile
+from jacaros.agents.language.loader import read_program
+from jacaros.agents.language.nodes import Program
+from jacaros.look.metrics import CountedFile, Group, MetricsError, measure
+from jacaros.look.metrics.sources import agentspeak_comments
+
+
+def counted(folder: Path, name: str, text: str) -> CountedFile:
+    """The file with this text in a program with one agent."""
+    (folder / "agent.asl").write_text("!go.\n+!go.\n")
+    (folder / name).write_bytes(text.encode())
+    program = measure([folder])[0]
+    return next(file for files in program.files.values() for file in files if file.path.name == name)
+
+
+AGENT = """\
+/* Water the plants.
+
+   Every day. */
+!water.  // now
+
++!water
+  <- .print("http://robot.test", " /* nor this */");
+     /* a long one
+        over two lines */ pour(1);   /* between */ rest.
+"""
+AGENT_CODE = """\
+!water.
++!water
+  <- .print("http://robot.test", " /* nor this */");
+ pour(1);    rest.
+"""
+
+
+def test_code_lines_of_a_program_have_no_comments_and_no_blank_lines(tmp_path: Path) -> None:
+    file = counted(tmp_path, "water.asl", AGENT)
+    assert file.code == AGENT_CODE
+    assert (file.lines, file.counts.code_lines) == (9, 4)
+
+
+PYTHON = '''\
+#!/usr/bin/env python3
+"""Über: a module.
+
+With a text.
+"""
+
+# A comment.
+NAME = "# no comment"  # one
+"""About the name."""
+
+
+class Pump:
+    """A pump."""
+
+    TEXT = """
+# of a text
+
+its end"""
+
+    def run(self):
+        "É"; return [  # two
+            1,
+
+            # three
+            2,
+        ]
+'''
+PYTHON_CODE = '''\
+NAME = "# no comment"
+class Pump:
+    TEXT = """
+# of a text
+its end"""
+    def run(self):
+        ; return [
+            1,
+            2,
+        ]
+'''
+
+
+def test_code_lines_of_python_have_no_docstrings_either(tmp_path: Path) -> None:
+    file = counted(tmp_path, "artifacts.py", PYTHON)
+    assert file.code == PYTHON_CODE
+    assert (file.lines, file.counts.code_lines) == (26, 10)
+
+
+YAML = """\
+# A robot.
+properties:
+  # where it is
+  pose: {topic: /odom, description: "# 1", fields: [pose.pose.position.x]}  # of the base
+
+  bump:
+    topic: /bumper
+    description: |
+      No # comment.
+
+      Text.
+    type: std_msgs/msg/Bool
+    fields: [data] # last
+"""
+YAML_CODE = """\
+properties:
+  pose: {topic: /odom, description: "# 1", fields: [pose.pose.position.x]}
+  bump:
+    topic: /bumper
+    description: |
+      No # comment.
+      Text.
+    type: std_msgs/msg/Bool
+    fields: [data]
+"""
+
+
+def test_code_lines_of_a_mapping_have_no_comments(tmp_path: Path) -> None:
+    file = counted(tmp_path, "robot.yaml", YAML)
+    assert file.code == YAML_CODE
+    assert (file.lines, file.counts.code_lines) == (13, 9)
+
+
+PROJECT = """\
+// A garden.
+mas garden {
+
+    /* one
+       agent */
+    agent ann : agent.asl  // "and" no other
+    world: "empty"
+}"""
+PROJECT_CODE = """\
+mas garden {
+    agent ann : agent.asl
+    world: "empty"
+}
+"""
+
+
+def test_code_lines_of_a_project_have_no_comments(tmp_path: Path) -> None:
+    file = counted(tmp_path, "garden.jcm", PROJECT)
+    assert file.code == PROJECT_CODE
+    assert (file.lines, file.counts.code_lines) == (8, 4), "the last line has no line feed"
+
+
+def test_both_sizes_are_those_of_gzip_at_its_highest_level(tmp_path: Path) -> None:
+    counts = counted(tmp_path, "water.asl", AGENT).counts
+    assert counts.gzip_bytes == len(gzip.compress(AGENT.encode(), 9, mtime=0))
+    assert counts.gzip_code_bytes == len(gzip.compress(AGENT_CODE.encode(), 9, mtime=0))
+
+
+def test_line_ends_of_other_systems_are_recognised(tmp_path: Path) -> None:
+    file = counted(tmp_path, "water.asl", AGENT.replace("\n", "\r\n"))
+    assert (file.lines, file.code) == (9, AGENT_CODE)
+    assert file.counts.gzip_bytes == len(gzip.compress(AGENT.replace("\n", "\r\n").encode(), 9, mtime=0))
+
+
+LISTINGS = {"ArtCmdVel": 50, "ArtCmdVelMuxAndOdometry": 107, "ArtSimBattery": 81, "ArtCleaning": 67}
+"""The numbers of the last lines of the thesis's listings of artifacts."""
+
+SCENARIOS = {
+    50: ["ArtCmdVel"],
+    107: ["ArtCmdVelMuxAndOdometry"],
+    81: ["ArtSimBattery"],
+    188: ["ArtCmdVelMuxAndOdometry", "ArtSimBattery"],
+    255: ["ArtCmdVelMuxAndOdometry", "ArtSimBattery", "ArtCleaning"],
+}
+"""The column "Artifacts" of table 8.2, with the artifacts that the thesis names for each scenario."""
+
+
+def listing(name: str) -> str:
+    """A source of as many lines as a listing of the thesis has, a third of them comments and blank lines."""
+    kinds = ("# about the next line", "", f"class {name}_{{0}}: pass", "x = {0}", "y = {0}", "z = {0}")
+    return "".join(f"{kinds[number % 6].format(number)}\n" for number in range(1, LISTINGS[name] + 1))
+
+
+@pytest.mark.parametrize(("lines", "artifacts"), SCENARIOS.items())
+def test_physical_lines_follow_the_rule_of_the_thesis(
+    tmp_path: Path, lines: int, artifacts: list[str]
+) -> None:
+    (tmp_path / "agent.asl").write_text("!go.\n+!go.\n")
+    for name in artifacts:
+        (tmp_path / f"{name}.py").write_text(listing(name))
+    program = measure([tmp_path])[0]
+    assert program.counts(Group.ARTIFACTS).lines == lines
+    assert program.total.lines == lines + 2
+
+
+EXAMPLES = Path(__file__).parents[4] / "examples"
+
+
+def plain_count(text: str) -> tuple[int, int]:
+    """Physical lines and code lines of a program whose comments are on lines of their own or at the ends of lines."""
+    lines = text.splitlines()
+    return len(lines), sum(
+        bool(line.strip()) and not line.lstrip().startswith(("//", "/*")) for line in lines
+    )
+
+
+@pytest.mark.parametrize("folder", sorted(EXAMPLES.glob("0[1-5]*")), ids=lambda path: str(path.name))
+def test_the_examples_have_the_number_of_lines_of_a_plain_count(folder: Path) -> None:
+    agents = measure([folder])[0].counts(Group.AGENTS)
+    text = (folder / "robot.asl").read_text(encoding="utf-8")
+    assert (agents.lines, agents.code_lines) == plain_count(text)
+
+
+@pytest.mark.parametrize(
+    "path", sorted(EXAMPLES.glob("*/*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
+)
+def test_the_code_lines_of_a_program_are_the_same_program(path: Path) -> None:
+    def tree(text: str) -> Program:
+        return read_program(SourceFile("a.asl", text), lambda *_: ("included.asl", ""))[0]
+
+    text = path.read_text(encoding="utf-8")
+    file = CountedFile(path, b"", text, agentspeak_comments(text))
+    assert len(file.code) < len(text)
+    assert tree(file.code) == tree(text)
+
+
+def test_python_with_a_wrong_indent_is_reported(tmp_path: Path) -> None:
+    with pytest.raises(MetricsError, match=r"artifacts\.py:1:\d: error: not Python: unexpected indent"):
+        counted(tmp_path, "artifacts.py", "  x = 1\n")

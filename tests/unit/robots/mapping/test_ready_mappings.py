@@ -1,0 +1,405 @@
+"""Every property, signal and operation of the mappings that come with the package."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+import pytest
+from mapped_lab import settle
+from robot_lab import Lab, Watcher, in_lab
+
+from jacaros.artifacts import ArtifactId, Out
+from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.robots.mapping.artifact import mapped_type
+from jacaros.robots.mapping.encoding import builder, fitting
+from jacaros.robots.mapping.file import find_mapping, load_mapping, shipped_mappings
+from jacaros.robots.mapping.interfaces import stored_interfaces
+from jacaros.robots.mapping.operations import OperationKind
+from jacaros.robots.ros.action import ServerGoal
+from jacaros.robots.ros.fields import FieldType
+from jacaros.runtime.files.yaml import Problem
+
+TWIST = "geometry_msgs/msg/Twist"
+STAMPED = "geometry_msgs/msg/TwistStamped"
+MAPPINGS = ("move_base.yaml", "nav2.yaml", "turtlebot2.yaml", "turtlebot3.yaml", "turtlebot4.yaml")
+tried: set[tuple[str, str]] = set()
+"""File and name of what the tests of this module have looked at."""
+
+
+def ready(file: str) -> Any:
+    path = find_mapping(file)
+    assert path is not None
+    return load_mapping(path)
+
+
+class Ready:
+    """An artifact of a ready mapping in the laboratory."""
+
+    def __init__(self, lab: Lab, file: str, artifact: ArtifactId, watcher: Watcher) -> None:
+        self.lab, self.file, self.artifact, self.watcher = lab, file, artifact, watcher
+
+    async def do(self, operation: str, *arguments: object) -> None:
+        tried.add((self.file, operation))
+        await self.lab.do(self.artifact, operation, *arguments)
+
+    async def reason(self, operation: str, *arguments: object) -> str:
+        return (await self.lab.call(self.artifact, operation, *arguments)).reason
+
+    def value(self, name: str) -> tuple[object, ...]:
+        tried.add((self.file, name))
+        (values,) = self.watcher.holds(name)
+        return values
+
+    def signals(self, name: str) -> list[tuple[object, ...]]:
+        tried.add((self.file, name))
+        return [values for each, values in self.watcher.signals if each == name]
+
+
+def with_ready(
+    file: str, body: Callable[[Ready], Awaitable[None]], world: str | None = "patrol", *arguments: object
+) -> Lab:
+    async def in_it(lab: Lab) -> None:
+        artifact = await lab.make(mapped_type(ready(file), file.removesuffix(".yaml")), *arguments)
+        watcher = lab.watch(artifact)
+        await lab.sleep(1.5)
+        await body(Ready(lab, file, artifact, watcher))
+        silence = (
+            ("waiting", "missing", "no publisher on", "is unknown: no transform") if world is None else ()
+        )
+        assert [line for line in lab.logged if not any(each in line for each in silence)] == []
+
+    return in_lab(in_it, world)
+
+
+def poses(*places: tuple[float, float, float]) -> list[Structure]:
+    return [Structure("pose", place) for place in places]
+
+
+def near(lab: Lab, x: float, y: float) -> bool:
+    at = lab.pose()
+    return abs(at[0] - x) < 0.06 and abs(at[1] - y) < 0.06
+
+
+# ---- in the embedded world
+
+
+@pytest.mark.parametrize("file", ["nav2.yaml", "move_base.yaml"])
+def test_going_to_a_pose(file: str) -> None:
+    async def body(robot: Ready) -> None:
+        await robot.do("navigate_to", 2, 0, 90)
+        assert near(robot.lab, 2, 0)
+        assert robot.lab.pose()[2] == pytest.approx(90, abs=4)
+        await robot.lab.sleep(1)
+        assert robot.value("pose") == pytest.approx(robot.lab.pose(), abs=1.1)
+        await robot.do("clear_costmaps")
+        assert (await robot.reason("navigate_to", 99, 0, 0)).startswith("aborted(")
+
+    with_ready(file, body)
+
+
+def test_feedback_of_nav2_is_there_while_the_robot_is_on_its_way() -> None:
+    async def body(robot: Ready) -> None:
+        tried.update({("nav2.yaml", "distance_left"), ("nav2.yaml", "recoveries")})
+        await robot.do("navigate_to", 2, 0, 0)
+        left = [values[0] for values in robot.watcher.values("distance_left")]
+        assert left[0] > 1.5
+        assert left[-1] < 0.3
+        assert robot.watcher.values("recoveries") == [(0,)]
+        assert robot.watcher.holds("distance_left") == []
+
+    with_ready("nav2.yaml", body)
+
+
+def test_going_through_poses() -> None:
+    async def body(robot: Ready) -> None:
+        tried.add(("nav2.yaml", "poses_left"))
+        await robot.do("navigate_through", poses((1.5, 0, 0), (2, 1, 90), (2, 2, 90)))
+        assert near(robot.lab, 2, 2)
+        assert {values[0] for values in robot.watcher.values("poses_left")} >= {3, 2, 1}
+
+    with_ready("nav2.yaml", body)
+
+
+def test_following_waypoints_and_those_that_were_missed() -> None:
+    async def body(robot: Ready) -> None:
+        tried.add(("nav2.yaml", "waypoint"))
+        missed: Out = Out()
+        await robot.do("follow_waypoints", poses((1, 0, 0), (50, 0, 0), (2, 0, 0)), missed)
+        assert missed.value == [1]
+        assert near(robot.lab, 2, 0)
+        assert robot.watcher.values("waypoint") == [(0,), (1,), (2,)]
+
+    with_ready("nav2.yaml", body)
+
+
+def test_docking_by_nav2() -> None:
+    async def body(robot: Ready) -> None:
+        tried.add(("nav2.yaml", "docking"))
+        await robot.do("dock_at", "dock")
+        assert robot.lab.world is not None
+        assert robot.lab.world.robot(None).dock is not None
+        assert robot.watcher.values("docking")[0] == (Atom("nav_to_staging_pose"),)
+        await robot.do("leave_dock")
+        robot.lab.pose()
+        assert robot.lab.world.robot(None).dock is None
+        assert (await robot.reason("dock_at", "dock_7")).startswith("aborted(901,")
+
+    with_ready("nav2.yaml", body)
+
+
+@pytest.mark.parametrize("file", ["turtlebot2.yaml", "turtlebot4.yaml"])
+def test_docking_by_the_base(file: str) -> None:
+    async def body(robot: Ready) -> None:
+        assert robot.lab.world is not None
+        await robot.do("dock")
+        assert robot.lab.world.robot(None).dock is not None
+        await robot.lab.sleep(2)
+        if file == "turtlebot4.yaml":
+            assert robot.value("docked") == (True,)
+        assert robot.value("battery")[1] in (Atom("charging"), Atom("full"))
+        await robot.do("undock")
+        await robot.lab.sleep(2)
+        assert robot.lab.world.robot(None).dock is None
+        if file == "turtlebot4.yaml":
+            assert robot.value("docked") == (False,)
+
+    with_ready(file, body)
+
+
+@pytest.mark.parametrize("file", ["turtlebot2.yaml", "turtlebot3.yaml", "turtlebot4.yaml"])
+def test_driving_and_seeing(file: str) -> None:
+    async def body(robot: Ready) -> None:
+        await robot.do("drive", 0.25, 0, 2)
+        await robot.lab.sleep(1)
+        assert robot.lab.speed() == (0, 0)
+        x, _, _ = robot.lab.pose()
+        assert x == pytest.approx(0.5, abs=0.1)
+        assert robot.value("odom") == pytest.approx(robot.lab.pose(), abs=0.03)
+        await robot.do("drive", 0, 45, 2)
+        await robot.lab.sleep(1)
+        assert robot.lab.pose()[2] == pytest.approx(90, abs=10)
+        ranges = robot.value("laserrange")
+        assert len(ranges) == 5
+        assert all(0.1 < each < 10 for each in ranges)  # type: ignore[operator]
+        assert robot.value("battery") == (pytest.approx(99, abs=3), Atom("discharging"))
+
+    with_ready(file, body)
+
+
+def test_bumping() -> None:
+    async def body(robot: Ready) -> None:
+        await robot.do("drive", -0.5, 0, 3)  # into the wall behind
+        await robot.lab.sleep(0.5)
+        if robot.file == "turtlebot3.yaml":
+            assert robot.value("bumper") == (Atom("back"),)
+        await robot.do("drive", 0, 180, 1)
+        await robot.do("drive", 0.5, 0, 2)
+        await robot.lab.sleep(0.5)
+        if robot.file == "turtlebot3.yaml":
+            assert robot.value("bumper") == (Atom("front"),)
+        if robot.file == "turtlebot4.yaml":
+            assert (Atom("bump"), "bump_front_center") in robot.signals("hazard")
+            assert len(robot.signals("hazard")) < 6
+        if robot.file == "turtlebot2.yaml":
+            assert (Atom("center"), Atom("pressed")) in robot.signals("bumper")
+
+    for file in MAPPINGS[2:]:
+        with_ready(file, body)
+
+
+def test_one_name_moves_a_mapping_to_a_robot_of_several() -> None:
+    async def body(robot: Ready) -> None:
+        await robot.do("navigate_to", -1, 0, 0)
+        assert robot.lab.pose("robot_2")[:2] == pytest.approx((-1, 0), abs=0.06)
+        await robot.lab.sleep(1)
+        assert robot.value("pose")[:2] == pytest.approx((-1, 0), abs=0.06)
+        assert robot.lab.pose("robot_1")[:2] == pytest.approx((-2.4, 2.3))
+
+    with_ready("nav2.yaml", body, "three_robots", "robot_2")
+
+
+# ---- against peers of the tests' own
+
+
+@pytest.mark.parametrize("file", ["turtlebot3.yaml", "turtlebot4.yaml"])
+@pytest.mark.parametrize("stamped", [False, True], ids=["Twist", "TwistStamped"])
+def test_a_base_is_driven_with_its_own_message_type(file: str, stamped: bool) -> None:
+    heard: list[Any] = []
+
+    async def body(robot: Ready) -> None:
+        assert await robot.reason("drive", 0.2, 0, 1) == 'type_unknown("/cmd_vel")'
+        kind = STAMPED if stamped else TWIST
+        robot.lab.backend.subscription("/cmd_vel", kind, lambda sample: heard.append(sample.message))
+        await robot.do("drive", 0.2, 90, 1)
+        await settle()
+        twists = [each.twist if stamped else each for each in heard]
+        assert (twists[0].linear.x, twists[0].angular.z) == pytest.approx((0.2, 1.5708), abs=1e-3)
+        assert (twists[-1].linear.x, twists[-1].angular.z) == (0, 0)
+        if stamped:
+            assert {each.header.frame_id for each in heard} == {"base_link"}
+            assert heard[-1].header.stamp.sec >= heard[0].header.stamp.sec
+
+    with_ready(file, body, None)
+
+
+def test_a_base_that_comes_a_little_later_is_waited_for() -> None:
+    async def body(robot: Ready) -> None:
+        run = robot.lab.begin(robot.artifact, "drive", 0.2, 0, 1)
+        await robot.lab.sleep(1)
+        robot.lab.record()
+        await run.done
+        assert run.outcome is not None
+        assert run.outcome.ok
+
+    with_ready("turtlebot4.yaml", body, None)
+
+
+@pytest.mark.parametrize(
+    ("raw", "charger", "expected"),
+    [(165, 0, (100, "discharging")), (132, 6, (0, "charging")), (148, 2, (48, "full"))],
+)
+def test_the_battery_of_a_kobuki(raw: int, charger: int, expected: tuple[int, str]) -> None:
+    async def body(robot: Ready) -> None:
+        publisher = robot.lab.backend.publisher("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
+        publisher.publish(publisher.message(battery=raw, charger=charger))
+        await robot.lab.sleep(2)
+        percent, status = robot.value("battery")
+        assert (percent, str(status)) == expected
+
+    with_ready("turtlebot2.yaml", body, None)
+
+
+def test_the_cliffs_of_a_kobuki() -> None:
+    async def body(robot: Ready) -> None:
+        publisher = robot.lab.backend.publisher("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
+        publisher.publish(publisher.message(sensor=2, state=1))
+        await robot.lab.sleep(0.1)
+        assert robot.signals("cliff") == [(Atom("right"), Atom("cliff"))]
+        publisher = robot.lab.backend.publisher(
+            "/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent"
+        )
+        publisher.publish(publisher.message(wheel=1, state=1))
+        await robot.lab.sleep(0.1)
+        assert robot.signals("wheel_drop") == [(Atom("right"), Atom("dropped"))]
+
+    with_ready("turtlebot2.yaml", body, None)
+
+
+def test_the_lights_and_tunes_of_a_create() -> None:
+    async def body(robot: Ready) -> None:
+        red, off = Structure("color", (255, 0, 0)), Structure("color", (0, 0, 0))
+        for _ in range(2):
+            await robot.do("lights", [red] * 2 + [off] * 4)
+        await robot.do("play", [Structure("note", (440, 0.5)), Structure("note", (880, 0.25))])
+        await robot.lab.sleep(0.1)
+        assert robot.lab.world is not None
+        lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
+        assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
+        assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}
+        publisher = robot.lab.backend.publisher("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
+        publisher.publish(publisher.message())
+        await robot.lab.sleep(0.1)
+        assert robot.lab.world.ground_truth.events[-1].data == {"colors": []}, "the robot has its lights back"
+
+    with_ready("turtlebot4.yaml", body)
+
+
+GOALS = [
+    ("nav2.yaml", "navigate_to", (1, 2, 180), "navigate_to_pose", "nav2_msgs/action/NavigateToPose"),
+    ("move_base.yaml", "navigate_to", (1, 2, 180), "move_base", "move_base_msgs/action/MoveBase"),
+    (
+        "nav2.yaml",
+        "navigate_through",
+        (poses((1, 2, 180)),),
+        "navigate_through_poses",
+        "nav2_msgs/action/NavigateThroughPoses",
+    ),
+]
+
+
+@pytest.mark.parametrize(("file", "operation", "arguments", "action", "kind"), GOALS)
+def test_what_a_navigation_server_is_sent(
+    file: str, operation: str, arguments: tuple[object, ...], action: str, kind: str
+) -> None:
+    """The goal, below the robot's name and with its frames; suspending cancels it and resuming sends it again."""
+    goals: list[Any] = []
+    ended: list[str] = []
+
+    async def body(robot: Ready) -> None:
+        async def execute(goal: ServerGoal) -> dict[str, Any]:
+            goals.append(goal.request)
+            try:
+                await robot.lab.sleep(10)
+            except asyncio.CancelledError:
+                ended.append("cancelled")
+                raise
+            ended.append("done")
+            return {}
+
+        robot.lab.backend.action_server(f"/r1/{action}", kind, execute)
+        run = robot.lab.begin(robot.artifact, operation, *arguments)
+        await robot.lab.sleep(1)
+        run.execution.pause()
+        await robot.lab.sleep(1)
+        assert ended == ["cancelled"]
+        run.execution.resume()
+        await run.done
+        assert run.outcome is not None
+        assert run.outcome.ok
+        assert ended == ["cancelled", "done"]
+        for goal in goals:
+            pose = (
+                goal.poses[0] if hasattr(goal, "poses") else getattr(goal, "target_pose", None) or goal.pose
+            )
+            assert pose.header.frame_id == "map"
+            assert (pose.pose.position.x, pose.pose.position.y) == (1, 2)
+            assert pose.pose.orientation.z == pytest.approx(1)
+
+    with_ready(file, body, None, "r1")
+
+
+def test_the_poses_of_kilted_are_a_message_of_their_own() -> None:
+    kept = stored_interfaces()
+
+    class Kilted:
+        """Where ``poses`` of ``NavigateThroughPoses`` is a ``nav_msgs/msg/Goals``."""
+
+        def fields(self, type_name: str) -> Any:
+            if type_name == "nav_msgs/msg/Goals":
+                return {"goals": FieldType("geometry_msgs/msg/PoseStamped", True)}
+            found = kept.fields(type_name)
+            if type_name == "nav2_msgs/action/NavigateThroughPoses_Goal":
+                return {**found, "poses": FieldType("nav_msgs/msg/Goals")}
+            return found
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(kept, name)
+
+    (part,) = ready("nav2.yaml").artifacts.values()
+    (operation,) = (each for each in part.operations if each.name == "navigate_through")
+    goal_type = "nav2_msgs/action/NavigateThroughPoses_Goal"
+    problems: list[Problem] = []
+    kilted: Any = Kilted()
+    fill = builder(fitting(operation, goal_type, kilted), goal_type, kilted, problems)
+    assert problems == []
+    assert fill is not None
+    (goal,) = fill([poses((1, 2, 90))], 0.0)["poses"]["goals"]
+    assert goal["pose"]["position"] == {"x": 1, "y": 2}
+
+
+# ---- all of it
+
+
+def test_the_mappings_that_come_with_the_package() -> None:
+    assert shipped_mappings() == list(MAPPINGS)
+
+
+@pytest.mark.parametrize("file", MAPPINGS)
+def test_everything_has_a_test(file: str) -> None:
+    if ("turtlebot2.yaml", "cliff") not in tried:
+        pytest.skip("only some tests of this module were run")
+    (part,) = ready(file).artifacts.values()
+    names = {each.name for each in (*part.topics, *part.frames, *part.operations)}
+    names |= {each.name for operation in part.operations for each in operation.feedback}
+    assert {name for name in names if (file, name) not in tried} == set()
+    assert all(each.description for each in part.operations if each.kind is not OperationKind.REFRESH)

@@ -1,0 +1,289 @@
+"""actionlib's topics, on a graph inside the process: goals that the server never got."""
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from jacaros.robots.ros.action import ActionPolicy, GoalStatus, ServerGoal
+from jacaros.robots.ros.action_client import ActionClient, OrphanPolicy
+from jacaros.robots.ros.actionlib import ActionlibServer, ActionlibWire
+from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
+from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
+from jacaros.robots.ros.errors import CallTimedOut, GoalRejected
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
+from jacaros.robots.ros.protocols.rosbridge_messages import BridgeSchema
+from jacaros.runtime.clock import VirtualClock, run
+
+COUNT = "jacaros_interfaces/action/Count"
+
+
+class Actionlib:
+    """A server and a client of ``/count``; what the client publishes on its goal topic can be swallowed.
+
+    Attributes:
+        server: the server.
+        began, stopped: targets of the goals that the server has begun, and of those that it was to cancel.
+        swallowed: goal messages that are lost from now on.
+        sent: goal messages that left the client.
+    """
+
+    def __init__(self) -> None:
+        self.clock = VirtualClock()
+        self.began: list[int] = []
+        self.logged: list[str] = []
+        self.stopped: list[int] = []
+        self.swallowed = 0
+        self.sent = 0
+        self._nodes: list[MemoryBackend] = []
+
+    async def open(self) -> ActionClient:
+        graph = MemoryGraph()
+        self.graph = graph
+        schema = BridgeSchema((), lambda service, arguments: None, lambda: None)
+        for part in ("ActionGoal", "ActionResult", "ActionFeedback"):
+            schema.fields(part_type(COUNT, part))
+        robot, here = await self._node(graph, "robot"), await self._node(graph, "client")
+        policy = ActionPolicy(lambda goal: None if goal.target >= 0 else "less than nothing")
+        self.server = ActionlibServer(robot, "/count", COUNT, self._count, policy)
+        sender = ActionClient(self.clock, print, here.factory, "/count", COUNT)
+        sender.wire = ActionlibWire(here, sender)
+        goals = sender.wire._goal
+        deliver = goals.publish
+
+        def publish(message: Any) -> None:
+            self.sent += 1
+            if self.swallowed:
+                self.swallowed -= 1
+            else:
+                deliver(message)
+
+        goals.publish = sender.wire._goals._send = publish  # type: ignore[method-assign]
+        return sender
+
+    async def run_again(self, orphans: OrphanPolicy, name: str = "client") -> ActionClient:
+        """Kill the client, and give the one of the next run, with a node called *name*."""
+        self.graph.vanish("/client")
+        here = await self._node(self.graph, name, orphans)
+        sender = ActionClient(
+            self.clock, self.logged.append, here.factory, "/count", COUNT, here.leaving_goals, here.orphans
+        )
+        sender.wire = ActionlibWire(here, sender)
+        return sender
+
+    async def _node(self, graph: MemoryGraph, name: str, orphans: OrphanPolicy = "keep") -> MemoryBackend:
+        node = open_backend("memory", self.clock, name, graph=graph, log=self.logged.append, orphans=orphans)
+        assert isinstance(node, MemoryBackend)
+        await node.start()
+        self._nodes.append(node)
+        return node
+
+    async def close(self) -> None:
+        for node in self._nodes:
+            await node.close()
+
+    async def _count(self, goal: ServerGoal) -> Any:
+        self.began.append(goal.request.target)
+        try:
+            await self.clock.sleep(goal.request.period)
+        except asyncio.CancelledError:
+            self.stopped.append(goal.request.target)
+            raise
+        return {"last": goal.request.target}
+
+
+def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
+    graph = Actionlib()
+
+    async def main() -> None:
+        await scene(graph)
+        await graph.close()
+
+    run(main, graph.clock)
+
+
+@pytest.mark.parametrize("policy", ["cancel", "yes"])
+def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(policy: str) -> None:
+    async def scene(graph: Actionlib) -> None:
+        asked: list[str] = []
+
+        async def agree(question: str) -> bool:
+            asked.append(question)
+            await graph.clock.sleep(30)
+            return True
+
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("cancel" if policy == "cancel" else agree)
+        goal = await client.send({"target": 4, "period": 0.5}, timeout=20)
+        assert graph.stopped == [3]
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3, 4]
+        found = "action /count is still executing a goal of an earlier run of this node"
+        if policy == "cancel":
+            assert f"warning: {found}; cancelling it" in graph.logged
+        else:
+            assert asked == [f"{found}. Cancel it?"]
+
+    play(scene)
+
+
+def test_the_goal_of_a_killed_run_is_kept_on_request() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("keep")
+        await client.send({"target": 4, "period": 0.5}, timeout=20)
+        await graph.clock.sleep(5)
+        assert graph.stopped == []
+        found = (
+            "action /count is still executing a goal of an earlier run of this node; the robot may be moving"
+        )
+        assert graph.logged.count(f"warning: {found}") == 1
+
+    play(scene)
+
+
+def test_the_goal_of_another_node_is_not_an_orphan() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 900.0}, timeout=20)
+        client = await graph.run_again("cancel", name="client2")
+        await client.send({"target": 4, "period": 0.5}, timeout=20)
+        await graph.clock.sleep(5)
+        assert graph.stopped == []
+        assert not [line for line in graph.logged if "earlier run" in line]
+
+    play(scene)
+
+
+def test_a_server_is_ready_after_its_first_message_on_all_topics() -> None:
+    """A publisher is seen a moment before it knows its subscriber; a result in that moment would be lost."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        wire = client.wire
+        assert isinstance(wire, ActionlibWire)
+        result = wire._result
+        wire._result = SimpleNamespace(publisher_count=0)  # type: ignore[assignment]
+        await graph.clock.sleep(2.0)
+        assert not wire.offered
+        wire._result = result
+        assert not wire.offered
+        await graph.clock.sleep(1.1 * STATUS_PERIOD)
+        assert wire.offered
+
+    play(scene)
+
+
+def test_a_goal_that_was_lost_on_its_way_is_sent_again() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        begun = graph.clock.elapsed
+        goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
+        assert 1.0 <= graph.clock.elapsed - begun < 3.0
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3]
+        assert graph.sent == 2
+
+    play(scene)
+
+
+def test_a_goal_that_arrived_is_sent_once() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        goal = await client.send({"target": 3, "period": 9.0}, timeout=20)
+        assert (await goal.outcome(20)).status is GoalStatus.SUCCEEDED
+        assert graph.sent == 1
+
+    play(scene)
+
+
+def test_an_abandoned_goal_is_not_sent_again() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        try:
+            await client.send({"target": 3, "period": 0.5}, timeout=0.5)
+        except CallTimedOut:
+            await graph.clock.sleep(10)
+        assert graph.sent == 1
+        assert graph.began == []
+
+    play(scene)
+
+
+def test_a_duplicate_goal_is_executed_once() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        sent: list[Any] = []
+        goals = client.wire._goal  # type: ignore[attr-defined]
+        deliver = goals.publish
+
+        def twice(message: Any) -> None:
+            sent.append(message)
+            deliver(message)
+            deliver(message)
+
+        goals.publish = twice
+        goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
+        assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
+        await graph.clock.sleep(1)
+        goals.publish(sent[0])
+        await graph.clock.sleep(1)
+        assert graph.began == [3]
+
+    play(scene)
+
+
+def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet() -> None:
+    """Its status messages may be late on a bad network, and the robot drives on meanwhile."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        await client.send({"target": 3, "period": 60.0}, timeout=20)
+        graph.server._status.publish = lambda message: None  # type: ignore[method-assign]
+        await graph.clock.sleep(1.5)
+        assert not client.ready
+        client.close()
+        await graph.clock.sleep(0.1)
+        assert graph.stopped == [3]
+
+    play(scene)
+
+
+@pytest.mark.parametrize("period", [0.1, 8.0])
+def test_a_lost_goal_does_not_come_after_a_newer_one(period: float) -> None:
+    """A server that pursues one goal at a time would leave the newer one for it; who waits for it hears of that."""
+
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        older = asyncio.create_task(client.send({"target": 3, "period": 0.5}))
+        await graph.clock.sleep(0.3)
+        newer = await client.send({"target": 4, "period": period}, timeout=5)
+        assert (await newer.outcome(20)).status is GoalStatus.SUCCEEDED
+        end = await (await older).outcome(3)
+        assert (end.status, end.text) == (GoalStatus.CANCELED, OVERTAKEN)
+        await graph.clock.sleep(8)
+        assert graph.began == [4]
+
+    play(scene)
+
+
+def test_a_lost_goal_is_sent_again_when_a_newer_one_was_refused() -> None:
+    async def scene(graph: Actionlib) -> None:
+        client = await graph.open()
+        graph.swallowed = 1
+        older = asyncio.create_task(client.send({"target": 3, "period": 0.5}, timeout=5))
+        await graph.clock.sleep(0.3)
+        with pytest.raises(GoalRejected):
+            await client.send({"target": -1}, timeout=5)
+        assert (await (await older).outcome(5)).status is GoalStatus.SUCCEEDED
+        assert graph.began == [3]
+
+    play(scene)

@@ -1,0 +1,191 @@
+"""Messages, types, requests and operations of the rosbridge protocol, without a connection."""
+
+import json
+import math
+from typing import Any
+
+import cbor2
+import pytest
+
+pytest.importorskip("websockets")
+
+from jacaros.robots.ros.errors import UnknownInterface
+from jacaros.robots.ros.protocols.rosbridge_messages import BridgeSchema, Translator
+from jacaros.robots.ros.protocols.rosbridge_wire import (
+    LONGEST,
+    OPEN_AT_ONCE,
+    Fragments,
+    Polled,
+    Requests,
+    frames,
+)
+from jacaros.robots.ros.typestore import DefinitionSchema
+
+SCAN, IMAGE, STAMP = (
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/CompressedImage",
+    "builtin_interfaces/msg/Time",
+)
+
+
+@pytest.fixture
+def schema() -> DefinitionSchema:
+    """The message classes."""
+    return DefinitionSchema(())
+
+
+@pytest.fixture
+def translator(schema: DefinitionSchema) -> Translator:
+    """What is tested."""
+    return Translator(schema)
+
+
+def test_times_are_written_as_the_robots_ros_does_and_read_in_both_notations(
+    schema: DefinitionSchema, translator: Translator
+) -> None:
+    time = schema.new(STAMP)
+    time.sec, time.nanosec = 7, 9
+    assert translator.encode(STAMP, time) == {"sec": 7, "nanosec": 9}
+    translator.ros_version = 1
+    assert translator.encode(STAMP, time) == {"secs": 7, "nsecs": 9}
+    for written in ({"sec": 7, "nanosec": 9}, {"secs": 7, "nsecs": 9}):
+        read = translator.decode(STAMP, written)
+        assert (read.sec, read.nanosec) == (7, 9)
+
+
+def test_octets_are_base64_and_null_is_not_a_number(translator: Translator) -> None:
+    image = translator.decode(IMAGE, {"format": "png", "data": "AQID"})
+    assert image.data.tolist() == [1, 2, 3]
+    assert translator.encode(IMAGE, image)["data"] == "AQID"
+    scan = translator.decode(SCAN, {"ranges": [1.0, None], "range_max": None})
+    assert scan.ranges[0] == 1.0
+    assert math.isnan(scan.ranges[1])
+    assert math.isnan(scan.range_max)
+
+
+def test_a_packed_array_is_read_with_its_infinite_numbers(translator: Translator) -> None:
+    little_endian_float32 = cbor2.CBORTag(85, b"\x00\x00\x80\x3f\x00\x00\x80\x7f")
+    scan = translator.decode(SCAN, cbor2.loads(cbor2.dumps({"ranges": little_endian_float32})))
+    assert scan.ranges.tolist() == [1.0, math.inf]
+    assert translator.packs(SCAN)
+    assert not translator.packs("nav_msgs/msg/Odometry"), "servers lose arrays of a fixed length"
+
+
+@pytest.mark.parametrize(
+    ("value", "problem"),
+    [
+        ({"angle_min": "wide"}, "field angle_min of sensor_msgs/msg/LaserScan"),
+        ({"ranges": 7}, "field ranges"),
+        ({"header": {"stamp": 7}}, "field stamp of std_msgs/msg/Header"),
+        (7, "expected a sensor_msgs/msg/LaserScan, found 7"),
+    ],
+)
+def test_what_is_not_of_the_type_is_refused_with_the_name_of_the_field(
+    translator: Translator, value: Any, problem: str
+) -> None:
+    with pytest.raises(ValueError, match=problem):
+        translator.decode(SCAN, value)
+
+
+def test_a_large_operation_is_cut_into_fragments_that_make_it_again_in_any_order() -> None:
+    operation = {"op": "publish", "topic": "/a", "msg": {"data": 'ä"' * LONGEST}}
+    pieces = [json.loads(frame) for frame in frames(operation)]
+    assert len(pieces) > 1
+    assert all(len(frame) < 10_000_000 for frame in frames(operation))
+    fragments = Fragments()
+    made = [fragments.add(piece) for piece in reversed(pieces)]
+    assert made == [None] * (len(pieces) - 1) + [operation]
+
+
+def test_incomplete_operations_are_limited_and_forgotten_with_the_connection() -> None:
+    fragments = Fragments()
+
+    def half(number: int, which: int) -> dict[str, Any]:
+        return {"op": "fragment", "id": number, "num": which, "total": 2, "data": ('{"op":', '"x"}')[which]}
+
+    for number in range(OPEN_AT_ONCE + 1):
+        assert fragments.add(half(number, 0)) is None
+    assert fragments.add(half(0, 1)) is None, "the oldest was given up"
+    assert fragments.add(half(OPEN_AT_ONCE, 1)) == {"op": "x"}
+    fragments.clear()
+    assert fragments.add(half(OPEN_AT_ONCE - 1, 1)) is None
+
+
+@pytest.mark.parametrize(
+    ("tag", "octets", "numbers"),
+    [
+        (64, b"\x01\xff", [1.0, 255.0]),
+        (77, b"\xff\xff\x02\x00", [-1.0, 2.0]),
+        (73, b"\xff\xff\x00\x02", [-1.0, 2.0]),
+        (84, b"\x00\x3c\x00\xc0", [1.0, -2.0]),
+        (80, b"\x3c\x00\xc0\x00", [1.0, -2.0]),
+        (82, b"\x3f\xf8" + b"\x00" * 6, [1.5]),
+    ],
+)
+def test_typed_arrays_of_all_kinds_are_read(
+    translator: Translator, tag: int, octets: bytes, numbers: list[float]
+) -> None:
+    assert translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, octets)}).ranges.tolist() == numbers
+
+
+@pytest.mark.parametrize("tag", [84, 85])
+def test_half_an_element_is_refused(translator: Translator, tag: int) -> None:
+    with pytest.raises(ValueError, match="field ranges"):
+        translator.decode(SCAN, {"ranges": cbor2.CBORTag(tag, b"\x00\x00\x00")})
+
+
+def test_a_server_that_has_not_answered_is_not_said_to_know_nothing_and_is_asked_again() -> None:
+    answers: list[Any] = [TimeoutError(), None]
+
+    def ask(service: str, arguments: dict[str, Any]) -> dict[str, Any] | None:
+        answer = answers.pop(0)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    schema = BridgeSchema((), ask, lambda: None)
+    with pytest.raises(UnknownInterface, match="has not answered yet"):
+        schema.fields("odd_msgs/msg/Thing")
+    with pytest.raises(UnknownInterface, match="the rosbridge server does not know it either"):
+        schema.fields("odd_msgs/msg/Thing")
+    assert answers == []
+
+
+class Rosapi:
+    """Answers requests when a test wants."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self.requests = Requests(self._take, lambda question, seconds: None)
+        self.polled = Polled(
+            self.requests, "/rosapi/subscribers", {}, lambda seen: len(seen["subscribers"]), 0
+        )
+
+    def _take(self, operation: dict[str, Any]) -> bool:
+        self.asked.append(operation["id"])
+        return True
+
+    def answer(self, *subscribers: str) -> None:
+        self.requests.answered({"id": self.asked[-1], "values": {"subscribers": list(subscribers)}})
+
+
+def test_values_of_a_lost_connection_are_forgotten_and_requested_immediately() -> None:
+    rosapi = Rosapi()
+    assert rosapi.polled.value == 0
+    rosapi.answer("/robot")
+    assert rosapi.polled.value == 1
+    rosapi.requests.fail_all()
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2
+    rosapi.answer("/robot", "/other")
+    assert rosapi.polled.value == 2
+
+
+def test_an_answer_lost_with_the_connection_is_requested_again_immediately() -> None:
+    rosapi = Rosapi()
+    assert rosapi.polled.value == 0
+    rosapi.requests.fail_all()
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2
+    assert rosapi.polled.value == 0
+    assert len(rosapi.asked) == 2

@@ -1,0 +1,309 @@
+"""ArtSimBattery: the thesis's timer, and a robot's own battery."""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from robot_lab import Lab, in_lab
+
+from jacaros.artifacts import Out, Structure
+from jacaros.look.page.graph_scene import SeenRobot
+from jacaros.robots.artifacts.battery import ArtSimBattery, diagnosis
+from jacaros.robots.artifacts.velocity import ArtCmdVelMuxAndOdometry
+from jacaros.robots.ros.backend import Backend
+
+FULL, MEDIUM, LOW = "Full Battery", "Medium Battery", "Low Battery"
+
+
+def option(name: str, value: Any) -> Structure:
+    return Structure(name, (value,))
+
+
+@pytest.mark.parametrize(
+    ("percent", "words"),
+    [
+        (100, FULL),
+        (99, FULL),
+        (51, FULL),
+        (50, MEDIUM),
+        (35, MEDIUM),
+        (21, MEDIUM),
+        (20, LOW),
+        (7, LOW),
+        (0, LOW),
+    ],
+)
+def test_every_charge_has_its_diagnosis(percent: int, words: str) -> None:
+    """Defect 5: the thresholds were compared for equality, so a charge could jump over them."""
+    assert diagnosis(percent) == words
+
+
+async def test_the_timer_drains_one_percent_a_second_and_stops_at_zero(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery))
+    assert watcher.holds("battery") == [(100,)]
+    assert watcher.holds("diagnostics") == [(FULL,)]
+    await lab.sleep(50.5)
+    assert watcher.holds("battery") == [(50,)]
+    assert watcher.holds("diagnostics") == [(MEDIUM,)]
+    await lab.sleep(30)
+    assert watcher.holds("diagnostics") == [(LOW,)]
+    await lab.sleep(60)
+    assert watcher.holds("battery") == [(0,)]
+    assert [values for _, values in watcher.changes if _ == "battery"] == [(n,) for n in range(100, -1, -1)]
+    assert watcher.values("diagnostics") == [(FULL,), (MEDIUM,), (LOW,)]
+    assert watcher.signals == []
+
+
+@pytest.mark.parametrize("level", [0, 15, 20, 37, 99])
+async def test_recharging_ends_at_exactly_one_hundred_whatever_it_begins_with(lab: Lab, level: int) -> None:
+    """Defect 5: 15 became 105, and never "Full Battery"."""
+    battery = await lab.make(ArtSimBattery, option("level", level))
+    watcher = lab.watch(battery)
+    await lab.do(battery, "operationRecharge")
+    levels = [values[0] for values in watcher.values("battery")]
+    assert levels == [level, *range(level + 10, 100, 10), 100]
+    assert watcher.holds("diagnostics") == [(FULL,)]
+    words = [values[0] for values in watcher.values("diagnostics")]
+    assert words == list(dict.fromkeys(diagnosis(each) for each in levels))  # type: ignore[arg-type]
+    assert lab.clock.elapsed == pytest.approx(0.5 * (len(levels) - 1))
+    await lab.sleep(1.5)
+    assert watcher.holds("battery")[0][0] in (98, 99)
+
+
+async def test_nothing_drains_while_the_battery_is_charged_and_other_operations_are_served(lab: Lab) -> None:
+    """Defect 5: it kept draining, and could not be queried."""
+    battery = await lab.make(ArtSimBattery, option("level", 10), option("drain", 5))
+    watcher = lab.watch(battery)
+    charging = lab.begin(battery, "operationRecharge")
+    await lab.sleep(2.1)
+    out = Out()
+    await lab.do(battery, "getCurrentBattery", out)
+    assert out.value == 60
+    assert lab.clock.elapsed == pytest.approx(2.1)
+    await charging.done
+    levels = [values[0] for values in watcher.values("battery")]
+    assert levels == sorted(levels)  # type: ignore[type-var]
+
+
+async def test_a_second_recharge_waits_for_the_first_and_a_dropped_one_lets_the_battery_drain_again(
+    lab: Lab,
+) -> None:
+    battery = await lab.make(ArtSimBattery, option("level", 50))
+    watcher = lab.watch(battery)
+    runs = [lab.begin(battery, "operationRecharge") for _ in range(2)]
+    for each in runs:
+        await each.done
+    assert lab.clock.elapsed == pytest.approx(2.5)
+    await lab.sleep(20)
+    dropped = lab.begin(battery, "operationRecharge")
+    await lab.sleep(0.2)
+    dropped.execution.cancel()
+    level = watcher.holds("battery")[0][0]
+    await lab.sleep(3)
+    assert level - watcher.holds("battery")[0][0] == 3  # type: ignore[operator]
+
+
+async def test_an_empty_battery_drains_again_after_recharging(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, option("level", 2))
+    watcher = lab.watch(battery)
+    await lab.sleep(5)
+    await lab.do(battery, "operationRecharge")
+    await lab.sleep(2.5)
+    assert watcher.holds("battery") == [(98,)]
+
+
+async def test_the_speed_of_draining_is_an_option_and_may_be_nought(lab: Lab) -> None:
+    fast = lab.watch(await lab.make(ArtSimBattery, option("drain", 4)))
+    never = lab.watch(await lab.make(ArtSimBattery, option("drain", 0), option("level", 42)))
+    await lab.sleep(10.01)
+    assert fast.holds("battery") == [(60,)]
+    assert never.values("battery") == [(42,)]
+
+
+def test_a_robots_battery_is_shown_charges_in_the_dock_and_is_waited_for() -> None:
+    world = """
+name: dock
+bounds: {from: [-3, -3], to: [3, 3]}
+docks:
+  - {name: dock, x: 1, y: 0, yaw_degrees: 0, radius: 0.25}
+robots:
+  - name: turtlebot
+    pose: {x: 0, y: 0, yaw_degrees: 0}
+    battery: {level: 22, drain_per_second: 0.3, charge_per_second: 5}
+"""
+
+    async def body(lab: Lab) -> None:
+        battery = await lab.make(ArtSimBattery, option("source", "robot"))
+        watcher = lab.watch(battery)
+        assert watcher.held == {}
+        out = Out()
+        await lab.do(battery, "getCurrentBattery", out)
+        assert out.value == 21
+        assert watcher.values("diagnostics") == [(MEDIUM,)]
+        failed = await lab.call(battery, "operationRecharge")
+        assert failed.reason == "not_docked"
+        assert 5 <= lab.clock.elapsed < 6.5
+        await lab.sleep(3)
+        assert watcher.holds("diagnostics") == [(LOW,)]
+        motion = await lab.make(ArtCmdVelMuxAndOdometry)
+        await lab.do(motion, "driveTo", 1, 0)
+        begin = lab.clock.elapsed
+        await lab.do(battery, "operationRecharge")
+        assert lab.clock.elapsed - begin == pytest.approx(16, abs=2)
+        assert watcher.holds("battery") == [(100,)]
+        words = [values[0] for values in watcher.values("diagnostics")]
+        assert words == [MEDIUM, LOW, MEDIUM, FULL]
+        await lab.do(battery, "operationRecharge")
+        await lab.do(motion, "driveTo", 0, 0)
+        await lab.sleep(10)
+        assert watcher.holds("battery")[0][0] in range(90, 99)
+
+    in_lab(body, world)
+
+
+async def test_a_recharge_that_loses_the_dock_fails(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
+    publisher = charge(lab.backend, "/bot/battery_state")
+    publisher(0.3, "CHARGING")
+    charging = lab.begin(battery, "operationRecharge")
+    await lab.sleep(1)
+    publisher(0.4, "CHARGING")
+    await lab.sleep(1.5)
+    assert not charging.done.done()
+    publisher(0.4, "DISCHARGING")
+    await charging.done
+    assert charging.reason == "not_docked"
+    assert lab.clock.elapsed == pytest.approx(3.5, abs=0.6)
+
+
+async def test_a_driver_that_knows_no_status_is_understood_by_its_rising_charge(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
+    publish = charge(lab.backend, "/bot/battery_state")
+    publish(0.9, "UNKNOWN")
+    charging = lab.begin(battery, "operationRecharge")
+    for percent in range(91, 101):
+        await lab.sleep(1)
+        publish(percent / 100, "UNKNOWN")
+    await charging.done
+    assert charging.outcome is not None
+    assert charging.outcome.ok
+    assert lab.clock.elapsed == pytest.approx(10, abs=0.6)
+
+
+async def test_a_driver_that_charges_for_ever_is_full_all_the_same(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, "bot")
+    publish = charge(lab.backend, "/bot/battery_state")
+    publish(1.0, "CHARGING")
+    await lab.do(battery, "operationRecharge")
+    assert lab.clock.elapsed < 7
+
+
+@pytest.mark.parametrize("status", ["CHARGING", "UNKNOWN"])
+async def test_a_battery_that_is_almost_full_is_not_full(lab: Lab, status: str) -> None:
+    """Rounding must not end a charge early."""
+    battery = await lab.make(ArtSimBattery, "bot")
+    watcher = lab.watch(battery)
+    publish = charge(lab.backend, "/bot/battery_state")
+    publish(0.994, status)
+    charging = lab.begin(battery, "operationRecharge")
+    for tenth in range(995, 1000):
+        await lab.sleep(4)
+        publish(tenth / 1000, status)
+    await lab.sleep(4)
+    assert watcher.holds("battery") == [(99,)]
+    assert not charging.done.done()
+    publish(1.0, "FULL")
+    await charging.done
+    assert watcher.holds("battery") == [(100,)]
+
+
+async def test_an_old_battery_is_full_when_its_charge_stops_rising(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, "bot")
+    publish = charge(lab.backend, "/bot/battery_state")
+    publish(0.996, "NOT_CHARGING")
+    await lab.do(battery, "operationRecharge")
+    assert lab.clock.elapsed < 7
+
+
+def charge(backend: Backend, topic: str) -> Any:
+    publisher = backend.publisher(topic, "sensor_msgs/msg/BatteryState")
+
+    def publish(share: float, status: str) -> None:
+        message = publisher.message(percentage=share)
+        message.power_supply_status = getattr(message, f"POWER_SUPPLY_STATUS_{status}")
+        publisher.publish(message)
+
+    return publish
+
+
+async def test_a_battery_of_unknown_charge_is_not_shown(lab: Lab) -> None:
+    battery = await lab.make(ArtSimBattery, option("topic", "power"))
+    watcher = lab.watch(battery)
+    publish = charge(lab.backend, "/power")
+    publish(float("nan"), "DISCHARGING")
+    await lab.sleep(0.1)
+    assert watcher.held == {}
+    assert (await lab.call(battery, "getCurrentBattery", Out())).reason == "no_battery(5)"
+    publish(0.504, "DISCHARGING")
+    await lab.sleep(0.1)
+    assert watcher.holds("battery") == [(50,)]
+    assert watcher.holds("diagnostics") == [(MEDIUM,)]
+
+
+async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab) -> None:
+    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
+    watcher = lab.watch(artifact)
+    tell = charge(lab.backend, "/battery_state")
+    for share in (0.5, -1.0, -0.01, 0.4):
+        tell(share, "DISCHARGING")
+        await lab.sleep(0.1)
+    assert watcher.values("battery") == [(50,), (40,)]
+    assert [(name, *map(str, told)) for name, told in watcher.signals] == [
+        ("bad_message", "/battery_state", 'out_of_range("percentage")')
+    ]
+
+
+async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab) -> None:
+    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
+    watcher = lab.watch(artifact)
+    tell = charge(lab.backend, "/battery_state")
+    for percent in (98.2, 55.0, 19.6, 1.0):
+        tell(percent, "DISCHARGING")
+        await lab.sleep(0.1)
+    assert watcher.values("battery") == [(98,), (55,), (19,), (1,)]
+    assert watcher.values("diagnostics")[-1] == (LOW,)
+    assert len(lab.logged) == 1
+    assert "assuming percent" in lab.logged[0]
+
+
+async def test_the_levels_of_the_diagnoses_are_options(lab: Lab) -> None:
+    watcher = lab.watch(await lab.make(ArtSimBattery, option("medium", 90), option("low", 80)))
+    await lab.sleep(9.5)
+    assert watcher.holds("diagnostics") == [(FULL,)]
+    await lab.sleep(1.0)
+    assert watcher.holds("diagnostics") == [(MEDIUM,)]
+    await lab.sleep(10.0)
+    assert watcher.holds("diagnostics") == [(LOW,)]
+
+
+async def test_a_low_level_above_the_medium_one_is_rejected(lab: Lab) -> None:
+    with pytest.raises(Exception, match=r"low\(60\) is above medium\(50\)"):
+        await lab.make(ArtSimBattery, option("low", 60))
+
+
+async def test_agent_and_page_read_the_charge_of_a_driver_alike(lab: Lab) -> None:
+    seen = SeenRobot("r")
+    publisher = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
+    lab.backend.subscription("/battery_state", "sensor_msgs/msg/BatteryState", seen.hear_battery)
+    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
+    pose = SimpleNamespace(
+        position=SimpleNamespace(x=0.0, y=0.0, z=0.0),
+        orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0),
+    )
+    seen.odometry = SimpleNamespace(header=SimpleNamespace(frame_id="odom"), pose=SimpleNamespace(pose=pose))
+    for told, percent in ((0.5, 50), (1.2, 100), (80.0, 80), (1.4, 1), (1.0, 1)):
+        publisher.publish(publisher.message(percentage=told))
+        await lab.sleep(1.0)
+        assert watcher.holds("battery") == [(percent,)]
+        assert math.floor(seen.view(lab.backend).battery) == percent

@@ -1,0 +1,260 @@
+"""The pure parts: angles, lines, speed profiles and maneuvers, against a small model of a base."""
+
+import math
+
+import pytest
+
+from jacaros.robots.artifacts.approach import Outlook, Step, pulse_for
+from jacaros.robots.artifacts.drive_model import DriveModel, Limits, Velocity
+from jacaros.robots.artifacts.maneuver import (
+    DriveTo,
+    Line,
+    Maneuver,
+    Sequence,
+    Straight,
+    Timed,
+    Turn,
+    TurnTo,
+    bearing,
+    distance,
+    go_to,
+    steer,
+)
+from jacaros.robots.plane.pose import ORIGIN, Pose, normalised
+
+LIMITS = Limits(speed=0.65, turn_speed=1.0)
+TICK = 0.01
+
+
+class Base:
+    """A base with limits, whose commands and odometry are late.
+
+    Args:
+        late: periods of 0.05 s from a command being sent to odometry showing its effect; the half of them each way.
+        sticks: commands below these speeds move nothing.
+        acceleration: the real limit; the robot was declared to have 0.8.
+    """
+
+    def __init__(
+        self,
+        late: int = 1,
+        sticks: Velocity = Velocity(),  # noqa: B008 - frozen
+        acceleration: float = 0.8,
+    ) -> None:
+        self.pose, self.velocity, self.sticks = ORIGIN, Velocity(), sticks
+        self.acceleration = acceleration
+        self.delay = late * 0.05
+        self.now = 0.0
+        self.sent: list[tuple[float, Velocity]] = [(-1.0, Velocity())]
+        self.shown: list[tuple[float, Pose, Velocity]] = []
+        self.model = DriveModel(LIMITS)
+        self.wait(1.0)
+
+    def wait(self, seconds: float) -> None:
+        for _ in range(round(seconds / TICK)):
+            self._step(
+                next(velocity for at, velocity in reversed(self.sent) if at <= self.now - self.delay / 2)
+            )
+            self.now += TICK
+            if round(self.now / TICK) % 5 == 0:
+                self.shown.append((self.now + self.delay / 2, self.pose, self.velocity))
+            while self.shown and self.shown[0][0] <= self.now + 1e-9:
+                _, pose, velocity = self.shown.pop(0)
+                self.model.observed(pose, velocity, self.now, 0.0)
+
+    def drive(self, step: Step) -> None:
+        self.model.commanded(step.velocity, self.now)
+        self.sent.append((self.now, step.velocity))
+        self.wait(step.seconds)
+
+    def _step(self, wanted: Velocity) -> None:
+        def ramp(now: float, wanted: float, most: float) -> float:
+            return now + max(-most, min(most, wanted - now))
+
+        linear = wanted.linear if abs(wanted.linear) >= self.sticks.linear else 0.0
+        angular = wanted.angular if abs(wanted.angular) >= self.sticks.angular else 0.0
+        v = ramp(self.velocity.linear, linear, self.acceleration * TICK)
+        w = ramp(self.velocity.angular, angular, 6.0 * self.acceleration * TICK)
+        middle = self.pose.yaw + 0.5 * w * TICK
+        self.velocity = Velocity(v, w)
+        self.pose = Pose(
+            self.pose.x + v * TICK * math.cos(middle),
+            self.pose.y + v * TICK * math.sin(middle),
+            self.pose.yaw + w * TICK,
+        )
+
+    def outlook(self) -> Outlook:
+        ahead, velocity = self.model.ahead(self.now)
+        return Outlook(self.model, LIMITS, self.now, self.model.pose, ahead, velocity)
+
+    def follow(self, maneuver: Maneuver, seconds: float = 60.0) -> float:
+        """Drive *maneuver* to its end; the seconds it took."""
+        began = self.now
+        maneuver.begin(self.model.pose)
+        while self.now < began + seconds:
+            step = maneuver.command(self.outlook())
+            if step is None:
+                return self.now - began
+            self.drive(step)
+        raise AssertionError(f"no end: {self.pose}")
+
+
+@pytest.mark.parametrize("late", [0, 1, 2, 4])
+@pytest.mark.parametrize("length", [0.05, 0.3, 1, 4, -1])
+def test_a_drive_stops_within_a_centimetre_whatever_the_latency(late: int, length: float) -> None:
+    base = Base(late)
+    base.follow(Straight(length))
+    assert base.pose.x == pytest.approx(length, abs=0.01)
+    assert base.pose.y == pytest.approx(0, abs=0.002)
+
+
+@pytest.mark.parametrize("late", [0, 1, 2, 4])
+@pytest.mark.parametrize("degrees", [3, 90, 180, 540, -90, -720])
+def test_a_turn_stops_within_a_degree_whatever_the_latency(late: int, degrees: float) -> None:
+    base = Base(late)
+    base.follow(Turn(math.radians(degrees)))
+    assert math.degrees(base.pose.yaw) == pytest.approx(degrees, abs=1)
+
+
+@pytest.mark.parametrize("late", [0, 2, 6])
+@pytest.mark.parametrize("stuck", [Velocity(0.019, 0.049), Velocity(0.05, 0.43), Velocity(0.08, 0.7)])
+def test_a_motion_ends_although_wheels_stick_below_a_speed(late: int, stuck: Velocity) -> None:
+    base = Base(late, stuck)
+    base.follow(Straight(1.0))
+    base.follow(Turn(2.0))
+    assert base.pose.x == pytest.approx(1, abs=0.01)
+    assert math.degrees(base.pose.yaw) == pytest.approx(math.degrees(2), abs=1.5)
+
+
+@pytest.mark.parametrize("late", [0, 2, 6])
+@pytest.mark.parametrize("acceleration", [0.1, 0.3, 3.0])
+def test_a_drive_brakes_by_the_acceleration_that_it_has_measured(late: int, acceleration: float) -> None:
+    base = Base(late, acceleration=acceleration)
+    furthest = 0.0
+    maneuver = Straight(2.0)
+    maneuver.begin(base.model.pose)
+    while (step := maneuver.command(base.outlook())) is not None:
+        base.drive(step)
+        furthest = max(furthest, base.pose.x)
+    assert base.pose.x == pytest.approx(2, abs=0.01)
+    assert furthest < 2.05
+    assert base.model.linear.acceleration == pytest.approx(min(0.8, acceleration), rel=0.45)
+
+
+@pytest.mark.parametrize("late", [1, 4, 8, 14])
+def test_the_delay_is_measured_from_commands_and_odometry(late: int) -> None:
+    base = Base(late)
+    base.follow(Straight(1.0))
+    assert base.model.delay == pytest.approx(late * 0.05, abs=0.05)
+
+
+def test_a_robot_whose_delay_is_unknown_does_not_overshoot_a_short_way() -> None:
+    base, furthest = Base(12), 0.0
+    maneuver = Straight(0.1)
+    maneuver.begin(base.model.pose)
+    while (step := maneuver.command(base.outlook())) is not None:
+        base.drive(step)
+        furthest = max(furthest, base.pose.x)
+    assert furthest < 0.12
+
+
+def test_a_drive_takes_hardly_longer_than_the_ramps_allow() -> None:
+    ideal = 2 / 0.65 + 0.65 / 0.8
+    assert Base(1).follow(Straight(2.0)) < ideal + 1.2
+
+
+@pytest.mark.parametrize("goal", [(2, 1), (-1, 0.2), (0.03, 0.03), (0, -2)])
+def test_a_journey_ends_at_point_and_heading(goal: tuple[float, float]) -> None:
+    base = Base(1)
+    base.follow(go_to(*goal, math.radians(170)))
+    assert distance(base.pose, Pose(*goal, 0)) < 0.02
+    assert math.degrees(normalised(base.pose.yaw - math.radians(170))) == pytest.approx(0, abs=1)
+
+
+def test_a_point_at_the_robot_needs_no_motion() -> None:
+    base = Base(1)
+    assert base.follow(DriveTo(0.01, 0.0)) < 0.5
+    assert base.pose == ORIGIN
+
+
+def test_turning_to_a_heading_takes_the_short_way() -> None:
+    base = Base(1)
+    base.follow(Turn(math.radians(170)))
+    maneuver = TurnTo(math.radians(-170))
+    base.follow(maneuver)
+    assert maneuver.covered == pytest.approx(20, abs=1)
+    assert math.degrees(normalised(base.pose.yaw)) == pytest.approx(-170, abs=0.5)
+
+
+def test_the_covered_distance_is_in_metres_and_degrees() -> None:
+    straight, turn, there = Straight(-1.0), Turn(2.0), DriveTo(1.0, 1.0)
+    for maneuver in (straight, turn, there):
+        Base(1).follow(maneuver)
+    assert straight.covered == pytest.approx(1, abs=0.01)
+    assert turn.covered == pytest.approx(math.degrees(2), abs=1)
+    assert there.covered == pytest.approx(math.sqrt(2), abs=0.02)
+    journey = Sequence(DriveTo(1.0, 0.0), TurnTo(1.0))
+    Base(1).follow(journey)
+    assert journey.covered == pytest.approx(1, abs=0.02)
+
+
+def test_a_drive_by_time_gives_its_commands_and_ends() -> None:
+    timed = Timed(Velocity(2.0, 0.0), 3)
+    timed.begin(ORIGIN)
+    commands = [timed.command(Base().outlook()) for _ in range(4)]
+    assert commands == [Step(Velocity(0.65, 0.0), 0.1)] * 3 + [None]
+
+
+def test_a_line_tells_along_and_aside() -> None:
+    line = Line(Pose(1, 1, math.pi / 2), 2.0)
+    assert line.along(Pose(0, 2, 0)) == pytest.approx(1)
+    assert line.aside(Pose(0, 2, 0)) == pytest.approx(1)
+    assert line.remaining(Pose(0, 2, 0)) == pytest.approx(1)
+    assert bearing(Pose(1, 1, 0), 0, 1) == pytest.approx(math.pi)
+
+
+def test_speed_rises_by_the_acceleration_and_never_passes_the_cruise_speed() -> None:
+    base, before = Base(0), 0.0
+    maneuver = Straight(3.0)
+    maneuver.begin(base.model.pose)
+    for _ in range(60):
+        step = maneuver.command(base.outlook())
+        assert step is not None
+        assert before - 0.05 < step.velocity.linear <= min(0.65, before + 0.04 + 1e-9)
+        before = step.velocity.linear
+        base.drive(step)
+    assert before == 0.65
+
+
+def test_a_robot_past_its_goal_comes_back() -> None:
+    base = Base(1)
+    maneuver = Straight(0.2)
+    maneuver.begin(base.model.pose)
+    base.pose = Pose(0.3, 0.0, 0.0)
+    base.wait(0.2)
+    while (step := maneuver.command(base.outlook())) is not None:
+        assert step.velocity.linear <= 0.0
+        base.drive(step)
+    assert base.pose.x == pytest.approx(0.2, abs=0.006)
+
+
+@pytest.mark.parametrize(
+    ("rest", "speed"), [(0.001, 0.0), (0.01, 0.0), (0.2, 0.0), (0.01, 0.05), (0.3, 0.08)]
+)
+def test_a_pulse_moves_a_robot_by_the_rest(rest: float, speed: float) -> None:
+    seconds = pulse_for(rest, speed, 0.1, 0.8)
+    way = now = 0.0
+    while now < seconds or speed > 0.0:
+        wanted = 0.1 if now < seconds else 0.0
+        speed += max(-0.8e-4, min(0.8e-4, wanted - speed))
+        way, now = way + speed * 1e-4, now + 1e-4
+    assert way == pytest.approx(rest, rel=0.01, abs=1e-4)
+
+
+def test_a_robot_beside_its_line_is_steered_back_in_both_directions() -> None:
+    line = Line(ORIGIN, 2.0)
+    left = Pose(0.5, 0.1, 0.0)
+    assert steer(line, left, 0.3, 0.0, 1.0) < 0.0
+    assert steer(line, left, -0.3, 0.0, 1.0) > 0.0
+    assert abs(steer(line, left, 0.3, 1.0, 1.0)) < abs(steer(line, left, 0.3, 0.0, 1.0))
+    assert steer(line, Pose(1.99, 0.1, 0.0), 0.3, 0.0, 1.0) == 0.0

@@ -1,0 +1,161 @@
+"""The edges of readings, goals, units and maps: NaN, ages, waits, ranges, late clocks, names that are used twice."""
+
+import math
+
+import pytest
+from fake_actions import FakeServer
+from navigator import Navigator, failed, succeeded, suspended
+from robot_lab import Lab
+
+from jacaros.artifacts import Out, Structure
+from jacaros.artifacts.streams import ReadingPolicy
+from jacaros.robots.kit.faults import Faults, Stamps
+from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
+from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
+from jacaros.robots.map.mapper import Localisation
+from jacaros.robots.mapping.decoding import Values, converted, extractor
+from jacaros.robots.mapping.fields import Conversion, Line, conversion
+from jacaros.robots.mapping.file import read_mapping
+from jacaros.robots.mapping.interfaces import stored_interfaces
+from jacaros.robots.plane.pose import Pose
+from jacaros.runtime.clock import VirtualClock, run
+
+
+def test_a_number_that_appears_or_disappears_differs_whatever_the_dead_band_is() -> None:
+    policy = ReadingPolicy(dead_band=10.0, finite=False)
+    assert policy.differ((1.0,), (math.nan,))
+    assert policy.differ((math.nan,), (1.0,))
+    assert not policy.differ((1.0,), (2.0,))
+    assert not policy.differ((float("nan"),), (float("nan"),))
+
+
+def test_values_that_are_confirmed_in_time_do_not_expire() -> None:
+    clock = VirtualClock()
+    withdrawn: list[float] = []
+    delivered: list[float] = []
+
+    async def main() -> None:
+        reading = Reading(
+            ReadingPolicy(expire=1.0),
+            clock,
+            lambda values, cause: delivered.append(clock.elapsed),
+            on_withdraw=lambda: withdrawn.append(round(clock.elapsed, 6)),
+        )
+        for _ in range(8):
+            reading.take((1.0,))
+            await clock.sleep(0.6)
+        assert withdrawn == []
+        await clock.sleep(5.0)
+        reading.close()
+
+    run(main, clock)
+    assert withdrawn == [pytest.approx(7 * 0.6 + 1.0)]
+    assert len(delivered) == 1
+
+
+def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longest_wait() -> None:
+    clock = VirtualClock()
+    delivered: list[tuple[float, Values]] = []
+
+    async def main() -> None:
+        reading = Reading(
+            ReadingPolicy(latest_only=True),
+            clock,
+            lambda values, cause: delivered.append((round(clock.elapsed, 1), values)),
+            behind=lambda: True,
+        )
+        for count in range(30):
+            reading.take((count,))
+            await clock.sleep(0.1)
+        reading.close()
+
+    run(main, clock)
+    assert [moment for moment, _ in delivered] == pytest.approx([LONGEST_WAIT, 2 * LONGEST_WAIT], abs=0.25)
+
+
+def test_an_element_at_the_edge_of_the_view_is_in_view() -> None:
+    seen: list[list[Values]] = []
+    view = RangeOfView(1.0, lambda elements, cause: seen.append(elements))
+    view.stand(0.0, 0.0)
+    view.take([(1.0, 0.0), (0.0, -1.0), (1.001, 0.0)])
+    assert seen == [[(1.0, 0.0), (0.0, -1.0)]]
+
+
+async def test_the_time_that_a_server_takes_to_accept_counts_towards_the_timeout(lab: Lab) -> None:
+    server = FakeServer(lab)
+    server.accepting = 2.0
+    artifact = await lab.make(Navigator, Structure("timeout", (3,)))
+    going = lab.begin(artifact, "go", 3, Out())
+    await failed(going, "timeout(3)")
+    assert lab.clock.elapsed == pytest.approx(3.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("option", "resumes"), [("mute_pause", 1), ("refuse_pause", 0)])
+async def test_a_server_that_may_be_paused_is_resumed_and_one_that_refused_is_not(
+    lab: Lab, option: str, resumes: int
+) -> None:
+    server, going = await suspended(lab, "goOrWait", Structure(option, (1,)))
+    await lab.sleep(1)
+    going.execution.resume()
+    await lab.sleep(1)
+    server.goals[1].end()
+    await succeeded(going)
+    assert sum(line.endswith("] resume") for line in lab.logged) == resumes
+
+
+def test_a_conversion_of_units_is_followed_by_scale_and_offset() -> None:
+    both = conversion("kelvin", "celsius").then(Line(1.8, 32.0))
+    assert both.there(300.0) == pytest.approx(80.33)
+    assert both.back(80.33) == pytest.approx(300.0)
+
+
+@pytest.mark.parametrize(("share", "percent"), [(0.57, 57), (0.5699, 56), (1.0, 100), (0.0, 0)])
+def test_rounding_down_forgives_the_error_of_a_multiplication(share: float, percent: int) -> None:
+    down = converted(Conversion(line=Line(100.0), digits=0, floor=True))
+    assert down(share) == percent
+
+
+def test_an_echo_too_close_to_measure_has_the_least_range_and_none_the_greatest() -> None:
+    text = "properties: {r: {topic: t, fields: [{path: ranges, sample: 5, otherwise: range_max}]}}"
+    part = read_mapping(text).artifacts["mapping"].properties[0]
+    extract = extractor(part, "sensor_msgs/msg/LaserScan", stored_interfaces(), [])
+    assert extract is not None
+    ranges = [-math.inf, 1.0, math.inf, 2.0, math.nan]
+    message = stored_interfaces().message(
+        "sensor_msgs/msg/LaserScan", ranges=ranges, range_min=0.125, range_max=8.0
+    )
+    [row] = extract(message)
+    assert row.values == (0.125, 1.0, 8.0, 2.0, 8.0)
+
+
+def test_operations_may_share_the_name_of_their_feedback_but_not_that_of_a_property() -> None:
+    go = "{{action: {0}, type: nav2_msgs/action/NavigateToPose, feedback: {{left: {{fields: [distance_remaining]}}}}}}"
+    both = f"operations:\n  a: {go.format('x')}\n  b: {go.format('y')}\n"
+    read_mapping(both)
+    with pytest.raises(Exception, match="has the same name as the property"):
+        read_mapping(f"properties: {{left: {{topic: t}}}}\n{both}")
+
+
+def test_messages_with_equal_stamps_are_not_taken_for_late_ones() -> None:
+    clock = VirtualClock()
+    told: list[str] = []
+    stamps = Stamps(Faults("/t", lambda why, text: told.append(text)), clock)
+    assert stamps.accept(1000.0, 0.0)
+    clock.elapsed = 5.0
+    assert stamps.accept(1000.0, 0.0), "such as a latched message that is repeated"
+    assert stamps.late == 0.0
+    assert told == []
+
+
+def test_a_clock_that_was_set_back_begins_a_new_history_of_odometry() -> None:
+    localisation = Localisation()
+    for stamp, x in ((10.0, 1.0), (11.0, 2.0), (5.0, 3.0), (6.0, 4.0)):
+        localisation.take_odometry(stamp, Pose(x, 0.0, 0.0))
+    assert localisation.pose_at(5.5) == Pose(3.5, 0.0, 0.0)
+    assert localisation.pose_at(1.0) == Pose(3.0, 0.0, 0.0), "the oldest of the new history"
+
+
+def test_a_cell_with_an_echo_gains_all_that_an_echo_gives() -> None:
+    cells = OccupancyCells(OBSTACLE, 1.0)
+    cells.add_scan((0.0, 0.0), [(2.0, 0.0)], [(4.0, 0.0)])
+    assert cells.odds[2, 0] == HIT

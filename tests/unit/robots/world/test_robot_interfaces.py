@@ -1,0 +1,195 @@
+"""The names of a robot on the graph: those of its kind, renamed and added to in the world file."""
+
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jacaros.robots.ros.action import GoalStatus
+from jacaros.robots.ros.backend import Backend, GraphContents
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.world import SimNode, World, WorldError
+from jacaros.robots.world.data.robot import ACTIONS, SERVICES, TOPICS
+from jacaros.runtime.cli.main import call
+from jacaros.runtime.clock import VirtualClock, run
+from jacaros.runtime.errors import UsageError
+
+FULL = "robots: [{gripper: true, tools: {mop: {removes: [dust]}}}]\n"
+ROVER = """
+robots:
+  - name: rover
+    kind: turtlebot3
+    namespace: rover
+    topics:
+      scan: front/scan
+      odom: /odometry
+      cmd_vel: base/cmd
+      mobile_base/events/bumper: bumper
+      temperature: {type: sensor_msgs/msg/Temperature, message: {temperature: 21.5}, rate: 2}
+      horn: {type: std_msgs/msg/Bool, receive: true}
+    services:
+      reset: {type: std_srvs/srv/Trigger, response: {success: true, message: done}}
+    actions:
+      navigate_to_pose: go_to
+"""
+
+
+def in_world(text: str, body: Callable[[Backend, SimNode, VirtualClock], Awaitable[Any]]) -> Any:
+    """Run *body* beside a world on the memory graph; return what it returns."""
+    clock = VirtualClock()
+
+    async def main() -> Any:
+        backend = open_backend("memory", clock, "test", log=lambda text: None)
+        await backend.start()
+        node = SimNode(World.load(text), backend, clock)
+        try:
+            node.start()
+            return await body(backend, node, clock)
+        finally:
+            node.close()
+            await backend.close()
+
+    return run(main, clock)
+
+
+async def contents(backend: Backend, node: SimNode, clock: VirtualClock) -> GraphContents:
+    return await backend.contents()
+
+
+def test_a_robot_without_a_kind_has_all_that_can_be_named_in_a_world_file() -> None:
+    found = in_world(FULL, contents)
+    assert set(found.topics) - {"/map", "/tf", "/tf_static"} == {f"/{name}" for name in TOPICS}
+    assert set(found.actions) == {f"/{name}" for name in ACTIONS}
+    assert set(found.services) - {"/map_server/map"} == {f"/{name}" for name in SERVICES}
+
+
+@pytest.mark.parametrize("kind", ["turtlebot2", "turtlebot3", "turtlebot4"])
+def test_only_the_mapping_of_a_robot_fits_the_robot(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = tmp_path / "world.yaml"
+    world.write_text(f"robots: [{{kind: {kind}}}]\n", encoding="utf-8")
+    fits = {
+        each: call(["ros", "check", f"{each}.yaml", "--world", str(world)]) == 0
+        for each in ("turtlebot2", "turtlebot3", "turtlebot4", "nav2", "move_base")
+    }
+    assert fits == {each: each in (kind, "nav2", "move_base") for each in fits}
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_names_are_replaced_and_added() -> None:
+    found = in_world(ROVER, contents)
+    for name in ("/rover/front/scan", "/odometry", "/rover/base/cmd", "/rover/bumper"):
+        assert name in found.topics
+    for name in ("/rover/scan", "/rover/odom", "/rover/cmd_vel", "/rover/mobile_base/events/cliff"):
+        assert name not in found.topics
+    assert "/rover/go_to" in found.actions
+    assert "/rover/navigate_to_pose" not in found.actions
+    assert found.topics["/rover/temperature"].types == ("sensor_msgs/msg/Temperature",)
+
+
+def test_a_renamed_robot_obeys_its_own_topic_and_its_navigation_uses_it() -> None:
+    async def body(backend: Backend, node: SimNode, clock: VirtualClock) -> None:
+        backend.subscription("/odometry", "nav_msgs/msg/Odometry", lambda sample: seen.append(sample.message))
+        publisher = backend.publisher("/rover/base/cmd", "geometry_msgs/msg/Twist")
+        publisher.publish({"linear": {"x": 0.2}})
+        await clock.sleep(0.5)
+        assert seen[-1].pose.pose.position.x > 0.0
+        client = backend.action_client("/rover/go_to", "nav2_msgs/action/NavigateToPose")
+        pose = {
+            "header": {"frame_id": "rover/map"},
+            "pose": {"position": {"x": 0.5}, "orientation": {"w": 1.0}},
+        }
+        goal = await client.send({"pose": pose}, timeout=5.0)
+        assert (await goal.outcome(60.0)).status is GoalStatus.SUCCEEDED
+        assert node.world.robot("rover").x == pytest.approx(0.5, abs=0.06)
+
+    seen: list[Any] = []
+    in_world(ROVER, body)
+
+
+def test_added_topics_are_published_and_received_and_added_services_answer() -> None:
+    async def body(backend: Backend, node: SimNode, clock: VirtualClock) -> None:
+        backend.subscription(
+            "/rover/temperature", "sensor_msgs/msg/Temperature", lambda sample: warm.append(sample.message)
+        )
+        await clock.sleep(5.02)
+        assert {message.temperature for message in warm} == {21.5}
+        assert len(warm) == 10
+        assert {message.header.frame_id for message in warm} == {"rover/base_link"}
+        backend.publisher("/rover/horn", "std_msgs/msg/Bool").publish({"data": True})
+        await clock.sleep(0.1)
+        (event,) = node.world.ground_truth.events_of("received", robot="rover")
+        assert event.data == {"topic": "/rover/horn", "message": {"data": True}}
+        answer = await backend.client("/rover/reset", "std_srvs/srv/Trigger").call({}, 2.0)
+        assert (answer.success, answer.message) == (True, "done")
+
+    warm: list[Any] = []
+    in_world(ROVER, body)
+
+
+def test_names_may_be_exchanged() -> None:
+    text = "robots: [{topics: {imu: sonar, sonar: imu}}]\n"
+    found = in_world(text, contents)
+    assert found.topics["/sonar"].types == ("sensor_msgs/msg/Imu",)
+    assert found.topics["/imu"].types == ("sensor_msgs/msg/Range",)
+
+
+@pytest.mark.parametrize(
+    ("entry", "problem", "help"),
+    [
+        ("topics: {scn: x}", "2:15: error: unknown name in 'topics': `scn`", "did you mean `scan`?"),
+        (
+            "topics: {horn: x}",
+            "2:15: error: unknown name in 'topics': `horn`",
+            "`horn: {type: PACKAGE/msg/TYPE}`",
+        ),
+        (
+            "services: {rest: x}",
+            "2:17: error: unknown name in 'services': `rest`",
+            "`rest: {type: PACKAGE/srv/TYPE}`",
+        ),
+        ("actions: {dok: x}", "2:16: error: unknown name in 'actions': `dok`", "did you mean `dock`?"),
+        ("actions: {fly: {type: a}}", "2:16: error: unknown name in 'actions': `fly`", "known names: dock, "),
+        (
+            "topics: {scan: odom}",
+            "2:21: error: `odom` is also the name of `odom`",
+            "give one of them another name",
+        ),
+        ("topics: {scan: a b}", "2:21: error: 'a b' is not a ROS name", "front/scan"),
+        ("topics: {scan: 3}", "2:21: error: 'scan' must be a text, not 3", "put it in quotes"),
+        (
+            "topics: {t: {type: std_msgs/Bool}}",
+            "2:25: error: 'std_msgs/Bool' is not a type",
+            "PACKAGE/msg/TYPE",
+        ),
+        ("topics: {t: {rate: 1}}", "2:18: error: 't' lacks the key 'type'", "add 'type: ...'"),
+        ("topics: {t: {type: a/msg/B, rate: 30}}", "2:40: error: 'rate' is 30, but must", ""),
+        (
+            "topics: {t: {type: a/msg/B, receive: true, rate: 1}}",
+            "2:55: error: a topic that is received has no 'rate'",
+            "remove 'rate', or 'receive'",
+        ),
+        ("services: {t: {typ: a/srv/B}}", "2:21: error: 't' has no key 'typ'", "did you mean `type`?"),
+    ],
+)
+def test_mistakes_are_reported_with_their_place(entry: str, problem: str, help: str) -> None:
+    with pytest.raises(WorldError) as wrong:
+        World.load(f"robots:\n  - {{{entry}}}\n")
+    assert f"world:{problem}" in str(wrong.value)
+    assert help in str(wrong.value)
+
+
+@pytest.mark.parametrize(
+    ("entry", "problem"),
+    [
+        ("topics: {t: {type: std_msgs/msg/Bool, message: {dat: 1}}}", "has no field 'dat'"),
+        ("topics: {t: {type: no_msgs/msg/Such}}", "no_msgs/msg/Such"),
+        ("services: {t: {type: std_srvs/srv/Trigger, response: {succes: true}}}", "has no field 'succes'"),
+    ],
+)
+def test_a_type_that_does_not_fit_ends_the_start_with_the_name(entry: str, problem: str) -> None:
+    with pytest.raises(UsageError, match="`t` of the robot `turtlebot`") as wrong:
+        in_world(f"robots:\n  - {{{entry}}}\n", contents)
+    assert problem in str(wrong.value)

@@ -1,0 +1,151 @@
+"""What a robot of the world does at the edges: walls, docks, doors, gaps, and other robots beside it."""
+
+import math
+from typing import Any
+
+import pytest
+from navigation_lab import Lab, in_world
+
+from jacaros.robots.plane.pose import Placement
+from jacaros.robots.plane.shapes import Rectangle, Segment
+from jacaros.robots.ros.action import GoalStatus
+from jacaros.robots.ros.open import open_backend
+from jacaros.robots.world import SimNode, World
+from jacaros.robots.world.data.grid import Grid
+from jacaros.robots.world.data.world import WorldDescription
+from jacaros.robots.world.navigation.driver import Driver, Pace, Route
+from jacaros.robots.world.navigation.planner import GOAL_OCCUPIED, NavigationFailure, Planner
+from jacaros.runtime.clock import VirtualClock, run
+
+RADIUS = 0.17
+
+
+def drive(world: World, seconds: float, speed: float, turn_rate: float = 0.0) -> None:
+    for _ in range(round(seconds * 10)):
+        world.command(world.robot().name, speed, turn_rate)
+        world.run(0.1)
+
+
+@pytest.mark.parametrize("speed", [0.3, -0.3])
+def test_wheels_that_stall_at_a_wall_are_not_counted(speed: float) -> None:
+    world = World.load("bounds: {from: [-1, -1], to: [1, 1]}\nborder: walls\nrobots: [{}]\n")
+    drive(world, 10.0, speed)
+    robot = world.robot()
+    assert abs(robot.x) == pytest.approx(1.0 - RADIUS, abs=1e-6)
+    assert robot.odometry.x == pytest.approx(robot.x, abs=0.01)
+    assert robot.odometer == pytest.approx(abs(robot.x), abs=0.01)
+
+
+def test_a_robot_whose_wheels_are_both_blocked_stays_whatever_the_commands_are() -> None:
+    world = World.load("patrol", faults="faults:\n  f: {kind: blocked_wheel, wheel: both, at: 0}\n")
+    before = world.robot().pose
+    for turn_rate in (0.0, 1.0, -1.0):
+        drive(world, 1.0, 0.3, turn_rate)
+        assert world.robot().pose == before
+
+
+def test_a_robot_that_spins_in_a_dock_is_not_docked_until_it_stands() -> None:
+    world = World.load("house")
+    world.robot().put_down(world.description.docks[0].pose)
+    drive(world, 2.0, 0.0, 2.0)
+    assert world.robot().dock is None
+    drive(world, 2.0, 0.0)
+    assert world.robot().dock is not None
+
+
+def test_a_door_does_not_close_on_a_person() -> None:
+    world = World.load(
+        "size: [6, 6]\n"
+        "doors: [{name: gate, segment: [[1, -0.5], [1, 0.5]], open: true}]\n"
+        "people: [{name: ann, path: [[1, 0]]}]\n"
+        "robots: [{pose: {x: -2, y: 0}}]\n"
+    )
+    assert world.move_door("gate", False) == "ann is in the way"
+    assert world.doors["gate"]
+    world.remove_person("ann")
+    assert world.move_door("gate", False) is None
+
+
+def test_an_acceleration_is_not_computed_over_a_gap_of_messages() -> None:
+    clock, world = VirtualClock(), World.load("empty", noise=0.0)
+    messages: list[Any] = []
+
+    async def main() -> None:
+        backend = open_backend("memory", clock, "test")
+        await backend.start()
+        node = SimNode(world, backend, clock)
+        node.start()
+        wheels = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
+
+        async def roll(seconds: float, speed: float) -> None:
+            for _ in range(round(10 * seconds)):
+                wheels.publish({"linear": {"x": speed}})
+                await clock.sleep(0.1)
+
+        first = backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: None)
+        await roll(0.5, 0.0)
+        first.close()
+        await roll(3.0, 0.4)
+        backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: messages.append(sample.message))
+        await roll(0.5, 0.4)
+        node.close()
+        await backend.close()
+
+    run(main, clock)
+    assert messages
+    assert [message.linear_acceleration.x for message in messages] == pytest.approx(
+        [0.0] * len(messages), abs=1e-9
+    )
+
+
+def planner(*walls: Segment) -> Planner:
+    bounds = Rectangle(-2.0, -2.0, 2.0, 2.0)
+    return Planner(Grid(WorldDescription(bounds=bounds, segments=walls)), RADIUS)
+
+
+def test_a_goal_that_leaves_less_than_a_margin_to_the_wall_is_refused() -> None:
+    across = Segment(-2.0, 0.0, 2.0, 0.0)
+    with pytest.raises(NavigationFailure) as failure:
+        planner(across).plan((0.0, -1.0), (0.0, -RADIUS - 0.02))
+    assert failure.value.code == GOAL_OCCUPIED
+    assert planner(across).plan((0.0, -1.0), (0.0, -RADIUS - 0.05))
+
+
+@pytest.mark.parametrize(("beside", "speed"), [(0.48, 0.2), (0.9, 0.4)])
+def test_a_robot_passes_another_slowly_unless_it_is_far(beside: float, speed: float) -> None:
+    driver = Driver(planner(), Pace(0.4, 1.5, 0.4))
+    route = Route([(-1.5, 0.0), (1.5, 0.0)])
+    here = Placement.at(-1.5, 0.0, 0.0)
+    for _ in range(20):  # it accelerates with what it sees ahead
+        command = driver.command(here, route, [(-1.4, beside, RADIUS)])
+    assert command.speed == pytest.approx(speed)
+
+
+def test_a_robot_with_a_wall_behind_it_leaves_its_dock_forwards() -> None:
+    text = (
+        "size: [6, 6]\n"
+        "walls: [{segment: [[-0.2, -1], [-0.2, 1]]}]\n"
+        "docks: [{name: dock, x: 0, y: 0}]\n"
+        "robots: [{pose: {x: 0, y: 0}}]\n"
+    )
+
+    async def body(lab: Lab) -> None:
+        await lab.clock.sleep(1.0)
+        assert lab.world.robot().dock is not None
+        outcome = await lab.do("/undock_robot", "nav2_msgs/action/UndockRobot")
+        assert outcome.status is GoalStatus.SUCCEEDED
+        assert lab.world.robot().x > 0.3
+
+    in_world(text, body)
+
+
+def test_a_fault_that_is_begun_on_request_ends_after_its_time() -> None:
+    world = World.load("house", faults="faults:\n  oil: {kind: wheel_slip, share: 0.3, for: 2}\n")
+    world.run(1.0)
+    assert world.faults.begin("oil") is None
+    world.run(1.9)
+    assert world.faults.at_work == ["oil"]
+    world.run(0.2)
+    assert world.faults.at_work == []
+    assert [round(event.time, 2) for event in world.ground_truth.events_of("fault")] == [1.0, 3.0]
+    assert math.isinf(world.faults.next)

@@ -1,0 +1,19 @@
+"""Calls of commands."""
+
+import pytest
+from command_lab import Outcome
+
+from jacaros.runtime.cli.main import call
+
+
+@pytest.fixture
+def outcome(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str]) -> Outcome:
+    """Calls a command, after the words in ``COMMAND`` of the test's module."""
+    command = getattr(request.module, "COMMAND", ())
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        code = call([*command, *arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run

@@ -1,0 +1,161 @@
+"""``jacaros describe``: artifact types, files of them, and projects, for people and for programs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from jacaros.runtime.cli.main import call
+
+ARTIFACTS = '''
+"""Artifacts of a test."""
+
+from jacaros.artifacts import Artifact, Out, link, operation
+
+
+class Lamp(Artifact):
+    """A lamp.
+
+    Properties:
+        power(Watts): what it takes.
+    """
+
+    ports = ("socket",)
+
+    def init(self, watts: int = 40):
+        self.define_property("power", watts)
+        self.define_property("lit", False)
+
+    @operation(name="switch", guard="has_power")
+    def set_light(self, on: bool, old: Out):
+        """Switch it."""
+        self.signal("switched", on)
+
+    def has_power(self):
+        return True
+
+    @link
+    def cut(self):
+        """Take its power away."""
+
+
+class Bare(Artifact):
+    pass
+'''
+LAMP = """\
+Lamp
+  A lamp.
+made with:
+  init(watts: an integer (optional))
+properties:
+  power(Watts)
+      what it takes.
+  lit(_)
+signals:
+  switched(on)
+operations:
+  switch(on: true or false, -old)  [may wait]
+      Switch it.
+linked operations:
+  cut()
+      Take its power away.
+out ports: socket
+"""
+BARE = "Bare\nmade with:\n  init()\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
+    (tmp_path / "empty.py").write_text("from artifacts import Lamp\n", encoding="utf-8")
+    (tmp_path / "bob.asl").write_text("!go. +!go <- .print(hi).", encoding="utf-8")
+    (tmp_path / "house.jcm").write_text(
+        "mas house {\n  agent bob\n  workspace w {\n    artifact lamp: Lamp(60)\n    artifact odd: Lump\n"
+        "    artifact b: Blackboard\n  }\n}\n",
+        encoding="utf-8",
+    )
+    return tmp_path
+
+
+def described(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert call(["describe", *arguments]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    return captured.out
+
+
+def test_a_type_of_the_project_is_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert described(capsys, "Lamp") == LAMP
+    assert described(capsys, "Lamp", "--project", str(folder)) == LAMP
+
+
+def test_descriptions_have_no_backquotes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said = described(capsys, "nav2.yaml")
+    assert 'such as "robot_1", rate(5)' in said
+    assert "`" not in said
+
+
+def test_all_types_of_a_file_are_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert described(capsys, "artifacts.py") == f"{LAMP}\n{BARE}"
+
+
+def test_a_project_is_described_with_its_types(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output = described(capsys, "house.jcm")
+    assert "  workspace w\n    artifact lamp: Lamp\n" in output
+    assert "    artifact odd: Lump (unknown artifact type `Lump`; did you mean `Lamp`?)\n" in output
+    assert f"\n\n{LAMP}\nBlackboard\n  A tuple space" in output
+    assert output.endswith(f"\n{BARE}")
+
+
+def test_a_program_without_a_project_is_described_with_neighbouring_types(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = described(capsys, "bob.asl")
+    assert "  agent bob: bob.asl\n" in output
+    assert LAMP in output
+
+
+def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tools = folder / "src" / "env" / "tools"
+    tools.mkdir(parents=True)
+    (tools / "lights.py").write_text(ARTIFACTS, encoding="utf-8")
+    (folder / "hall.jcm").write_text(
+        "mas hall {\n  agent bob\n  workspace w {\n    artifact lamp: tools.Lamp(60)\n    artifact odd: tools.Lomp\n"
+        "  }\n}\n",
+        encoding="utf-8",
+    )
+    output = described(capsys, "hall.jcm")
+    assert "    artifact lamp: tools.Lamp\n" in output
+    assert "`tools.Lomp`; did you mean `tools.Lamp`" in output
+    assert LAMP in output
+
+
+def test_json_output_is_complete(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lamp = json.loads(described(capsys, "Lamp", "--json"))
+    assert lamp["type_name"] == "Lamp"
+    assert "on: true or false" in lamp["operations"][0]["usage"]
+    assert [each["name"] for each in lamp["properties"]] == ["power", "lit"]
+    assert [each["type_name"] for each in json.loads(described(capsys, "artifacts.py", "--json"))] == [
+        "Lamp",
+        "Bare",
+    ]
+    house = json.loads(described(capsys, "house.jcm", "--json"))
+    assert house["agents"][0]["name"] == "bob"
+    assert house["workspaces"][0]["artifacts"][0] == {"name": "lamp", "type": "Lamp"}
+    assert {each["type_name"] for each in house["types"]} == {"Lamp", "Blackboard", "Bare"}
+
+
+@pytest.mark.parametrize(
+    ("what", "told"),
+    [
+        ("Lump", "unknown artifact type `Lump`; did you mean `Lamp`?"),
+        ("nothing.py", "file not found: `nothing.py`"),
+        ("empty.py", "no artifact type in `empty.py`"),
+    ],
+)
+def test_unknown_types_and_files_are_reported(
+    folder: Path, capsys: pytest.CaptureFixture[str], what: str, told: str
+) -> None:
+    assert call(["describe", what]) == 2
+    assert told in capsys.readouterr().err
