@@ -14,6 +14,7 @@ from jacaros.robots.registry import BUILT_IN
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.world import SimNode, World
 from jacaros.runtime.clock import VirtualClock, run
+from played import played
 
 
 async def used_by_agents(lab: Lab) -> set[str]:
@@ -52,32 +53,28 @@ def below(namespace: str, body: Callable[[Lab], Awaitable[None]]) -> Lab:
     return labs[0]
 
 
-def test_a_built_in_artifact_drives_the_robot_of_the_node() -> None:
-    async def body(lab: Lab) -> None:
-        await lab.do(await lab.make(ArtCmdVel), "moveForward", 1)
-        assert math.hypot(*lab.pose("robot_1")[:2]) == pytest.approx(1.0, abs=0.02)
-
-    below("robot_1", body)
+@played(below, "robot_1")
+async def test_a_built_in_artifact_drives_the_robot_of_the_node(lab: Lab) -> None:
+    await lab.do(await lab.make(ArtCmdVel), "moveForward", 1)
+    assert math.hypot(*lab.pose("robot_1")[:2]) == pytest.approx(1.0, abs=0.02)
 
 
 @pytest.mark.parametrize("name", sorted(BUILT_IN))
-def test_every_topic_of_a_built_in_artifact_is_below_the_namespace_of_the_node(name: str) -> None:
-    async def body(lab: Lab) -> None:
-        options = [Structure("source", (Atom("robot"),))] if name == "ArtSimBattery" else []
-        await lab.make(BUILT_IN[name], *options)
-        assert all(each.startswith("/robot_1/") for each in await used_by_agents(lab))
+@played(below, "robot_1")
+async def test_every_topic_of_a_built_in_artifact_is_below_the_namespace_of_the_node(
+    lab: Lab, name: str
+) -> None:
+    options = [Structure("source", (Atom("robot"),))] if name == "ArtSimBattery" else []
+    await lab.make(BUILT_IN[name], *options)
+    assert all(each.startswith("/robot_1/") for each in await used_by_agents(lab))
 
-    below("robot_1", body)
 
-
-def test_the_name_of_a_robot_is_below_the_namespace_of_the_node() -> None:
-    async def body(lab: Lab) -> None:
-        await lab.make(ArtOdometry, "r2")
-        assert await used_by_agents(lab) == {"/fleet/r2/odom"}
-        await lab.make(ArtOdometry, "r2", Structure("topic", ("/odom",)))
-        assert await used_by_agents(lab) == {"/fleet/r2/odom", "/odom"}
-
-    below("fleet", body)
+@played(below, "fleet")
+async def test_the_name_of_a_robot_is_below_the_namespace_of_the_node(lab: Lab) -> None:
+    await lab.make(ArtOdometry, "r2")
+    assert await used_by_agents(lab) == {"/fleet/r2/odom"}
+    await lab.make(ArtOdometry, "r2", Structure("topic", ("/odom",)))
+    assert await used_by_agents(lab) == {"/fleet/r2/odom", "/odom"}
 
 
 def test_a_missing_topic_suggests_the_one_of_the_same_type() -> None:

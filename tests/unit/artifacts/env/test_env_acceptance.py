@@ -15,6 +15,7 @@ from jacaros.agents.body.values import References, to_term, to_value
 from jacaros.artifacts import Artifact, Atom, Out, Structure, operation, plain
 from jacaros.artifacts.env.values import equal
 from jacaros.artifacts.kernel.acceptance import Unsuitable, kind_of
+from stage_lab import play
 
 
 class Mode(enum.Enum):
@@ -178,7 +179,7 @@ class Typed(Artifact):
         self.log(f"{pose} {speeds} {mode}")
 
 
-def test_an_operation_fails_with_a_message_that_names_the_parameter(play):
+def test_an_operation_fails_with_a_message_that_names_the_parameter():
     async def scene(stage):
         typed = await stage.make(Typed)
         at = Structure("pose", (1, 2))

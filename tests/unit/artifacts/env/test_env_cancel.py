@@ -3,6 +3,8 @@
 import asyncio
 
 from jacaros.artifacts import Artifact, operation
+from played import played
+from stage_lab import play
 
 
 class Robot(Artifact):
@@ -87,212 +89,186 @@ def robot_of(stage):
     return stage.make(Kept)
 
 
-def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        watcher = stage.watch(robot)
-        move = stage.call(robot, "move", 10)
-        await stage.clock.sleep(2.5)
-        watcher.take()
-        move.execution.cancel()
-        await stage.clock.sleep(0.1)
-        assert commands(stage) == ["go", "go", "go", "stop"]
-        assert watcher.take() == ["-moving(True) +moving(False)"]
-        assert move.execution.ended
-        await stage.clock.sleep(20.0)
-        assert state(stage, robot) == (False, 2)
-        assert move.outcome is None, "no outcome is reported"
-
-    play(scene)
+@played(play)
+async def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(stage):
+    robot = await robot_of(stage)
+    watcher = stage.watch(robot)
+    move = stage.call(robot, "move", 10)
+    await stage.clock.sleep(2.5)
+    watcher.take()
+    move.execution.cancel()
+    await stage.clock.sleep(0.1)
+    assert commands(stage) == ["go", "go", "go", "stop"]
+    assert watcher.take() == ["-moving(True) +moving(False)"]
+    assert move.execution.ended
+    await stage.clock.sleep(20.0)
+    assert state(stage, robot) == (False, 2)
+    assert move.outcome is None, "no outcome is reported"
 
 
-def test_cancelling_twice_or_after_the_end_has_no_effect(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 1)
-        await move.wait()
-        move.execution.cancel()
-        second = stage.call(robot, "slow_end")
-        await stage.clock.sleep(1.0)
-        second.execution.cancel()
-        second.execution.cancel()
-        await stage.clock.sleep(0.1)
-        second.execution.cancel()
-        await stage.clock.sleep(1.0)
-        assert state(stage, robot) == (False, 2), "finally has run"
-        ping = stage.call(robot, "ping")
-        ping.execution.cancel()
-        assert ping.ok
-
-    play(scene)
+@played(play)
+async def test_cancelling_twice_or_after_the_end_has_no_effect(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 1)
+    await move.wait()
+    move.execution.cancel()
+    second = stage.call(robot, "slow_end")
+    await stage.clock.sleep(1.0)
+    second.execution.cancel()
+    second.execution.cancel()
+    await stage.clock.sleep(0.1)
+    second.execution.cancel()
+    await stage.clock.sleep(1.0)
+    assert state(stage, robot) == (False, 2), "finally has run"
+    ping = stage.call(robot, "ping")
+    ping.execution.cancel()
+    assert ping.ok
 
 
-def test_an_operation_cancelled_before_its_first_step_never_begins(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 1)
-        move.execution.cancel()
-        await stage.clock.sleep(5.0)
-        assert (commands(stage), move.outcome) == ([], None)
-        assert move.execution.ended
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_an_operation_cancelled_before_its_first_step_never_begins(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 1)
+    move.execution.cancel()
+    await stage.clock.sleep(5.0)
+    assert (commands(stage), move.outcome) == ([], None)
+    assert move.execution.ended
+    assert stage.call(robot, "ping").ok
 
 
-def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begins(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        stage.call(robot, "hold", 1.0)
-        move, ping = stage.call(robot, "move", 1), stage.call(robot, "ping")
-        move.execution.cancel()
-        await ping.wait()
-        await stage.clock.sleep(3.0)
-        assert commands(stage) == ["released", "ping"]
-        assert move.outcome is None
-
-    play(scene)
+@played(play)
+async def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begins(stage):
+    robot = await robot_of(stage)
+    stage.call(robot, "hold", 1.0)
+    move, ping = stage.call(robot, "move", 1), stage.call(robot, "ping")
+    move.execution.cancel()
+    await ping.wait()
+    await stage.clock.sleep(3.0)
+    assert commands(stage) == ["released", "ping"]
+    assert move.outcome is None
 
 
-def test_the_step_in_which_it_is_cancelled_is_rolled_back(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        hold = stage.call(robot, "hold", 10.0)
-        await stage.clock.sleep(1.0)
-        hold.execution.cancel()
-        await stage.clock.sleep(1.0)
-        assert state(stage, robot) == (False, 0)
-        assert commands(stage) == ["released"]
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_the_step_in_which_it_is_cancelled_is_rolled_back(stage):
+    robot = await robot_of(stage)
+    hold = stage.call(robot, "hold", 10.0)
+    await stage.clock.sleep(1.0)
+    hold.execution.cancel()
+    await stage.clock.sleep(1.0)
+    assert state(stage, robot) == (False, 0)
+    assert commands(stage) == ["released"]
+    assert stage.call(robot, "ping").ok
 
 
-def test_finally_waits_for_its_turn_before_all_others(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 10)
-        await stage.clock.sleep(0.5)
-        hold, ping = stage.call(robot, "hold", 1.0), stage.call(robot, "ping")
-        await stage.clock.sleep(0.1)
-        move.execution.cancel()
-        await ping.wait()
-        assert commands(stage) == ["go", "released", "stop", "ping"]
-        assert hold.ok
-        assert state(stage, robot) == (False, -1)
-
-    play(scene)
+@played(play)
+async def test_finally_waits_for_its_turn_before_all_others(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 10)
+    await stage.clock.sleep(0.5)
+    hold, ping = stage.call(robot, "hold", 1.0), stage.call(robot, "ping")
+    await stage.clock.sleep(0.1)
+    move.execution.cancel()
+    await ping.wait()
+    assert commands(stage) == ["go", "released", "stop", "ping"]
+    assert hold.ok
+    assert state(stage, robot) == (False, -1)
 
 
-def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and_stops(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 10)
-        await stage.clock.sleep(0.5)
-        stage.call(robot, "hold", 2.0)
-        await stage.clock.sleep(1.0)
-        move.execution.cancel()
-        move.execution.task.cancel()
-        await stage.clock.sleep(0.5)
-        move.execution.task.cancel()
-        assert commands(stage) == ["go"]
-        await stage.clock.sleep(1.0)
-        assert commands(stage) == ["go", "released", "stop"]
-        assert move.execution.ended
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and_stops(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 10)
+    await stage.clock.sleep(0.5)
+    stage.call(robot, "hold", 2.0)
+    await stage.clock.sleep(1.0)
+    move.execution.cancel()
+    move.execution.task.cancel()
+    await stage.clock.sleep(0.5)
+    move.execution.task.cancel()
+    assert commands(stage) == ["go"]
+    await stage.clock.sleep(1.0)
+    assert commands(stage) == ["go", "released", "stop"]
+    assert move.execution.ended
+    assert stage.call(robot, "ping").ok
 
 
-def test_it_is_cancelled_while_it_gets_its_turn(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 10)
-        await stage.clock.sleep(0.5)
-        hold = stage.call(robot, "hold", 1.0)
+@played(play)
+async def test_it_is_cancelled_while_it_gets_its_turn(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 10)
+    await stage.clock.sleep(0.5)
+    hold = stage.call(robot, "hold", 1.0)
 
-        def on_done(outcome):
-            asyncio.get_running_loop().call_soon(move.execution.cancel)
+    def on_done(outcome):
+        asyncio.get_running_loop().call_soon(move.execution.cancel)
 
-        hold.execution.request.on_done = on_done
-        await stage.clock.sleep(2.0)
-        assert commands(stage) == ["go", "released", "stop"]
-        assert move.execution.ended
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+    hold.execution.request.on_done = on_done
+    await stage.clock.sleep(2.0)
+    assert commands(stage) == ["go", "released", "stop"]
+    assert move.execution.ended
+    assert stage.call(robot, "ping").ok
 
 
-def test_a_waiting_condition_is_cancelled(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        wait = stage.call(robot, "wait")
-        await stage.clock.sleep(1.0)
-        wait.execution.cancel()
-        assert stage.call(robot, "ping").ok
-        await stage.clock.sleep(1.0)
-        assert commands(stage) == ["ping", "waited"]
-        assert wait.outcome is None
-
-    play(scene)
+@played(play)
+async def test_a_waiting_condition_is_cancelled(stage):
+    robot = await robot_of(stage)
+    wait = stage.call(robot, "wait")
+    await stage.clock.sleep(1.0)
+    wait.execution.cancel()
+    assert stage.call(robot, "ping").ok
+    await stage.clock.sleep(1.0)
+    assert commands(stage) == ["ping", "waited"]
+    assert wait.outcome is None
 
 
-def test_finally_may_take_its_time_and_have_steps_of_its_own(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        watcher = stage.watch(robot)
-        call = stage.call(robot, "slow_end")
-        await stage.clock.sleep(1.0)
-        watcher.take()
-        call.execution.cancel()
-        await stage.clock.sleep(1.0)
-        assert watcher.take() == ["-units(0) +units(1)", "-units(1) +units(2)"]
-        assert call.outcome is None
-
-    play(scene)
+@played(play)
+async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage):
+    robot = await robot_of(stage)
+    watcher = stage.watch(robot)
+    call = stage.call(robot, "slow_end")
+    await stage.clock.sleep(1.0)
+    watcher.take()
+    call.execution.cancel()
+    await stage.clock.sleep(1.0)
+    assert watcher.take() == ["-units(0) +units(1)", "-units(1) +units(2)"]
+    assert call.outcome is None
 
 
-def test_a_failure_in_finally_is_undone_and_logged(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "bad_end")
-        await stage.clock.sleep(1.0)
-        call.execution.cancel()
-        await stage.clock.sleep(1.0)
-        assert state(stage, robot) == (False, 0)
-        assert stage.lines == ["[it] operation bad_end/0 failed: cannot stop"]
-
-    play(scene)
+@played(play)
+async def test_a_failure_in_finally_is_undone_and_logged(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "bad_end")
+    await stage.clock.sleep(1.0)
+    call.execution.cancel()
+    await stage.clock.sleep(1.0)
+    assert state(stage, robot) == (False, 0)
+    assert stage.lines == ["[it] operation bad_end/0 failed: cannot stop"]
 
 
-def test_an_operation_may_cancel_itself(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "drop_me")
-        await stage.clock.sleep(2.0)
-        assert commands(stage) == ["dropped"]
-        assert call.outcome is None
-        assert state(stage, robot) == (False, 5)
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_an_operation_may_cancel_itself(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "drop_me")
+    await stage.clock.sleep(2.0)
+    assert commands(stage) == ["dropped"]
+    assert call.outcome is None
+    assert state(stage, robot) == (False, 5)
+    assert stage.call(robot, "ping").ok
 
 
-def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_usable(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 10)
-        await stage.clock.sleep(0.5)
-        move.execution.task.cancel()
-        await stage.clock.sleep(0.1)
-        assert move.execution.task.cancelled()
-        assert commands(stage) == ["go", "stop"]
-        assert stage.call(robot, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_usable(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 10)
+    await stage.clock.sleep(0.5)
+    move.execution.task.cancel()
+    await stage.clock.sleep(0.1)
+    assert move.execution.task.cancelled()
+    assert commands(stage) == ["go", "stop"]
+    assert stage.call(robot, "ping").ok
 
 
-def test_a_timeout_within_an_operation_is_not_a_cancellation(play):
+def test_a_timeout_within_an_operation_is_not_a_cancellation():
     class Impatient(Artifact):
         def init(self):
             self.define_property("result", "")
@@ -320,27 +296,25 @@ def test_a_timeout_within_an_operation_is_not_a_cancellation(play):
     play(scene)
 
 
-def test_observers_may_cancel_an_operation_while_they_are_notified(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 10)
+@played(play)
+async def test_observers_may_cancel_an_operation_while_they_are_notified(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 10)
 
-        class Dropper:
-            agent = "x"
+    class Dropper:
+        agent = "x"
 
-            def observe(self, observation):
-                if any(new.name == "units" for _, new in observation.changed):
-                    move.execution.cancel()
+        def observe(self, observation):
+            if any(new.name == "units" for _, new in observation.changed):
+                move.execution.cancel()
 
-        stage.main.focus(robot, Dropper())
-        await stage.clock.sleep(5.0)
-        assert commands(stage) == ["go", "go", "stop"]
-        assert state(stage, robot) == (False, 1)
-
-    play(scene)
+    stage.main.focus(robot, Dropper())
+    await stage.clock.sleep(5.0)
+    assert commands(stage) == ["go", "go", "stop"]
+    assert state(stage, robot) == (False, 1)
 
 
-def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome(play):
+def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome():
     class Plain(Artifact):
         def init(self):
             self.define_property("n", 0)
@@ -359,21 +333,19 @@ def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome(play):
     play(scene)
 
 
-def test_one_of_several_waiting_operations_is_cancelled(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        stage.call(robot, "hold", 1.0)
-        first, second, third = (stage.call(robot, "ping") for _ in range(3))
-        assert stage.main.pending(robot)[1:] == (first.execution, second.execution, third.execution)
-        second.execution.cancel()
-        await third.wait()
-        assert (first.ok, second.outcome) == (True, None)
-        assert stage.main.pending(robot) == ()
-
-    play(scene)
+@played(play)
+async def test_one_of_several_waiting_operations_is_cancelled(stage):
+    robot = await robot_of(stage)
+    stage.call(robot, "hold", 1.0)
+    first, second, third = (stage.call(robot, "ping") for _ in range(3))
+    assert stage.main.pending(robot)[1:] == (first.execution, second.execution, third.execution)
+    second.execution.cancel()
+    await third.wait()
+    assert (first.ok, second.outcome) == (True, None)
+    assert stage.main.pending(robot) == ()
 
 
-def test_an_abandoned_coroutine_does_not_wait_for_its_turn(play):
+def test_an_abandoned_coroutine_does_not_wait_for_its_turn():
     async def scene(stage):
         robot = await robot_of(stage)
         move = stage.call(robot, "move", 1)

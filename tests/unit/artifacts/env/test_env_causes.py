@@ -2,6 +2,8 @@
 
 from jacaros.artifacts import Artifact, Environment, OperationRequest, internal_operation, link, operation
 from jacaros.runtime.trace import Cause
+from played import played
+from stage_lab import play
 
 
 class Recorder:
@@ -52,54 +54,48 @@ class Lamp(Artifact):
         self.update_property("power", power)
 
 
-def test_without_a_tracer_the_cause_of_the_request_is_passed_on(play):
-    async def scene(stage):
-        lamp = await stage.make(Lamp)
-        watcher = stage.watch(lamp)
-        why = Cause(1, 0, "act", "switch")
-        stage.call(lamp, "switch", cause=why)
-        await stage.clock.sleep(2.0)
-        assert [observation.cause for observation in watcher.observations] == [None, why, why]
-
-    play(scene)
+@played(play)
+async def test_without_a_tracer_the_cause_of_the_request_is_passed_on(stage):
+    lamp = await stage.make(Lamp)
+    watcher = stage.watch(lamp)
+    why = Cause(1, 0, "act", "switch")
+    stage.call(lamp, "switch", cause=why)
+    await stage.clock.sleep(2.0)
+    assert [observation.cause for observation in watcher.observations] == [None, why, why]
 
 
-def test_with_a_tracer_each_operation_and_each_commit_is_a_link(play):
-    async def scene(stage):
-        stage.environment.tracer = recorder = Recorder(stage.clock)
-        assert stage.environment.tracer is recorder
-        lamp = await stage.make(Lamp)
-        watcher = stage.watch(lamp)
-        why = Cause(1, 0, "act", "agent acts")
-        stage.call(lamp, "switch", cause=why)
-        await stage.clock.sleep(2.0)
-        changed, signalled = (observation.cause for observation in watcher.observations[1:])
-        assert recorder.chain(changed) == ["property /main/it power", "operation /main/it switch/0"]
-        assert recorder.chain(signalled) == ["signal /main/it burnt", "operation /main/it switch/0"]
-        assert recorder.links[-1][1] == stage.clock.start + 1.0
-        first = next(each for each, _ in recorder.links if each.kind == "operation")
-        assert first.parent == why.id
-
-    play(scene)
+@played(play)
+async def test_with_a_tracer_each_operation_and_each_commit_is_a_link(stage):
+    stage.environment.tracer = recorder = Recorder(stage.clock)
+    assert stage.environment.tracer is recorder
+    lamp = await stage.make(Lamp)
+    watcher = stage.watch(lamp)
+    why = Cause(1, 0, "act", "agent acts")
+    stage.call(lamp, "switch", cause=why)
+    await stage.clock.sleep(2.0)
+    changed, signalled = (observation.cause for observation in watcher.observations[1:])
+    assert recorder.chain(changed) == ["property /main/it power", "operation /main/it switch/0"]
+    assert recorder.chain(signalled) == ["signal /main/it burnt", "operation /main/it switch/0"]
+    assert recorder.links[-1][1] == stage.clock.start + 1.0
+    first = next(each for each, _ in recorder.links if each.kind == "operation")
+    assert first.parent == why.id
 
 
-def test_the_chain_goes_through_links(play):
-    async def scene(stage):
-        stage.environment.tracer = recorder = Recorder(stage.clock)
-        first, second = await stage.make(Lamp, name="first"), await stage.make(Lamp, name="second")
-        stage.main.link(first, "next", second)
-        watcher = stage.watch(second)
-        await stage.call(first, "forward").wait()
-        assert recorder.chain(watcher.observations[-1].cause) == [
-            "property /main/second power",
-            "operation /main/second set/1",
-            "operation /main/first forward/0",
-        ]
-
-    play(scene)
+@played(play)
+async def test_the_chain_goes_through_links(stage):
+    stage.environment.tracer = recorder = Recorder(stage.clock)
+    first, second = await stage.make(Lamp, name="first"), await stage.make(Lamp, name="second")
+    stage.main.link(first, "next", second)
+    watcher = stage.watch(second)
+    await stage.call(first, "forward").wait()
+    assert recorder.chain(watcher.observations[-1].cause) == [
+        "property /main/second power",
+        "operation /main/second set/1",
+        "operation /main/first forward/0",
+    ]
 
 
-def test_a_process_started_by_a_callback_is_caused_by_its_sample(play):
+def test_a_process_started_by_a_callback_is_caused_by_its_sample():
     kept = []
 
     class Sensor(Lamp):
@@ -117,25 +113,21 @@ def test_a_process_started_by_a_callback_is_caused_by_its_sample(play):
     play(scene)
 
 
-def test_commits_are_traced_even_without_observers(play):
-    async def scene(stage):
-        lamp = await stage.make(Lamp)
-        stage.environment.tracer = recorder = Recorder(stage.clock)
-        stage.call(lamp, "switch")
-        assert [each.kind for each, _ in recorder.links] == ["operation", "property"]
-
-    play(scene)
+@played(play)
+async def test_commits_are_traced_even_without_observers(stage):
+    lamp = await stage.make(Lamp)
+    stage.environment.tracer = recorder = Recorder(stage.clock)
+    stage.call(lamp, "switch")
+    assert [each.kind for each, _ in recorder.links] == ["operation", "property"]
 
 
-def test_an_environment_works_with_minimal_arguments(play):
-    async def scene(stage):
-        environment = Environment(stage.clock)
-        assert environment.tracer is None
-        assert environment.clock is stage.clock
-        assert environment.resources == {}
-        lamp = await environment.workspace("/main").make_artifact("lamp", Lamp)
-        execution = environment.execute(OperationRequest(lamp, "switch"))
-        assert execution.ended
-        await environment.close()
-
-    play(scene)
+@played(play)
+async def test_an_environment_works_with_minimal_arguments(stage):
+    environment = Environment(stage.clock)
+    assert environment.tracer is None
+    assert environment.clock is stage.clock
+    assert environment.resources == {}
+    lamp = await environment.workspace("/main").make_artifact("lamp", Lamp)
+    execution = environment.execute(OperationRequest(lamp, "switch"))
+    assert execution.ended
+    await environment.close()

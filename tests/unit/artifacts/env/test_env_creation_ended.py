@@ -6,6 +6,8 @@ import pytest
 from creation_lab import Counter, Fussy, Slow, why
 
 from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, UnknownArtifact, operation
+from played import played
+from stage_lab import play
 
 
 @pytest.mark.parametrize(
@@ -17,22 +19,20 @@ from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, Unknown
         ((1, 2), "expected (level: an integer) as arguments of init, found 2 arguments"),
     ],
 )
-def test_a_failed_init_leaves_nothing_behind(play, arguments, told):
-    async def scene(stage):
-        reason, name, message = await why(stage.make(Fussy, *arguments))
-        assert (reason, name) == ("init_failed", "it")
-        assert told in message
-        with pytest.raises(UnknownArtifact):
-            stage.main.lookup("it")
-        assert not stage.logged("process")
-        assert not stage.logged("disposed")
-        assert stage.logged("cleaned") == (arguments in ((-1,), (0,)))
-        assert stage.property(await stage.make(Fussy, 4), "level") == (4,)
-
-    play(scene)
+@played(play)
+async def test_a_failed_init_leaves_nothing_behind(stage, arguments, told):
+    reason, name, message = await why(stage.make(Fussy, *arguments))
+    assert (reason, name) == ("init_failed", "it")
+    assert told in message
+    with pytest.raises(UnknownArtifact):
+        stage.main.lookup("it")
+    assert not stage.logged("process")
+    assert not stage.logged("disposed")
+    assert stage.logged("cleaned") == (arguments in ((-1,), (0,)))
+    assert stage.property(await stage.make(Fussy, 4), "level") == (4,)
 
 
-def test_a_constructor_that_fails_is_an_init_that_fails(play):
+def test_a_constructor_that_fails_is_an_init_that_fails():
     class Odd(Artifact):
         def __init__(self, needed):
             pass
@@ -45,55 +45,47 @@ def test_a_constructor_that_fails_is_an_init_that_fails(play):
     play(scene)
 
 
-def test_an_asynchronous_init_makes_the_artifact_available_at_its_end(play):
-    async def scene(stage):
-        making = asyncio.ensure_future(stage.make(Slow))
-        await stage.clock.sleep(0.5)
-        with pytest.raises(UnknownArtifact):
-            stage.main.lookup("it")
-        assert (await why(stage.make(Counter)))[0] == "artifact_already_present"
-        slow = await making
-        assert stage.elapsed == 1.0
-        assert stage.property(slow, "ready") == (True,)
-
-    play(scene)
+@played(play)
+async def test_an_asynchronous_init_makes_the_artifact_available_at_its_end(stage):
+    making = asyncio.ensure_future(stage.make(Slow))
+    await stage.clock.sleep(0.5)
+    with pytest.raises(UnknownArtifact):
+        stage.main.lookup("it")
+    assert (await why(stage.make(Counter)))[0] == "artifact_already_present"
+    slow = await making
+    assert stage.elapsed == 1.0
+    assert stage.property(slow, "ready") == (True,)
 
 
-def test_a_slow_init_that_fails_leaves_nothing_behind(play):
-    async def scene(stage):
-        assert (await why(stage.make(Slow, True)))[:2] == ("init_failed", "it")
-        await stage.clock.sleep(1.0)
-        assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
-        await stage.make(Counter)
-
-    play(scene)
+@played(play)
+async def test_a_slow_init_that_fails_leaves_nothing_behind(stage):
+    assert (await why(stage.make(Slow, True)))[:2] == ("init_failed", "it")
+    await stage.clock.sleep(1.0)
+    assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
+    await stage.make(Counter)
 
 
-def test_creation_can_be_cancelled_and_leaves_nothing_behind(play):
-    async def scene(stage):
-        making = asyncio.ensure_future(stage.make(Slow))
-        await stage.clock.sleep(0.5)
-        making.cancel()
-        await stage.clock.sleep(0.1)
-        assert making.cancelled()
-        assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
-        await stage.make(Counter)
-
-    play(scene)
+@played(play)
+async def test_creation_can_be_cancelled_and_leaves_nothing_behind(stage):
+    making = asyncio.ensure_future(stage.make(Slow))
+    await stage.clock.sleep(0.5)
+    making.cancel()
+    await stage.clock.sleep(0.1)
+    assert making.cancelled()
+    assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
+    await stage.make(Counter)
 
 
-def test_closing_during_a_creation_cancels_it(play):
-    async def scene(stage):
-        making = asyncio.ensure_future(stage.make(Slow))
-        await stage.clock.sleep(0.5)
-        await stage.environment.close()
-        assert (await why(making))[0] == "init_failed"
-        assert stage.elapsed == 0.5
-
-    play(scene)
+@played(play)
+async def test_closing_during_a_creation_cancels_it(stage):
+    making = asyncio.ensure_future(stage.make(Slow))
+    await stage.clock.sleep(0.5)
+    await stage.environment.close()
+    assert (await why(making))[0] == "init_failed"
+    assert stage.elapsed == 0.5
 
 
-def test_a_name_can_be_reused_while_a_cancelled_creation_ends(play):
+def test_a_name_can_be_reused_while_a_cancelled_creation_ends():
     class Lingering(Artifact):
         async def init(self):
             try:
@@ -113,7 +105,7 @@ def test_a_name_can_be_reused_while_a_cancelled_creation_ends(play):
     play(scene)
 
 
-def test_a_creation_that_is_ended_twice_ends_once(play):
+def test_a_creation_that_is_ended_twice_ends_once():
     class Lingering(Artifact):
         async def init(self):
             try:
@@ -136,7 +128,7 @@ def test_a_creation_that_is_ended_twice_ends_once(play):
     play(scene)
 
 
-def test_an_operation_asked_of_an_artifact_in_its_init_waits_for_the_end_of_the_init(play):
+def test_an_operation_asked_of_an_artifact_in_its_init_waits_for_the_end_of_the_init():
     class Early(Artifact):
         async def init(self, keep, fails=False):
             self.define_property("ready", False)
@@ -172,7 +164,7 @@ def test_an_operation_asked_of_an_artifact_in_its_init_waits_for_the_end_of_the_
     play(scene)
 
 
-def test_an_artifact_that_disposes_itself_in_its_init_is_not_made(play):
+def test_an_artifact_that_disposes_itself_in_its_init_is_not_made():
     class Suicidal(Artifact):
         def init(self):
             self.on_dispose(lambda: self.log("given back"))
@@ -187,7 +179,7 @@ def test_an_artifact_that_disposes_itself_in_its_init_is_not_made(play):
     play(scene)
 
 
-def test_the_id_of_a_cancelled_creation_has_no_artifact(play):
+def test_the_id_of_a_cancelled_creation_has_no_artifact():
     class Slow(Artifact):
         async def init(self, keep):
             keep.append(self.id)

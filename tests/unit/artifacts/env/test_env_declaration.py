@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, internal_operation, link, operation
+from stage_lab import play
 
 
 def keys(artifact_type):
@@ -169,7 +170,7 @@ def test_a_parameter_that_agents_cannot_pass_is_an_error():
             def go(self, *, fast): ...
 
 
-def test_operations_of_one_artifact_can_be_added_and_removed(play):
+def test_operations_of_one_artifact_can_be_added_and_removed():
     class Dynamic(Artifact):
         def init(self):
             self.define_property("n", 0)
@@ -225,7 +226,7 @@ def test_operations_of_one_artifact_can_be_added_and_removed(play):
     play(scene)
 
 
-def test_partial_functions_and_callable_objects_can_be_operations(play):
+def test_partial_functions_and_callable_objects_can_be_operations():
     class Greeting:
         """Greets."""
 

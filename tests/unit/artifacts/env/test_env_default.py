@@ -3,6 +3,8 @@
 import pytest
 
 from jacaros.artifacts import Atom, Out, Structure
+from played import played
+from stage_lab import play
 
 
 def blackboard(stage):
@@ -16,90 +18,78 @@ def blackboard(stage):
     return call
 
 
-def test_tuples_are_read_and_taken(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        do("out", "msg", 1, "one")
-        do("out", "msg", 2, "two")
-        do("out", "msg", 3)
-        assert do("rd", "msg", 2, Out()) == ["two"]
-        assert do("rd", "msg", 2, Out()) == ["two"], "reading leaves the tuple"
-        assert do("rd", "msg", Out()) == [3]
-        assert do("in", "msg", Out(), "one") == [1]
-        failed = do("inp", "msg", 1, Out())
-        assert failed.reason == Atom("no_match")
-        assert failed.outcome.message == 'no tuple on the blackboard matches ("msg",1,_)'
-        assert do("inp", "msg", 2, Out()) == ["two"]
-        assert do("rdp", "msg", 2, Out()).reason == Atom("no_match")
-        assert do("in", "msg", 3) == []
-
-    play(scene)
+@played(play)
+async def test_tuples_are_read_and_taken(stage):
+    do = blackboard(stage)
+    do("out", "msg", 1, "one")
+    do("out", "msg", 2, "two")
+    do("out", "msg", 3)
+    assert do("rd", "msg", 2, Out()) == ["two"]
+    assert do("rd", "msg", 2, Out()) == ["two"], "reading leaves the tuple"
+    assert do("rd", "msg", Out()) == [3]
+    assert do("in", "msg", Out(), "one") == [1]
+    failed = do("inp", "msg", 1, Out())
+    assert failed.reason == Atom("no_match")
+    assert failed.outcome.message == 'no tuple on the blackboard matches ("msg",1,_)'
+    assert do("inp", "msg", 2, Out()) == ["two"]
+    assert do("rdp", "msg", 2, Out()).reason == Atom("no_match")
+    assert do("in", "msg", 3) == []
 
 
-def test_the_oldest_matching_tuple_is_taken(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        for number in (5, 6):
-            do("out", "job", number, "a")
-        assert do("in", "job", Out(), "a") == [5]
-        assert do("in", "job", Out(), Out()) == [6, "a"]
-
-    play(scene)
+@played(play)
+async def test_the_oldest_matching_tuple_is_taken(stage):
+    do = blackboard(stage)
+    for number in (5, 6):
+        do("out", "job", number, "a")
+    assert do("in", "job", Out(), "a") == [5]
+    assert do("in", "job", Out(), Out()) == [6, "a"]
 
 
-def test_in_and_rd_wait_for_a_matching_tuple(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        reader, taker, other = do("rd", "x", Out()), do("in", "x", Out()), do("in", "y", Out())
-        assert not reader.ok
-        do("out", "x", 1)
-        assert (reader.ok, taker.ok, other.ok) == (True, True, False)
-        assert do("inp", "x", Out()).reason == Atom("no_match")
-        other.execution.cancel()
-        do("out", "y", 2)
-        assert do("rdp", "y", Out()) == [2]
-
-    play(scene)
+@played(play)
+async def test_in_and_rd_wait_for_a_matching_tuple(stage):
+    do = blackboard(stage)
+    reader, taker, other = do("rd", "x", Out()), do("in", "x", Out()), do("in", "y", Out())
+    assert not reader.ok
+    do("out", "x", 1)
+    assert (reader.ok, taker.ok, other.ok) == (True, True, False)
+    assert do("inp", "x", Out()).reason == Atom("no_match")
+    other.execution.cancel()
+    do("out", "y", 2)
+    assert do("rdp", "y", Out()) == [2]
 
 
-def test_values_are_compared_as_agents_do(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        do("out", "v", True)
-        assert do("inp", "v", 1).reason == Atom("no_match")
-        do("out", "v", 1)
-        assert do("inp", "v", 1.0) == []
-        assert do("inp", "v", True) == []
-        do("out", Atom("goal"), Structure("at", (1, 2)), [1, "a"])
-        assert do("inp", "goal", Structure("at", (1, 2)), [1, "a"]) == []
-
-    play(scene)
+@played(play)
+async def test_values_are_compared_as_agents_do(stage):
+    do = blackboard(stage)
+    do("out", "v", True)
+    assert do("inp", "v", 1).reason == Atom("no_match")
+    do("out", "v", 1)
+    assert do("inp", "v", 1.0) == []
+    assert do("inp", "v", True) == []
+    do("out", Atom("goal"), Structure("at", (1, 2)), [1, "a"])
+    assert do("inp", "goal", Structure("at", (1, 2)), [1, "a"]) == []
 
 
-def test_the_same_variable_twice_matches_only_equal_values(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        do("out", "pair", 1, 2)
-        do("out", "pair", 3, 3)
-        both = Out()
-        assert do("in", "pair", both, both) == [3, 3]
-
-    play(scene)
+@played(play)
+async def test_the_same_variable_twice_matches_only_equal_values(stage):
+    do = blackboard(stage)
+    do("out", "pair", 1, 2)
+    do("out", "pair", 3, 3)
+    both = Out()
+    assert do("in", "pair", both, both) == [3, 3]
 
 
-def test_any_name_may_be_asked_for_and_tuples_must_be_bound(play):
-    async def scene(stage):
-        do = blackboard(stage)
-        failed = do("out", "x", Out())
-        assert failed.reason == Atom("unbound_argument")
-        do("out", "x", 1)
-        assert do("in", Out(), Out()) == ["x", 1]
-
-    play(scene)
+@played(play)
+async def test_any_name_may_be_asked_for_and_tuples_must_be_bound(stage):
+    do = blackboard(stage)
+    failed = do("out", "x", Out())
+    assert failed.reason == Atom("unbound_argument")
+    do("out", "x", 1)
+    assert do("in", Out(), Out()) == ["x", 1]
 
 
 @pytest.mark.parametrize("operation", ["print", "println", "printWithAgName", "printlnWithAgName"])
-def test_the_console_prints_lines_for_the_agent(play, operation):
+def test_the_console_prints_lines_for_the_agent(operation):
     printed = []
 
     async def scene(stage):
@@ -113,9 +103,7 @@ def test_the_console_prints_lines_for_the_agent(play, operation):
     assert printed == [("bob", 'at kitchen 3[1,"a"]true'), ("eve", "")]
 
 
-def test_a_console_without_host_prints_to_the_log(play):
-    async def scene(stage):
-        stage.call(stage.main.lookup("console"), "println", "hello")
-        assert stage.lines == ["[console] hello"]
-
-    play(scene)
+@played(play)
+async def test_a_console_without_host_prints_to_the_log(stage):
+    stage.call(stage.main.lookup("console"), "println", "hello")
+    assert stage.lines == ["[console] hello"]

@@ -14,6 +14,8 @@ from jacaros.artifacts import (
     internal_operation,
     operation,
 )
+from played import played
+from stage_lab import play
 
 
 class Thing(Artifact):
@@ -101,169 +103,147 @@ def thing_of(stage):
     return stage.make(Kept)
 
 
-def test_observers_lose_all_properties(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        watcher = stage.watch(thing)
-        stage.main.dispose_artifact(thing)
-        assert watcher.notes == ["+level(0) +mode('idle')", "-level(0) -mode('idle')"]
-        assert stage.thing.events == ["dispose", "last registered", "first registered"]
-
-    play(scene)
+@played(play)
+async def test_observers_lose_all_properties(stage):
+    thing = await thing_of(stage)
+    watcher = stage.watch(thing)
+    stage.main.dispose_artifact(thing)
+    assert watcher.notes == ["+level(0) +mode('idle')", "-level(0) -mode('idle')"]
+    assert stage.thing.events == ["dispose", "last registered", "first registered"]
 
 
-def test_operations_running_or_waiting_fail_with_artifact_disposed(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.watch(thing)
-        calls = [stage.call(thing, name) for name in ("run", "wait", "run", "hold")]
-        await stage.clock.sleep(1.0)
-        calls.append(stage.call(thing, "ping"))
-        stage.story.clear()
-        stage.main.dispose_artifact(thing)
-        await stage.clock.sleep(1.0)
-        assert stage.story[0] == ("main", "-level(0) -mode('idle')"), "observers first, as they knew it"
-        assert [call.reason for call in calls] == [Structure("artifact_disposed", ("it",))] * 5
-        assert "was disposed before run/0 ended" in calls[0].outcome.message
-        assert stage.thing.events == [
-            "run stopped",
-            "run stopped",
-            "dispose",
-            "last registered",
-            "first registered",
-        ]
-
-    play(scene)
+@played(play)
+async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage):
+    thing = await thing_of(stage)
+    stage.watch(thing)
+    calls = [stage.call(thing, name) for name in ("run", "wait", "run", "hold")]
+    await stage.clock.sleep(1.0)
+    calls.append(stage.call(thing, "ping"))
+    stage.story.clear()
+    stage.main.dispose_artifact(thing)
+    await stage.clock.sleep(1.0)
+    assert stage.story[0] == ("main", "-level(0) -mode('idle')"), "observers first, as they knew it"
+    assert [call.reason for call in calls] == [Structure("artifact_disposed", ("it",))] * 5
+    assert "was disposed before run/0 ended" in calls[0].outcome.message
+    assert stage.thing.events == [
+        "run stopped",
+        "run stopped",
+        "dispose",
+        "last registered",
+        "first registered",
+    ]
 
 
-def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        call = stage.call(thing, "run")
-        stage.main.dispose_artifact(thing)
-        await call.wait()
-        assert call.reason == Structure("artifact_disposed", ("it",))
-        assert "run stopped" not in stage.thing.events
-
-    play(scene)
+@played(play)
+async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(stage):
+    thing = await thing_of(stage)
+    call = stage.call(thing, "run")
+    stage.main.dispose_artifact(thing)
+    await call.wait()
+    assert call.reason == Structure("artifact_disposed", ("it",))
+    assert "run stopped" not in stage.thing.events
 
 
-def test_the_hook_waits_for_the_last_operation_to_end(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        call = stage.call(thing, "run_long")
-        await stage.clock.sleep(1.0)
-        stage.main.dispose_artifact(thing)
-        await stage.clock.sleep(0.5)
-        assert (stage.thing.events, call.outcome) == ([], None)
-        await stage.clock.sleep(1.0)
-        assert stage.thing.events[:2] == ["run stopped late", "dispose"]
-        assert call.ended_at == 2.0
-
-    play(scene)
+@played(play)
+async def test_the_hook_waits_for_the_last_operation_to_end(stage):
+    thing = await thing_of(stage)
+    call = stage.call(thing, "run_long")
+    await stage.clock.sleep(1.0)
+    stage.main.dispose_artifact(thing)
+    await stage.clock.sleep(0.5)
+    assert (stage.thing.events, call.outcome) == ([], None)
+    await stage.clock.sleep(1.0)
+    assert stage.thing.events[:2] == ["run stopped late", "dispose"]
+    assert call.ended_at == 2.0
 
 
-def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        call = stage.call(thing, "stubborn")
-        await stage.clock.sleep(1.0)
-        stage.main.dispose_artifact(thing)
-        await call.wait()
-        assert call.reason == Structure("artifact_disposed", ("it",))
-        assert stage.logged("will not stop")
-
-    play(scene)
+@played(play)
+async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(stage):
+    thing = await thing_of(stage)
+    call = stage.call(thing, "stubborn")
+    await stage.clock.sleep(1.0)
+    stage.main.dispose_artifact(thing)
+    await call.wait()
+    assert call.reason == Structure("artifact_disposed", ("it",))
+    assert stage.logged("will not stop")
 
 
-def test_processes_are_stopped(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.call(thing, "startProcess")
-        await stage.clock.sleep(1.0)
-        stage.main.dispose_artifact(thing)
-        await stage.clock.sleep(1.0)
-        assert stage.thing.events[0] == "process stopped"
-        assert stage.lines == []
-
-    play(scene)
+@played(play)
+async def test_processes_are_stopped(stage):
+    thing = await thing_of(stage)
+    stage.call(thing, "startProcess")
+    await stage.clock.sleep(1.0)
+    stage.main.dispose_artifact(thing)
+    await stage.clock.sleep(1.0)
+    assert stage.thing.events[0] == "process stopped"
+    assert stage.lines == []
 
 
-def test_new_operations_fail_with_artifact_not_available(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.main.dispose_artifact(thing)
-        call = stage.call(thing, "ping")
-        assert call.reason == Structure("artifact_not_available", ("it",))
-        call.execution.cancel()
-        call.execution.pause()
-        call.execution.resume()
-
-    play(scene)
+@played(play)
+async def test_new_operations_fail_with_artifact_not_available(stage):
+    thing = await thing_of(stage)
+    stage.main.dispose_artifact(thing)
+    call = stage.call(thing, "ping")
+    assert call.reason == Structure("artifact_not_available", ("it",))
+    call.execution.cancel()
+    call.execution.pause()
+    call.execution.resume()
 
 
-def test_requests_to_a_disposed_artifact_are_refused(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.main.dispose_artifact(thing)
-        for use in (
-            lambda: stage.main.dispose_artifact(thing),
-            lambda: stage.watch(thing),
-            lambda: stage.main.lookup("it"),
-            lambda: stage.main.properties(thing),
-            lambda: stage.main.observers(thing),
-            lambda: stage.main.interface(thing),
-        ):
-            with pytest.raises(UnknownArtifact) as caught:
-                use()
-            assert caught.value.reason == Structure("artifact_not_available", ("it",))
-
-    play(scene)
+@played(play)
+async def test_requests_to_a_disposed_artifact_are_refused(stage):
+    thing = await thing_of(stage)
+    stage.main.dispose_artifact(thing)
+    for use in (
+        lambda: stage.main.dispose_artifact(thing),
+        lambda: stage.watch(thing),
+        lambda: stage.main.lookup("it"),
+        lambda: stage.main.properties(thing),
+        lambda: stage.main.observers(thing),
+        lambda: stage.main.interface(thing),
+    ):
+        with pytest.raises(UnknownArtifact) as caught:
+            use()
+        assert caught.value.reason == Structure("artifact_not_available", ("it",))
 
 
-def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(play):
-    async def scene(stage):
-        old = await thing_of(stage)
-        stage.main.dispose_artifact(old)
-        new = await thing_of(stage)
-        assert stage.main.lookup("it") is new
-        assert stage.call(new, "ping").ok
-        assert not stage.call(old, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(stage):
+    old = await thing_of(stage)
+    stage.main.dispose_artifact(old)
+    new = await thing_of(stage)
+    assert stage.main.lookup("it") is new
+    assert stage.call(new, "ping").ok
+    assert not stage.call(old, "ping").ok
 
 
-def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        watcher = stage.watch(thing)
-        call = stage.call(thing, "disposeMe")
-        assert call.ok
-        assert stage.thing.events[:2] == ["still here", "dispose"]
-        assert watcher.notes[1:] == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
-
-    play(scene)
+@played(play)
+async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage):
+    thing = await thing_of(stage)
+    watcher = stage.watch(thing)
+    call = stage.call(thing, "disposeMe")
+    assert call.ok
+    assert stage.thing.events[:2] == ["still here", "dispose"]
+    assert watcher.notes[1:] == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
 
 
-def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        run, call = stage.call(thing, "run"), stage.call(thing, "disposeMeLater")
-        await call.wait()
-        assert call.ok
-        assert (run.ended_at, call.ended_at) == (1.0, 2.0)
-        assert stage.thing.events == [
-            "run stopped",
-            "still here",
-            "dispose",
-            "last registered",
-            "first registered",
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(stage):
+    thing = await thing_of(stage)
+    run, call = stage.call(thing, "run"), stage.call(thing, "disposeMeLater")
+    await call.wait()
+    assert call.ok
+    assert (run.ended_at, call.ended_at) == (1.0, 2.0)
+    assert stage.thing.events == [
+        "run stopped",
+        "still here",
+        "dispose",
+        "last registered",
+        "first registered",
+    ]
 
 
-def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run(play):
+def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run():
     class Bad(Thing):
         def dispose(self):
             raise RuntimeError("hook")
@@ -284,22 +264,20 @@ def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run(play):
     play(scene)
 
 
-def test_a_waiting_operation_that_fails_may_dispose_or_call_again(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        second = []
+@played(play)
+async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage):
+    thing = await thing_of(stage)
+    second = []
 
-        def again(outcome):
-            second.append(stage.call(thing, "ping"))
+    def again(outcome):
+        second.append(stage.call(thing, "ping"))
 
-        stage.main.execute(OperationRequest(thing, "wait", (), "main", None, again))
-        stage.main.dispose_artifact(thing)
-        assert second[0].reason == Structure("artifact_not_available", ("it",))
-
-    play(scene)
+    stage.main.execute(OperationRequest(thing, "wait", (), "main", None, again))
+    stage.main.dispose_artifact(thing)
+    assert second[0].reason == Structure("artifact_not_available", ("it",))
 
 
-def test_closing_the_environment_ends_everything_and_waits_for_it(play):
+def test_closing_the_environment_ends_everything_and_waits_for_it():
     kept = []
 
     class Kept(Thing):
@@ -330,37 +308,33 @@ def test_closing_the_environment_ends_everything_and_waits_for_it(play):
     play(scene)
 
 
-def test_closing_waits_for_artifacts_that_are_ending_already(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.call(thing, "run_long")
-        await stage.clock.sleep(1.0)
-        stage.main.dispose_artifact(thing)
-        other = await stage.make(Thing, name="other")
-        stage.call(other, "ping")
-        await stage.clock.sleep(0.5)
-        await asyncio.gather(stage.environment.close(), stage.environment.close())
-        assert stage.elapsed == 2.0
-        assert "dispose" in stage.thing.events
-
-    play(scene)
+@played(play)
+async def test_closing_waits_for_artifacts_that_are_ending_already(stage):
+    thing = await thing_of(stage)
+    stage.call(thing, "run_long")
+    await stage.clock.sleep(1.0)
+    stage.main.dispose_artifact(thing)
+    other = await stage.make(Thing, name="other")
+    stage.call(other, "ping")
+    await stage.clock.sleep(0.5)
+    await asyncio.gather(stage.environment.close(), stage.environment.close())
+    assert stage.elapsed == 2.0
+    assert "dispose" in stage.thing.events
 
 
-def test_cancelling_one_wait_for_the_end_does_not_affect_others(play):
-    async def scene(stage):
-        thing = await thing_of(stage)
-        stage.call(thing, "run_long")
-        await stage.clock.sleep(1.0)
-        first, second = (asyncio.ensure_future(stage.environment.close()) for _ in range(2))
-        await stage.clock.sleep(0.5)
-        first.cancel()
-        await second
-        assert stage.elapsed == 2.0
-
-    play(scene)
+@played(play)
+async def test_cancelling_one_wait_for_the_end_does_not_affect_others(stage):
+    thing = await thing_of(stage)
+    stage.call(thing, "run_long")
+    await stage.clock.sleep(1.0)
+    first, second = (asyncio.ensure_future(stage.environment.close()) for _ in range(2))
+    await stage.clock.sleep(0.5)
+    first.cancel()
+    await second
+    assert stage.elapsed == 2.0
 
 
-def test_processes_started_after_the_end_do_not_begin(play):
+def test_processes_started_after_the_end_do_not_begin():
     class Late(Thing):
         @operation
         def end(self):
@@ -376,7 +350,7 @@ def test_processes_started_after_the_end_do_not_begin(play):
     play(scene)
 
 
-def test_closing_ends_the_artifacts_made_last_first(play):
+def test_closing_ends_the_artifacts_made_last_first():
     order = []
 
     class Ordered(Artifact):
@@ -391,18 +365,16 @@ def test_closing_ends_the_artifacts_made_last_first(play):
     assert order == ["c", "b", "a"]
 
 
-def test_an_artifact_can_be_disposed_through_any_workspace(play):
-    async def scene(stage):
-        lab = stage.environment.create_workspace("/main/lab")
-        thing = await lab.make_artifact("it", Thing)
-        stage.main.dispose_artifact(thing)
-        with pytest.raises(UnknownArtifact):
-            lab.lookup("it")
-
-    play(scene)
+@played(play)
+async def test_an_artifact_can_be_disposed_through_any_workspace(stage):
+    lab = stage.environment.create_workspace("/main/lab")
+    thing = await lab.make_artifact("it", Thing)
+    stage.main.dispose_artifact(thing)
+    with pytest.raises(UnknownArtifact):
+        lab.lookup("it")
 
 
-def test_an_operation_that_ignores_cancellation_is_abandoned(play):
+def test_an_operation_that_ignores_cancellation_is_abandoned():
     class Stubborn(Artifact):
         @operation
         async def go_on(self):
@@ -429,7 +401,7 @@ def test_an_operation_that_ignores_cancellation_is_abandoned(play):
     play(scene)
 
 
-def test_a_paused_operation_fails_too(play):
+def test_a_paused_operation_fails_too():
     class Resting(Artifact):
         @operation(pausable=True)
         async def rest(self):
@@ -460,18 +432,16 @@ class Farewell(Artifact):
         self.workspace.dispose_artifact(self.id)
 
 
-def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(play):
-    async def scene(stage):
-        it = await stage.make(Farewell)
-        seen = []
-        with Session(stage.environment, "s") as session:
-            session.focus(it)
-            session.on_change(lambda change: seen.append((change.before, change.now)))
-            await session.act("leave")
-            assert seen == [(None, (1,)), ((1,), None)]
-            assert session.focused == ()
-
-    play(scene)
+@played(play)
+async def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(stage):
+    it = await stage.make(Farewell)
+    seen = []
+    with Session(stage.environment, "s") as session:
+        session.focus(it)
+        session.on_change(lambda change: seen.append((change.before, change.now)))
+        await session.act("leave")
+        assert seen == [(None, (1,)), ((1,), None)]
+        assert session.focused == ()
 
 
 class Lonely(Artifact):
@@ -482,10 +452,8 @@ class Lonely(Artifact):
         await self.until(lambda: False)
 
 
-def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(play):
-    async def scene(stage):
-        outcome = await stage.call(await stage.make(Lonely), "leave").wait()
-        assert outcome.reason == Structure("artifact_disposed", ("it",))
-        assert stage.elapsed == 1
-
-    play(scene)
+@played(play)
+async def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(stage):
+    outcome = await stage.call(await stage.make(Lonely), "leave").wait()
+    assert outcome.reason == Structure("artifact_disposed", ("it",))
+    assert stage.elapsed == 1

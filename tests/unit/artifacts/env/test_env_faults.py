@@ -2,12 +2,15 @@
 
 import asyncio
 import functools
+import gc
 import signal
 
 import pytest
 
 from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, internal_operation, operation
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
+from played import played
+from stage_lab import play
 
 
 class Unspeakable(Exception):
@@ -127,7 +130,7 @@ class Bursting(Artifact):
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
 @pytest.mark.parametrize("op", ["now", "at_once", "later", "within", "guarded"])
-def test_an_operation_that_raises_anything_fails_and_is_rolled_back(play, op, raised, message):
+def test_an_operation_that_raises_anything_fails_and_is_rolled_back(op, raised, message):
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
@@ -146,19 +149,17 @@ def test_an_operation_that_raises_anything_fails_and_is_rolled_back(play, op, ra
 
 
 @pytest.mark.parametrize("op", ["now", "at_once"])
-def test_stop_iteration_fails_an_operation_too(play, op):
-    async def scene(stage):
-        it = await stage.make(type("Bursting", (Bursting,), {"what": StopIteration("end")}))
-        call = stage.call(it, op)
-        await call.wait()
-        assert call.reason == Structure("operation_error", (f"{op}/0",))
-        assert "StopIteration" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_stop_iteration_fails_an_operation_too(stage, op):
+    it = await stage.make(type("Bursting", (Bursting,), {"what": StopIteration("end")}))
+    call = stage.call(it, op)
+    await call.wait()
+    assert call.reason == Structure("operation_error", (f"{op}/0",))
+    assert "StopIteration" in call.outcome.message
 
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(play, raised, message):
+def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(raised, message):
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
@@ -174,7 +175,7 @@ def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(play, rai
 
 @pytest.mark.parametrize("when", ["constructor", "init", "slow init", "awaited init"])
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_an_artifact_whose_creation_raises_anything_is_not_created(play, when, raised, message):
+def test_an_artifact_whose_creation_raises_anything_is_not_created(when, raised, message):
     class Unborn(Artifact):
         def __init__(self):
             if when == "constructor":
@@ -205,7 +206,7 @@ def test_an_artifact_whose_creation_raises_anything_is_not_created(play, when, r
     play(scene)
 
 
-def test_an_incomplete_failure_is_a_failure_too(play):
+def test_an_incomplete_failure_is_a_failure_too():
     class Odd(Artifact):
         @operation
         def homemade(self):
@@ -279,29 +280,27 @@ class Meddling(Artifact):
     async def waits(self): ...
 
 
-def test_a_guard_must_not_change_anything(play):
-    async def scene(stage):
-        it = await stage.make(Meddling)
-        watcher = stage.watch(it)
-        for op, said in [
-            ("a", "updating property count is not possible within a guard"),
-            ("b", "the signal tick is not possible within a guard"),
-            ("c", "defining property more is not possible within a guard"),
-            ("d", "expected a plain def as guard"),
-            ("e", "updating property count is not possible within a guard"),
-            ("f", "expected a function in until"),
-            ("g", "expected a plain def as guard"),
-        ]:
-            call = stage.call(it, op)
-            await call.wait()
-            assert said in call.outcome.message
-            assert call.reason == Structure("operation_error", (f"{op}/0",))
-        assert watcher.notes == ["+count(0)"]
-
-    play(scene)
+@played(play)
+async def test_a_guard_must_not_change_anything(stage):
+    it = await stage.make(Meddling)
+    watcher = stage.watch(it)
+    for op, said in [
+        ("a", "updating property count is not possible within a guard"),
+        ("b", "the signal tick is not possible within a guard"),
+        ("c", "defining property more is not possible within a guard"),
+        ("d", "expected a plain def as guard"),
+        ("e", "updating property count is not possible within a guard"),
+        ("f", "expected a function in until"),
+        ("g", "expected a plain def as guard"),
+    ]:
+        call = stage.call(it, op)
+        await call.wait()
+        assert said in call.outcome.message
+        assert call.reason == Structure("operation_error", (f"{op}/0",))
+    assert watcher.notes == ["+count(0)"]
 
 
-def test_a_value_that_cannot_be_converted_rolls_back_the_step(play):
+def test_a_value_that_cannot_be_converted_rolls_back_the_step():
     class Odd(Artifact):
         def init(self):
             self.define_property("count", 0)
@@ -340,7 +339,7 @@ def test_a_value_that_cannot_be_converted_rolls_back_the_step(play):
     play(scene)
 
 
-def test_errors_of_pause_callbacks_are_the_artifacts_own(play):
+def test_errors_of_pause_callbacks_are_the_artifacts_own():
     class Resting(Artifact):
         @operation(pausable=True)
         async def rest(self):
@@ -389,7 +388,7 @@ def test_an_exception_in_a_signal_handler_is_not_an_error_of_the_artifact():
     assert is_interruption(caught(signal.raise_signal, signal.SIGINT))
 
 
-def test_a_ctrl_c_in_the_middle_of_a_coroutine_ends_the_run(play):
+def test_a_ctrl_c_in_the_middle_of_a_coroutine_ends_the_run():
     signal.signal(signal.SIGINT, Handling().handler)
 
     class Busy(Artifact):
@@ -403,6 +402,8 @@ def test_a_ctrl_c_in_the_middle_of_a_coroutine_ends_the_run(play):
 
     with pytest.raises(KeyboardInterrupt):
         play(lambda stage: interrupted(stage, Busy))
+    # asyncio reports the lost task when it is collected. In the middle of a later ast.parse, that makes CPython 3.11 fail.
+    gc.collect()
 
 
 async def interrupted(stage, kind):

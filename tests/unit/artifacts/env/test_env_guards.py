@@ -1,6 +1,8 @@
 """Guards: an operation waits until its guard is true, in the order of arrival."""
 
 from jacaros.artifacts import Artifact, Structure, operation
+from played import played
+from stage_lab import play
 
 
 class Store(Artifact):
@@ -57,196 +59,166 @@ def level(stage, store):
     return stage.property(store, "level")[0]
 
 
-def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_becomes_true(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        take = stage.call(store, "take", 3)
-        stage.call(store, "fill", 2)
-        assert take.outcome is None
-        stage.call(store, "fill", 2)
-        assert take.ok
-        assert level(stage, store) == 1
-
-    play(scene)
+@played(play)
+async def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_becomes_true(stage):
+    store = await stage.make(Store)
+    take = stage.call(store, "take", 3)
+    stage.call(store, "fill", 2)
+    assert take.outcome is None
+    stage.call(store, "fill", 2)
+    assert take.ok
+    assert level(stage, store) == 1
 
 
-def test_a_guard_that_is_true_at_once_does_not_delay(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        stage.call(store, "fill", 2)
-        assert stage.call(store, "take", 2).ok
-
-    play(scene)
+@played(play)
+async def test_a_guard_that_is_true_at_once_does_not_delay(stage):
+    store = await stage.make(Store)
+    stage.call(store, "fill", 2)
+    assert stage.call(store, "take", 2).ok
 
 
-def test_a_step_completes_before_the_operations_that_it_enables(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        stage.watch(store)
-        stage.call(store, "take", 1)
-        stage.story.clear()
-        stage.call(store, "fill", 1)
-        assert stage.story == [
-            ("main", "-level(0) +level(1)"),
-            ("fill", "ok"),
-            ("main", "-level(1) +level(0)"),
-            ("take", "ok"),
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_step_completes_before_the_operations_that_it_enables(stage):
+    store = await stage.make(Store)
+    stage.watch(store)
+    stage.call(store, "take", 1)
+    stage.story.clear()
+    stage.call(store, "fill", 1)
+    assert stage.story == [
+        ("main", "-level(0) +level(1)"),
+        ("fill", "ok"),
+        ("main", "-level(1) +level(0)"),
+        ("take", "ok"),
+    ]
 
 
-def test_waiting_operations_are_served_in_the_order_of_arrival(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        takes = [stage.call(store, "take", 2, agent=name) for name in ("a", "b", "c")]
-        stage.call(store, "fill", 4)
-        assert [take.ok for take in takes] == [True, True, False]
-
-    play(scene)
+@played(play)
+async def test_waiting_operations_are_served_in_the_order_of_arrival(stage):
+    store = await stage.make(Store)
+    takes = [stage.call(store, "take", 2, agent=name) for name in ("a", "b", "c")]
+    stage.call(store, "fill", 4)
+    assert [take.ok for take in takes] == [True, True, False]
 
 
-def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        big, small = stage.call(store, "take", 5), stage.call(store, "take", 1)
-        stage.call(store, "fill", 1)
-        assert (big.ok, small.ok) == (False, True)
-
-    play(scene)
+@played(play)
+async def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(stage):
+    store = await stage.make(Store)
+    big, small = stage.call(store, "take", 5), stage.call(store, "take", 1)
+    stage.call(store, "fill", 1)
+    assert (big.ok, small.ok) == (False, True)
 
 
-def test_a_bounded_buffer_loses_nothing(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        takes = [stage.call(store, "take") for _ in range(50)]
-        for _ in range(50):
-            stage.call(store, "fill")
-        assert all(take.ok for take in takes)
-        assert level(stage, store) == 0
-
-    play(scene)
-
-
-def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        first, second = stage.call(store, "take"), stage.call(store, "take")
-        first.execution.cancel()
-        assert first.execution.ended
-        stage.call(store, "fill", 5)
-        assert (first.outcome, second.ok) == (None, True)
-        assert level(stage, store) == 4
-
-    play(scene)
-
-
-def test_a_guarded_coroutine_begins_when_its_guard_is_true(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        slowly = stage.call(store, "slowly", 1)
-        await stage.clock.sleep(1.0)
-        stage.call(store, "fill", 1)
-        await slowly.wait()
-        assert slowly.ended_at == 2.0
-
-    play(scene)
-
-
-def test_a_guard_may_be_without_parameters(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        stage.call(store, "close", True)
-        visit = stage.call(store, "visit", "bob")
-        assert visit.outcome is None
-        stage.call(store, "close", False)
-        assert visit.ok
-
-    play(scene)
-
-
-def test_an_error_in_a_guard_fails_the_operation_now_or_later(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        assert stage.call(store, "wrong").reason == Structure("operation_error", ("wrong/0",))
-        later = stage.call(store, "wrong_later")
-        assert later.outcome is None
-        stage.call(store, "close", True)
-        assert later.reason == Structure("operation_error", ("wrong_later/0",))
-        assert stage.lines
-        assert not any(line.endswith("never") for line in stage.lines)
-
-    play(scene)
-
-
-def test_a_guard_can_read_the_caller(play):
-    async def scene(stage):
-        kept = []
-
-        class Private(Artifact):
-            @operation(guard="is_owner")
-            def use(self):
-                kept.append(self.caller)
-
-            def is_owner(self):
-                return self.caller == "owner"
-
-        private = await stage.make(Private)
-        stage.call(private, "use", agent="thief")
-        stage.call(private, "use", agent="owner")
-        assert kept == ["owner"]
-
-    play(scene)
-
-
-def test_guards_are_evaluated_on_arrival_and_after_each_step_only(play):
-    async def scene(stage):
-        checked = []
-
-        class Watched(Artifact):
-            @operation(guard="check")
-            def wait(self):
-                pass
-
-            def check(self):
-                checked.append(self.clock.now())
-                return False
-
-            @operation
-            def nothing(self):
-                pass
-
-        watched = await stage.make(Watched)
-        stage.call(watched, "wait")
-        await stage.clock.sleep(1.0)
-        assert len(checked) == 1
-        stage.call(watched, "nothing")
-        stage.call(watched, "nothing")
-        assert len(checked) == 3
-
-    play(scene)
-
-
-def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(play):
-    async def scene(stage):
-        store = await stage.make(Store)
-        chain = [stage.call(store, "take", 1) for _ in range(400)]
-
-        class Refill:
-            agent = "x"
-
-            def observe(self, observation):
-                if (
-                    observation.changed
-                    and chain[-1].outcome is None
-                    and observation.changed[0][1].values == (0,)
-                ):
-                    stage.call(store, "fill")
-
-        stage.main.focus(store, Refill())
-        chain_first = chain[0]
+@played(play)
+async def test_a_bounded_buffer_loses_nothing(stage):
+    store = await stage.make(Store)
+    takes = [stage.call(store, "take") for _ in range(50)]
+    for _ in range(50):
         stage.call(store, "fill")
-        assert chain_first.ok
-        assert chain[-1].ok
+    assert all(take.ok for take in takes)
+    assert level(stage, store) == 0
 
-    play(scene)
+
+@played(play)
+async def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(stage):
+    store = await stage.make(Store)
+    first, second = stage.call(store, "take"), stage.call(store, "take")
+    first.execution.cancel()
+    assert first.execution.ended
+    stage.call(store, "fill", 5)
+    assert (first.outcome, second.ok) == (None, True)
+    assert level(stage, store) == 4
+
+
+@played(play)
+async def test_a_guarded_coroutine_begins_when_its_guard_is_true(stage):
+    store = await stage.make(Store)
+    slowly = stage.call(store, "slowly", 1)
+    await stage.clock.sleep(1.0)
+    stage.call(store, "fill", 1)
+    await slowly.wait()
+    assert slowly.ended_at == 2.0
+
+
+@played(play)
+async def test_a_guard_may_be_without_parameters(stage):
+    store = await stage.make(Store)
+    stage.call(store, "close", True)
+    visit = stage.call(store, "visit", "bob")
+    assert visit.outcome is None
+    stage.call(store, "close", False)
+    assert visit.ok
+
+
+@played(play)
+async def test_an_error_in_a_guard_fails_the_operation_now_or_later(stage):
+    store = await stage.make(Store)
+    assert stage.call(store, "wrong").reason == Structure("operation_error", ("wrong/0",))
+    later = stage.call(store, "wrong_later")
+    assert later.outcome is None
+    stage.call(store, "close", True)
+    assert later.reason == Structure("operation_error", ("wrong_later/0",))
+    assert stage.lines
+    assert not any(line.endswith("never") for line in stage.lines)
+
+
+@played(play)
+async def test_a_guard_can_read_the_caller(stage):
+    kept = []
+
+    class Private(Artifact):
+        @operation(guard="is_owner")
+        def use(self):
+            kept.append(self.caller)
+
+        def is_owner(self):
+            return self.caller == "owner"
+
+    private = await stage.make(Private)
+    stage.call(private, "use", agent="thief")
+    stage.call(private, "use", agent="owner")
+    assert kept == ["owner"]
+
+
+@played(play)
+async def test_guards_are_evaluated_on_arrival_and_after_each_step_only(stage):
+    checked = []
+
+    class Watched(Artifact):
+        @operation(guard="check")
+        def wait(self):
+            pass
+
+        def check(self):
+            checked.append(self.clock.now())
+            return False
+
+        @operation
+        def nothing(self):
+            pass
+
+    watched = await stage.make(Watched)
+    stage.call(watched, "wait")
+    await stage.clock.sleep(1.0)
+    assert len(checked) == 1
+    stage.call(watched, "nothing")
+    stage.call(watched, "nothing")
+    assert len(checked) == 3
+
+
+@played(play)
+async def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(stage):
+    store = await stage.make(Store)
+    chain = [stage.call(store, "take", 1) for _ in range(400)]
+
+    class Refill:
+        agent = "x"
+
+        def observe(self, observation):
+            if observation.changed and chain[-1].outcome is None and observation.changed[0][1].values == (0,):
+                stage.call(store, "fill")
+
+    stage.main.focus(store, Refill())
+    chain_first = chain[0]
+    stage.call(store, "fill")
+    assert chain_first.ok
+    assert chain[-1].ok

@@ -14,25 +14,25 @@ from jacaros.artifacts import (
 )
 from jacaros.artifacts.env.ports import ENDED
 from jacaros.runtime.trace import Cause
+from played import played
+from stage_lab import play
 
 
-def test_create_reports_a_plain_init_immediately(play):
-    async def scene(stage):
-        told = []
-        stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
-        stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
-        (made, outcome), (nothing, refusal) = told
-        assert stage.property(made, "count") == (3,)
-        assert outcome.ok
-        assert nothing is None
-        assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
-        assert stage.main.create("d", Counter).ended
-        assert stage.main.create("d", Counter) is ENDED, "a failure without a waiting caller"
-
-    play(scene)
+@played(play)
+async def test_create_reports_a_plain_init_immediately(stage):
+    told = []
+    stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
+    stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
+    (made, outcome), (nothing, refusal) = told
+    assert stage.property(made, "count") == (3,)
+    assert outcome.ok
+    assert nothing is None
+    assert refusal.reason == Structure("makeArtifactFailure", ("artifact_already_present", "c"))
+    assert stage.main.create("d", Counter).ended
+    assert stage.main.create("d", Counter) is ENDED, "a failure without a waiting caller"
 
 
-def test_the_cause_of_the_creation_is_that_of_its_processes(play):
+def test_the_cause_of_the_creation_is_that_of_its_processes():
     class Alive(Artifact):
         def init(self):
             self.start(self.beat)
@@ -52,7 +52,7 @@ def test_the_cause_of_the_creation_is_that_of_its_processes(play):
     play(scene)
 
 
-def test_the_creator_is_the_caller_in_init(play):
+def test_the_creator_is_the_caller_in_init():
     class Curious(Artifact):
         def init(self):
             self.define_property("maker", self.caller)
@@ -63,7 +63,7 @@ def test_the_creator_is_the_caller_in_init(play):
     play(scene)
 
 
-def test_artifacts_know_their_workspace_in_init(play):
+def test_artifacts_know_their_workspace_in_init():
     class Curious(Artifact):
         def init(self):
             self.define_property(
@@ -79,7 +79,7 @@ def test_artifacts_know_their_workspace_in_init(play):
     play(scene, lent="this")
 
 
-def test_an_artifact_can_make_others(play):
+def test_an_artifact_can_make_others():
     class Maker(Artifact):
         @operation(name="makeOne")
         async def make_one(self, name: str):
@@ -104,12 +104,10 @@ def test_an_artifact_can_make_others(play):
     play(scene)
 
 
-def test_init_cannot_be_called_by_agents(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
-
-    play(scene)
+@played(play)
+async def test_init_cannot_be_called_by_agents(stage):
+    counter = await stage.make(Counter)
+    assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
 
 
 class Several(Artifact):
@@ -131,22 +129,20 @@ class Derived(Several):
         self.define_property("made", f"derived {room}", start)
 
 
-def test_of_several_inits_the_one_with_that_number_of_arguments_runs(play):
-    async def scene(stage):
-        for kind, args, values in [
-            (Several, (), ("usual", 0)),
-            (Several, (3,), ("usual", 3)),
-            (Several, ("hall", 3), ("hall", 3)),
-            (Several, ("a", "b", "c"), (["a", "b", "c"],)),
-            (Derived, (1,), ("usual", 1)),
-            (Derived, ("hall", 3), ("derived hall", 3)),
-        ]:
-            it = await stage.make(kind, *args)
-            assert stage.property(it, "made") == values
-            assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
-            stage.main.dispose_artifact(it)
-
-    play(scene)
+@played(play)
+async def test_of_several_inits_the_one_with_that_number_of_arguments_runs(stage):
+    for kind, args, values in [
+        (Several, (), ("usual", 0)),
+        (Several, (3,), ("usual", 3)),
+        (Several, ("hall", 3), ("hall", 3)),
+        (Several, ("a", "b", "c"), (["a", "b", "c"],)),
+        (Derived, (1,), ("usual", 1)),
+        (Derived, ("hall", 3), ("derived hall", 3)),
+    ]:
+        it = await stage.make(kind, *args)
+        assert stage.property(it, "made") == values
+        assert "unknown" in str(stage.call(it, "init", *args).reason), "an init is not an operation"
+        stage.main.dispose_artifact(it)
 
 
 def test_two_inits_with_the_same_arity_are_an_error():
@@ -159,7 +155,7 @@ def test_two_inits_with_the_same_arity_are_an_error():
             def again(self, start): ...
 
 
-def test_an_init_that_is_an_operation_too_can_be_called_by_agents(play):
+def test_an_init_that_is_an_operation_too_can_be_called_by_agents():
     class Restart(Artifact):
         @operation
         def init(self, start: int):
@@ -173,7 +169,7 @@ def test_an_init_that_is_an_operation_too_can_be_called_by_agents(play):
     play(scene)
 
 
-def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones(play):
+def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones():
     class Two(Artifact):
         def init(self, a): ...
 

@@ -4,6 +4,8 @@ import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.runtime.trace import Cause
+from played import played
+from stage_lab import play
 
 
 class Clock(Artifact):
@@ -90,129 +92,111 @@ class Clock(Artifact):
         self.start(self.guarded)
 
 
-def test_a_process_continues_after_the_operation_that_started_it(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        watcher = stage.watch(clock)
-        assert stage.call(clock, "start", 3).ok
-        await stage.clock.sleep(1.0)
-        assert watcher.notes[1:] == [
-            "-running('no') +running('yes')",
-            "~tick(1)",
-            "~tick(2)",
-            "~tick(3)",
-            "-running('yes') +running('no')",
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_process_continues_after_the_operation_that_started_it(stage):
+    clock = await stage.make(Clock)
+    watcher = stage.watch(clock)
+    assert stage.call(clock, "start", 3).ok
+    await stage.clock.sleep(1.0)
+    assert watcher.notes[1:] == [
+        "-running('no') +running('yes')",
+        "~tick(1)",
+        "~tick(2)",
+        "~tick(3)",
+        "-running('yes') +running('no')",
+    ]
 
 
-def test_the_artifact_can_be_used_meanwhile(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        watcher = stage.watch(clock)
-        stage.call(clock, "start", 1000)
-        await stage.clock.sleep(0.25)
-        assert stage.call(clock, "stop").ok
-        watcher.take()
-        await stage.clock.sleep(1.0)
-        assert watcher.take() == ["-running('no') +running('no')"]
-
-    play(scene)
+@played(play)
+async def test_the_artifact_can_be_used_meanwhile(stage):
+    clock = await stage.make(Clock)
+    watcher = stage.watch(clock)
+    stage.call(clock, "start", 1000)
+    await stage.clock.sleep(0.25)
+    assert stage.call(clock, "stop").ok
+    watcher.take()
+    await stage.clock.sleep(1.0)
+    assert watcher.take() == ["-running('no') +running('no')"]
 
 
-def test_a_process_is_not_started_by_a_step_that_fails(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        watcher = stage.watch(clock)
-        watcher.take()
-        assert not stage.call(clock, "startBroken").ok
-        await stage.clock.sleep(1.0)
-        assert watcher.take() == []
-
-    play(scene)
+@played(play)
+async def test_a_process_is_not_started_by_a_step_that_fails(stage):
+    clock = await stage.make(Clock)
+    watcher = stage.watch(clock)
+    watcher.take()
+    assert not stage.call(clock, "startBroken").ok
+    await stage.clock.sleep(1.0)
+    assert watcher.take() == []
 
 
-def test_a_process_started_before_a_commit_is_started_even_if_the_step_fails_later(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        call = stage.call(clock, "early")
-        await call.wait()
-        assert not call.ok
-        assert stage.property(clock, "ticks") == (1,)
-
-    play(scene)
+@played(play)
+async def test_a_process_started_before_a_commit_is_started_even_if_the_step_fails_later(stage):
+    clock = await stage.make(Clock)
+    call = stage.call(clock, "early")
+    await call.wait()
+    assert not call.ok
+    assert stage.property(clock, "ticks") == (1,)
 
 
-def test_processes_begin_after_the_step_that_starts_them_in_their_order(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        watcher = stage.watch(clock)
-        watcher.take()
-        stage.story.clear()
-        stage.call(clock, "twice")
-        assert stage.story == [
-            ("main", "-ticks(0) +ticks(1)"),
-            ("twice", "ok"),
-            ("main", "-ticks(1) +ticks(11)"),
-            ("main", "-ticks(11) +ticks(111)"),
-        ]
-
-    play(scene)
+@played(play)
+async def test_processes_begin_after_the_step_that_starts_them_in_their_order(stage):
+    clock = await stage.make(Clock)
+    watcher = stage.watch(clock)
+    watcher.take()
+    stage.story.clear()
+    stage.call(clock, "twice")
+    assert stage.story == [
+        ("main", "-ticks(0) +ticks(1)"),
+        ("twice", "ok"),
+        ("main", "-ticks(1) +ticks(11)"),
+        ("main", "-ticks(11) +ticks(111)"),
+    ]
 
 
-def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        assert stage.call(clock, "startAll").ok
-        await stage.clock.sleep(2.0)
-        assert stage.property(clock, "ticks") == (8,), "refuses committed 5, count added 3"
-        assert stage.logged("[it] error in operation breaks/0")
-        assert stage.logged("ValueError: inside")
-        assert stage.logged("[it] operation refuses/0 failed: no way")
-
-    play(scene)
+@played(play)
+async def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(stage):
+    clock = await stage.make(Clock)
+    assert stage.call(clock, "startAll").ok
+    await stage.clock.sleep(2.0)
+    assert stage.property(clock, "ticks") == (8,), "refuses committed 5, count added 3"
+    assert stage.logged("[it] error in operation breaks/0")
+    assert stage.logged("ValueError: inside")
+    assert stage.logged("[it] operation refuses/0 failed: no way")
 
 
-def test_a_guarded_process_waits(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        watcher = stage.watch(clock)
-        stage.call(clock, "startGuarded")
-        watcher.take()
-        stage.call(clock, "twice")
-        assert watcher.take() == [
-            "-ticks(0) +ticks(1)",
-            "~guarded",
-            "-ticks(1) +ticks(11)",
-            "-ticks(11) +ticks(111)",
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_guarded_process_waits(stage):
+    clock = await stage.make(Clock)
+    watcher = stage.watch(clock)
+    stage.call(clock, "startGuarded")
+    watcher.take()
+    stage.call(clock, "twice")
+    assert watcher.take() == [
+        "-ticks(0) +ticks(1)",
+        "~guarded",
+        "-ticks(1) +ticks(11)",
+        "-ticks(11) +ticks(111)",
+    ]
 
 
-def test_an_unknown_process_is_an_error_of_the_artifact(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        call = stage.call(clock, "wrong")
-        assert "unknown internal operation `no_such/0`" in call.outcome.message
-        call = stage.call(clock, "wrongMethod")
-        assert "add @internal_operation above def has_ticks" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_an_unknown_process_is_an_error_of_the_artifact(stage):
+    clock = await stage.make(Clock)
+    call = stage.call(clock, "wrong")
+    assert "unknown internal operation `no_such/0`" in call.outcome.message
+    call = stage.call(clock, "wrongMethod")
+    assert "add @internal_operation above def has_ticks" in call.outcome.message
 
 
-def test_agents_cannot_call_internal_operations(play):
-    async def scene(stage):
-        clock = await stage.make(Clock)
-        call = stage.call(clock, "work", 3)
-        assert call.reason.functor == "unknown_operation"
-        assert "its internal operation of this name is for the artifact itself only" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_agents_cannot_call_internal_operations(stage):
+    clock = await stage.make(Clock)
+    call = stage.call(clock, "work", 3)
+    assert call.reason.functor == "unknown_operation"
+    assert "its internal operation of this name is for the artifact itself only" in call.outcome.message
 
 
-def test_a_process_started_in_init_begins_when_the_artifact_exists(play):
+def test_a_process_started_in_init_begins_when_the_artifact_exists():
     class Alive(Artifact):
         def init(self):
             self.define_property("beats", 0)
@@ -235,7 +219,7 @@ def test_a_process_started_in_init_begins_when_the_artifact_exists(play):
     play(scene)
 
 
-def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(play):
+def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free():
     kept = []
 
     class Sensor(Artifact):
@@ -275,7 +259,7 @@ def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_fre
     play(scene)
 
 
-def test_an_overridden_process_is_found_by_its_method(play):
+def test_an_overridden_process_is_found_by_its_method():
     class Old(Artifact):
         def init(self):
             self.define_property("p", "")
@@ -300,7 +284,7 @@ def test_an_overridden_process_is_found_by_its_method(play):
     play(scene)
 
 
-def test_an_artifact_may_start_its_ordinary_operations_too(play):
+def test_an_artifact_may_start_its_ordinary_operations_too():
     class Both(Artifact):
         def init(self):
             self.define_property("n", 0)

@@ -12,6 +12,8 @@ from jacaros.artifacts import (
     link,
     operation,
 )
+from played import played
+from stage_lab import play
 
 
 class Lamp(Artifact):
@@ -107,222 +109,194 @@ async def linked(stage):
     return lamp, switch
 
 
-def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_caller_ends(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        stage.watch(lamp, "lamp")
-        stage.watch(switch, "switch")
-        stage.story.clear()
-        power = Out()
-        await stage.call(switch, "press", 5, power).wait()
-        assert power.value == 5
-        assert stage.story == [
-            ("lamp", "-power(0) +power(5)"),
-            ("switch", "-presses(0) +presses(1)"),
-            ("press", "ok"),
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_caller_ends(stage):
+    lamp, switch = await linked(stage)
+    stage.watch(lamp, "lamp")
+    stage.watch(switch, "switch")
+    stage.story.clear()
+    power = Out()
+    await stage.call(switch, "press", 5, power).wait()
+    assert power.value == 5
+    assert stage.story == [
+        ("lamp", "-power(0) +power(5)"),
+        ("switch", "-presses(0) +presses(1)"),
+        ("press", "ok"),
+    ]
 
 
-def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(play):
-    async def scene(stage):
-        _, first = await linked(stage)
-        second = await stage.make(Switch, name="second")
-        stage.main.link(second, "out", first)
-        name = Out()
-        await stage.call(first, "owner", name, agent="bob").wait()
-        assert name.value == "bob"
+@played(play)
+async def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(stage):
+    _, first = await linked(stage)
+    second = await stage.make(Switch, name="second")
+    stage.main.link(second, "out", first)
+    name = Out()
+    await stage.call(first, "owner", name, agent="bob").wait()
+    assert name.value == "bob"
 
-        class Far(Switch):
-            @operation
-            async def far(self, name: Out):
-                await self.call_linked("out", "relay", name)
+    class Far(Switch):
+        @operation
+        async def far(self, name: Out):
+            await self.call_linked("out", "relay", name)
 
-        far, deep = await stage.make(Far, name="far"), Out()
-        stage.main.link(far, "out", first)
-        await stage.call(far, "far", deep, agent="carol").wait()
-        assert deep.value == "carol"
-
-    play(scene)
+    far, deep = await stage.make(Far, name="far"), Out()
+    stage.main.link(far, "out", first)
+    await stage.call(far, "far", deep, agent="carol").wait()
+    assert deep.value == "carol"
 
 
 @pytest.mark.parametrize(
     ("operation", "reason"),
     [("refuse", Structure("refused_by", ("lamp",))), ("late_refusal", Structure("late", ("lamp",)))],
 )
-def test_a_failure_passes_through_with_its_reason(play, operation, reason):
-    async def scene(stage):
-        _, switch = await linked(stage)
-        call = stage.call(switch, "forward", operation)
-        await call.wait()
-        assert call.reason == reason
-        assert stage.property(switch, "presses") == (9,), "the call was a step boundary"
-
-    play(scene)
+@played(play)
+async def test_a_failure_passes_through_with_its_reason(stage, operation, reason):
+    _, switch = await linked(stage)
+    call = stage.call(switch, "forward", operation)
+    await call.wait()
+    assert call.reason == reason
+    assert stage.property(switch, "presses") == (9,), "the call was a step boundary"
 
 
-def test_the_caller_may_handle_the_failure(play):
-    async def scene(stage):
-        _, switch = await linked(stage)
-        reason = Out()
-        call = stage.call(switch, "careful", reason)
-        await call.wait()
-        assert call.ok
-        assert reason.value == Structure("refused_by", ("lamp",))
-
-    play(scene)
+@played(play)
+async def test_the_caller_may_handle_the_failure(stage):
+    _, switch = await linked(stage)
+    reason = Out()
+    call = stage.call(switch, "careful", reason)
+    await call.wait()
+    assert call.ok
+    assert reason.value == Structure("refused_by", ("lamp",))
 
 
-def test_an_unknown_linked_operation_fails_with_its_reason(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        call = stage.call(switch, "forward", "ping")
-        await call.wait()
-        assert call.reason == Structure("unknown_operation", (lamp, "ping"))
-        assert "unknown linked operation `ping/0`" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_an_unknown_linked_operation_fails_with_its_reason(stage):
+    lamp, switch = await linked(stage)
+    call = stage.call(switch, "forward", "ping")
+    await call.wait()
+    assert call.reason == Structure("unknown_operation", (lamp, "ping"))
+    assert "unknown linked operation `ping/0`" in call.outcome.message
 
 
-def test_agents_cannot_call_linked_operations_unless_they_are_operations_too(play):
-    async def scene(stage):
-        lamp, _ = await linked(stage)
-        call = stage.call(lamp, "raise", 1)
-        assert call.reason == Structure("unknown_operation", (lamp, "raise"))
-        assert "its linked operation of this name is for other artifacts only" in call.outcome.message
-        assert stage.call(lamp, "read", Out()).ok
-
-    play(scene)
+@played(play)
+async def test_agents_cannot_call_linked_operations_unless_they_are_operations_too(stage):
+    lamp, _ = await linked(stage)
+    call = stage.call(lamp, "raise", 1)
+    assert call.reason == Structure("unknown_operation", (lamp, "raise"))
+    assert "its linked operation of this name is for other artifacts only" in call.outcome.message
+    assert stage.call(lamp, "read", Out()).ok
 
 
-def test_an_unlinked_or_unknown_port_fails(play):
-    async def scene(stage):
-        switch = await stage.make(Switch, name="switch")
-        call = stage.call(switch, "forward", "refuse")
-        await call.wait()
-        assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
-        assert call.outcome.message == "port out of artifact switch is not linked"
-        wrong = stage.call(switch, "wrong_port")
-        await wrong.wait()
-        assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
-        assert "unknown out port `in`" in wrong.outcome.message
-
-    play(scene)
+@played(play)
+async def test_an_unlinked_or_unknown_port_fails(stage):
+    switch = await stage.make(Switch, name="switch")
+    call = stage.call(switch, "forward", "refuse")
+    await call.wait()
+    assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
+    assert call.outcome.message == "port out of artifact switch is not linked"
+    wrong = stage.call(switch, "wrong_port")
+    await wrong.wait()
+    assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
+    assert "unknown out port `in`" in wrong.outcome.message
 
 
-def test_all_artifacts_behind_a_port_are_called_and_waited_for(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        second = await stage.make(Lamp, name="second")
-        stage.main.link(switch, "out", second)
-        stage.main.link(switch, "out", second)
-        power = Out()
-        await stage.call(switch, "press", 5, power).wait()
-        assert [stage.property(each, "power") for each in (lamp, second)] == [(5,), (5,)]
-        call = stage.call(switch, "forward", "late_refusal")
-        await call.wait()
-        assert call.reason == Structure("late", ("lamp",)), "the first in the order of linking"
-        assert stage.main.linked(switch, "out") == (lamp, second)
-
-    play(scene)
+@played(play)
+async def test_all_artifacts_behind_a_port_are_called_and_waited_for(stage):
+    lamp, switch = await linked(stage)
+    second = await stage.make(Lamp, name="second")
+    stage.main.link(switch, "out", second)
+    stage.main.link(switch, "out", second)
+    power = Out()
+    await stage.call(switch, "press", 5, power).wait()
+    assert [stage.property(each, "power") for each in (lamp, second)] == [(5,), (5,)]
+    call = stage.call(switch, "forward", "late_refusal")
+    await call.wait()
+    assert call.reason == Structure("late", ("lamp",)), "the first in the order of linking"
+    assert stage.main.linked(switch, "out") == (lamp, second)
 
 
-def test_the_caller_is_free_for_others_while_it_waits(play):
-    async def scene(stage):
-        _, switch = await linked(stage)
-        slow = stage.call(switch, "forward_slowly", 1.0)
-        await stage.clock.sleep(0.5)
-        assert stage.call(switch, "ping").ok
-        await slow.wait()
-        assert slow.ended_at == 1.0
-
-    play(scene)
+@played(play)
+async def test_the_caller_is_free_for_others_while_it_waits(stage):
+    _, switch = await linked(stage)
+    slow = stage.call(switch, "forward_slowly", 1.0)
+    await stage.clock.sleep(0.5)
+    assert stage.call(switch, "ping").ok
+    await slow.wait()
+    assert slow.ended_at == 1.0
 
 
-def test_cancelling_the_caller_cancels_the_linked_operations(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        watcher = stage.watch(lamp)
-        slow = stage.call(switch, "forward_slowly", 1.0)
-        waiting = stage.call(switch, "forward", "when_on")
-        await stage.clock.sleep(0.5)
-        slow.execution.cancel()
-        waiting.execution.cancel()
-        await stage.clock.sleep(5.0)
-        assert watcher.notes == ["+power(0)", "~ended"]
-        assert (slow.outcome, waiting.outcome) == (None, None)
-        assert stage.call(switch, "ping").ok
-
-    play(scene)
+@played(play)
+async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
+    lamp, switch = await linked(stage)
+    watcher = stage.watch(lamp)
+    slow = stage.call(switch, "forward_slowly", 1.0)
+    waiting = stage.call(switch, "forward", "when_on")
+    await stage.clock.sleep(0.5)
+    slow.execution.cancel()
+    waiting.execution.cancel()
+    await stage.clock.sleep(5.0)
+    assert watcher.notes == ["+power(0)", "~ended"]
+    assert (slow.outcome, waiting.outcome) == (None, None)
+    assert stage.call(switch, "ping").ok
 
 
-def test_disposing_the_target_fails_the_caller_and_unlinks_it(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        slow = stage.call(switch, "forward_slowly", 1.0)
-        await stage.clock.sleep(0.5)
-        stage.main.dispose_artifact(lamp)
-        await slow.wait()
-        assert slow.reason == Structure("artifact_disposed", ("lamp",))
-        again = stage.call(switch, "forward", "refuse")
-        await again.wait()
-        assert again.reason == Structure("operation_error", ("forward/1",))
-
-    play(scene)
+@played(play)
+async def test_disposing_the_target_fails_the_caller_and_unlinks_it(stage):
+    lamp, switch = await linked(stage)
+    slow = stage.call(switch, "forward_slowly", 1.0)
+    await stage.clock.sleep(0.5)
+    stage.main.dispose_artifact(lamp)
+    await slow.wait()
+    assert slow.reason == Structure("artifact_disposed", ("lamp",))
+    again = stage.call(switch, "forward", "refuse")
+    await again.wait()
+    assert again.reason == Structure("operation_error", ("forward/1",))
 
 
-def test_disposing_the_caller_leaves_the_other_links_alone(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        other = await stage.make(Switch, name="other")
-        stage.main.link(other, "out", lamp)
-        stage.main.dispose_artifact(switch)
-        assert stage.main.linked(switch, "out") == ()
-        assert stage.main.linked(other, "out") == (lamp,)
-
-    play(scene)
+@played(play)
+async def test_disposing_the_caller_leaves_the_other_links_alone(stage):
+    lamp, switch = await linked(stage)
+    other = await stage.make(Switch, name="other")
+    stage.main.link(other, "out", lamp)
+    stage.main.dispose_artifact(switch)
+    assert stage.main.linked(switch, "out") == ()
+    assert stage.main.linked(other, "out") == (lamp,)
 
 
-def test_linking_is_checked(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        with pytest.raises(
-            OperationFailed, match=r"unknown out port `up` of .*; its ports are out, spare"
-        ) as caught:
-            stage.main.link(switch, "up", lamp)
-        assert caught.value.reason == Structure("unknown_port", ("up",))
-        with pytest.raises(OperationFailed, match="it has none"):
-            stage.main.link(lamp, "out", switch)
-        stage.main.dispose_artifact(lamp)
-        with pytest.raises(UnknownArtifact) as gone:
-            stage.main.link(switch, "out", lamp)
-        assert gone.value.reason == Structure("artifact_not_available", ("lamp",))
-
-    play(scene)
+@played(play)
+async def test_linking_is_checked(stage):
+    lamp, switch = await linked(stage)
+    with pytest.raises(
+        OperationFailed, match=r"unknown out port `up` of .*; its ports are out, spare"
+    ) as caught:
+        stage.main.link(switch, "up", lamp)
+    assert caught.value.reason == Structure("unknown_port", ("up",))
+    with pytest.raises(OperationFailed, match="it has none"):
+        stage.main.link(lamp, "out", switch)
+    stage.main.dispose_artifact(lamp)
+    with pytest.raises(UnknownArtifact) as gone:
+        stage.main.link(switch, "out", lamp)
+    assert gone.value.reason == Structure("artifact_not_available", ("lamp",))
 
 
-def test_links_reach_other_workspaces(play):
-    async def scene(stage):
-        _, switch = await linked(stage)
-        lab = stage.environment.create_workspace("/main/lab")
-        far = await lab.make_artifact("far", Lamp)
-        stage.main.link(switch, "spare", far)
+@played(play)
+async def test_links_reach_other_workspaces(stage):
+    _, switch = await linked(stage)
+    lab = stage.environment.create_workspace("/main/lab")
+    far = await lab.make_artifact("far", Lamp)
+    stage.main.link(switch, "spare", far)
 
-        class Far(Switch):
-            @operation
-            async def shine(self):
-                await self.call_linked("spare", "raise", 3)
+    class Far(Switch):
+        @operation
+        async def shine(self):
+            await self.call_linked("spare", "raise", 3)
 
-        near = await stage.make(Far, name="near")
-        stage.main.link(near, "spare", far)
-        await stage.call(near, "shine").wait()
-        assert stage.main.properties(far)[0].values == (3,)
-
-    play(scene)
+    near = await stage.make(Far, name="near")
+    stage.main.link(near, "spare", far)
+    await stage.call(near, "shine").wait()
+    assert stage.main.properties(far)[0].values == (3,)
 
 
-def test_a_target_that_is_disposed_during_the_call_is_not_available(play):
+def test_a_target_that_is_disposed_during_the_call_is_not_available():
     class Jealous(Artifact):
         @link
         def greet(self):
@@ -342,7 +316,7 @@ def test_a_target_that_is_disposed_during_the_call_is_not_available(play):
     play(scene)
 
 
-def test_a_link_to_itself_does_not_block(play):
+def test_a_link_to_itself_does_not_block():
     class Self(Artifact):
         ports = ("me",)
 
@@ -394,52 +368,44 @@ class Dim(Artifact):
         power.set(self.value("power"))
 
 
-def test_an_artifact_makes_and_links_another_in_its_init(play):
-    async def scene(stage):
-        hub = await stage.make(Hub, "inner", Dim, name="hub")
-        name, power = Out(), Out()
-        assert stage.call(hub, "name_of_first", name).ok
-        await stage.call(hub, "through_any", power).wait()
-        assert (name.value, power.value) == ("inner", 3)
-
-    play(scene)
+@played(play)
+async def test_an_artifact_makes_and_links_another_in_its_init(stage):
+    hub = await stage.make(Hub, "inner", Dim, name="hub")
+    name, power = Out(), Out()
+    assert stage.call(hub, "name_of_first", name).ok
+    await stage.call(hub, "through_any", power).wait()
+    assert (name.value, power.value) == ("inner", 3)
 
 
-def test_without_a_port_the_first_one_is_meant(play):
-    async def scene(stage):
-        hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
-        stage.main.link(hub, None, dim)
-        assert stage.main.linked(hub, "first") == (dim,)
-        with pytest.raises(OperationFailed, match=r"unknown out port `any` of .*; it has none"):
-            stage.main.link(dim, None, hub)
-
-    play(scene)
+@played(play)
+async def test_without_a_port_the_first_one_is_meant(stage):
+    hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
+    stage.main.link(hub, None, dim)
+    assert stage.main.linked(hub, "first") == (dim,)
+    with pytest.raises(OperationFailed, match=r"unknown out port `any` of .*; it has none"):
+        stage.main.link(dim, None, hub)
 
 
-def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by_its_id(play):
-    async def scene(stage):
-        hub = await stage.make(Hub, name="hub")
-        lab = stage.environment.create_workspace("/main/lab")
-        dim = await lab.make_artifact("dim", Dim)
-        power = Out()
-        assert (await stage.call(hub, "directly", dim, power).wait()).ok
-        assert power.value == 3
-        lab.dispose_artifact(dim)
-        call = stage.call(hub, "directly", dim, Out())
-        await call.wait()
-        assert call.reason == Structure("artifact_not_available", ("dim",))
-
-    play(scene)
+@played(play)
+async def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by_its_id(stage):
+    hub = await stage.make(Hub, name="hub")
+    lab = stage.environment.create_workspace("/main/lab")
+    dim = await lab.make_artifact("dim", Dim)
+    power = Out()
+    assert (await stage.call(hub, "directly", dim, power).wait()).ok
+    assert power.value == 3
+    lab.dispose_artifact(dim)
+    call = stage.call(hub, "directly", dim, Out())
+    await call.wait()
+    assert call.reason == Structure("artifact_not_available", ("dim",))
 
 
-def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(play):
-    async def scene(stage):
-        lamp, switch = await linked(stage)
-        call = stage.call(switch, "forward_slowly", 5)
-        await stage.clock.sleep(0.1)
-        stage.main.dispose_artifact(switch)
-        await call.wait()
-        assert call.reason == Structure("artifact_disposed", ("switch",))
-        assert stage.main.pending(lamp) == (), "the linked operation is dropped with its caller"
-
-    play(scene)
+@played(play)
+async def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(stage):
+    lamp, switch = await linked(stage)
+    call = stage.call(switch, "forward_slowly", 5)
+    await stage.clock.sleep(0.1)
+    stage.main.dispose_artifact(switch)
+    await call.wait()
+    assert call.reason == Structure("artifact_disposed", ("switch",))
+    assert stage.main.pending(lamp) == (), "the linked operation is dropped with its caller"

@@ -6,6 +6,8 @@ from jacaros.artifacts import Artifact, operation
 from jacaros.artifacts.env.workspace import chosen_artifact
 from jacaros.artifacts.kernel.declaration import OperationTable
 from jacaros.artifacts.kernel.steps import Steps
+from played import played
+from stage_lab import play
 
 MANY = 300
 
@@ -49,85 +51,75 @@ def alive(kind):
     return sum(type(each) is kind for each in gc.get_objects())
 
 
-def test_an_artifact_is_chosen_without_searching_all_others(play, monkeypatch):
-    async def scene(stage):
-        counted = Counted(monkeypatch)
-        for number in range(MANY):
-            made = await stage.make(Lamp, name=f"lamp{number}")
-            assert len(stage.main.providers("println", 1)) == 1
-            assert len(stage.main.providers("ping", 0)) == number + 1
-            assert made in stage.main.providers("ping", 0)
-        assert counted.looks < 10 * MANY
-        for number in range(MANY):
-            stage.main.dispose_artifact(stage.main.lookup(f"lamp{number}"))
-            assert len(stage.main.providers("ping", 0)) == MANY - number - 1
-        assert counted.looks < 20 * MANY
-
-    play(scene)
+@played(play)
+async def test_an_artifact_is_chosen_without_searching_all_others(stage, monkeypatch):
+    counted = Counted(monkeypatch)
+    for number in range(MANY):
+        made = await stage.make(Lamp, name=f"lamp{number}")
+        assert len(stage.main.providers("println", 1)) == 1
+        assert len(stage.main.providers("ping", 0)) == number + 1
+        assert made in stage.main.providers("ping", 0)
+    assert counted.looks < 10 * MANY
+    for number in range(MANY):
+        stage.main.dispose_artifact(stage.main.lookup(f"lamp{number}"))
+        assert len(stage.main.providers("ping", 0)) == MANY - number - 1
+    assert counted.looks < 20 * MANY
 
 
-def test_among_many_an_own_artifact_is_chosen_then_the_one_focused_first(play):
-    async def scene(stage):
-        made = []
-        for number in range(MANY):
-            stage.main.create(
-                f"lamp{number}", Lamp, (), f"agent{number % 10}", lambda found, _: made.append(found)
-            )
+@played(play)
+async def test_among_many_an_own_artifact_is_chosen_then_the_one_focused_first(stage):
+    made = []
+    for number in range(MANY):
+        stage.main.create(
+            f"lamp{number}", Lamp, (), f"agent{number % 10}", lambda found, _: made.append(found)
+        )
 
-        def chosen(own, focused=()):
-            return chosen_artifact([stage.main], "ping", 0, own, focused)
+    def chosen(own, focused=()):
+        return chosen_artifact([stage.main], "ping", 0, own, focused)
 
-        assert (chosen("agent0"), chosen("agent7")) == (made[0], made[7])
-        assert chosen("other") is made[0]
-        assert chosen("other", (made[9], made[3])) is made[9]
-        assert chosen("agent5", (made[9],)) is made[5]
-        stage.main.dispose_artifact(made[7])
-        assert chosen("agent7") is made[17]
-
-    play(scene)
+    assert (chosen("agent0"), chosen("agent7")) == (made[0], made[7])
+    assert chosen("other") is made[0]
+    assert chosen("other", (made[9], made[3])) is made[9]
+    assert chosen("agent5", (made[9],)) is made[5]
+    stage.main.dispose_artifact(made[7])
+    assert chosen("agent7") is made[17]
 
 
-def test_disposed_artifacts_leave_nothing_behind(play):
-    async def scene(stage):
-        gone = []
-        stage.environment.when_disposed(gone.append)
-        hub = await stage.make(Lamp, name="hub")
-        registry = stage.main._registry
-        before = alive(Steps)
-        for number in range(MANY):
-            lamp = await stage.make(Lamp, name=f"lamp{number}")
-            stage.main.link(hub, "next", lamp)
-            stage.main.link(lamp, "next", hub)
-            stage.main.link(lamp, "next", lamp)
-            watcher = stage.watch(lamp)
-            assert watcher.notes == ["+lit(0)"]
-            stage.main.dispose_artifact(lamp)
-        assert stage.main.linked(hub, "next") == ()
-        assert len(gone) == MANY
-        assert (registry._links, registry._ending) == ({}, [])
-        del lamp, watcher
-        assert alive(Steps) <= before + 1
-
-    play(scene)
+@played(play)
+async def test_disposed_artifacts_leave_nothing_behind(stage):
+    gone = []
+    stage.environment.when_disposed(gone.append)
+    hub = await stage.make(Lamp, name="hub")
+    registry = stage.main._registry
+    before = alive(Steps)
+    for number in range(MANY):
+        lamp = await stage.make(Lamp, name=f"lamp{number}")
+        stage.main.link(hub, "next", lamp)
+        stage.main.link(lamp, "next", hub)
+        stage.main.link(lamp, "next", lamp)
+        watcher = stage.watch(lamp)
+        assert watcher.notes == ["+lit(0)"]
+        stage.main.dispose_artifact(lamp)
+    assert stage.main.linked(hub, "next") == ()
+    assert len(gone) == MANY
+    assert (registry._links, registry._ending) == ({}, [])
+    del lamp, watcher
+    assert alive(Steps) <= before + 1
 
 
-def test_a_removed_watcher_of_a_workspace_is_forgotten(play):
-    async def scene(stage):
-        before = len(stage.main._watchers)
-        ends = [stage.main.watch(lambda artifact, present: None) for _ in range(MANY)]
-        for end in ends:
-            end()
-            end()
-        assert len(stage.main._watchers) == before
-
-    play(scene)
+@played(play)
+async def test_a_removed_watcher_of_a_workspace_is_forgotten(stage):
+    before = len(stage.main._watchers)
+    ends = [stage.main.watch(lambda artifact, present: None) for _ in range(MANY)]
+    for end in ends:
+        end()
+        end()
+    assert len(stage.main._watchers) == before
 
 
-def test_names_of_removed_properties_are_forgotten(play):
-    async def scene(stage):
-        lamp = await stage.make(Lamp, name="lamp")
-        for number in range(MANY):
-            assert stage.call(lamp, "flash", number).ok
-        assert list(stage.main._steps_of(lamp).publication.properties._by_name) == ["lit"]
-
-    play(scene)
+@played(play)
+async def test_names_of_removed_properties_are_forgotten(stage):
+    lamp = await stage.make(Lamp, name="lamp")
+    for number in range(MANY):
+        assert stage.call(lamp, "flash", number).ok
+    assert list(stage.main._steps_of(lamp).publication.properties._by_name) == ["lit"]

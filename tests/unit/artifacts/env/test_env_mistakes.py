@@ -5,6 +5,8 @@ import asyncio
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, Out, internal_operation, operation
+from played import played
+from stage_lab import play
 
 
 def made(**members):
@@ -78,15 +80,13 @@ class Careless(Artifact):
         ("undefined", (), 'add it with self.define_property("on", ...)'),
     ],
 )
-def test_an_error_of_an_author_is_reported_with_a_fix(play, operation_name, arguments, told):
-    async def scene(stage):
-        call = stage.call(await stage.make(Careless), operation_name, *arguments)
-        assert told in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_an_error_of_an_author_is_reported_with_a_fix(stage, operation_name, arguments, told):
+    call = stage.call(await stage.make(Careless), operation_name, *arguments)
+    assert told in call.outcome.message
 
 
-def test_an_operation_called_without_await_is_reported(play):
+def test_an_operation_called_without_await_is_reported():
     async def scene(stage):
         careless = await stage.make(Careless)
         assert (await stage.call(careless, "rest").wait()).ok
@@ -94,17 +94,15 @@ def test_an_operation_called_without_await_is_reported(play):
     assert play(scene).logged("self.rest() has no effect without await")
 
 
-def test_a_signal_without_an_agent_is_reported(play):
-    async def scene(stage):
-        careless = await stage.make(Careless)
-        assert stage.call(careless, "begin").ok
-        await asyncio.sleep(0)
-        assert any("self.caller is None in internal operations" in line for line in stage.lines)
-
-    play(scene)
+@played(play)
+async def test_a_signal_without_an_agent_is_reported(stage):
+    careless = await stage.make(Careless)
+    assert stage.call(careless, "begin").ok
+    await asyncio.sleep(0)
+    assert any("self.caller is None in internal operations" in line for line in stage.lines)
 
 
-def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts(play):
+def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts():
     names = {"__name__": __name__, "Artifact": Artifact, "operation": operation}
     exec(
         "class Late(Artifact):\n"
@@ -127,7 +125,7 @@ def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts(pl
     play(scene)
 
 
-def test_a_missing_port_can_be_caught(play):
+def test_a_missing_port_can_be_caught():
     class Speaker(Artifact):
         ports = ("out",)
 
@@ -146,7 +144,7 @@ def test_a_missing_port_can_be_caught(play):
     play(scene)
 
 
-def test_a_value_of_another_class_is_an_error(play):
+def test_a_value_of_another_class_is_an_error():
     class Typed(Artifact):
         def init(self):
             self.define_property("free", 3)
@@ -190,14 +188,12 @@ class Copying(Artifact):
         last.set(self.value("path").pop())
 
 
-def test_a_change_of_a_copy_is_reported_once(play):
-    async def scene(stage):
-        await stage.make(Copying, name="a")
-        copying = await stage.make(Copying, name="b")
-        (told,) = [line for line in stage.lines if "changes only a copy" in line]
-        assert told.startswith("[Copying] in Copying.add (line ")
-        assert "): self.value('path').append(x) changes only a copy of the value" in told
-        assert stage.call(copying, "add_rightly", 3).ok
-        assert stage.property(copying, "path") == ([3],)
-
-    play(scene)
+@played(play)
+async def test_a_change_of_a_copy_is_reported_once(stage):
+    await stage.make(Copying, name="a")
+    copying = await stage.make(Copying, name="b")
+    (told,) = [line for line in stage.lines if "changes only a copy" in line]
+    assert told.startswith("[Copying] in Copying.add (line ")
+    assert "): self.value('path').append(x) changes only a copy of the value" in told
+    assert stage.call(copying, "add_rightly", 3).ok
+    assert stage.property(copying, "path") == ([3],)

@@ -1,6 +1,8 @@
 """What observers see: focus, coalescing, signals and changes of one step, order, signals to one agent."""
 
 from jacaros.artifacts import Artifact, Atom, Structure, operation
+from played import played
+from stage_lab import play
 
 
 class Ticker(Artifact):
@@ -83,51 +85,45 @@ class Ticker(Artifact):
         self.define_property("pose", 1, 2, annotations=(Structure("frame", ("map",)),))
 
 
-def test_focus_begins_with_all_properties_and_is_idempotent(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        assert watcher.take() == ["+count(0)"]
-        stage.main.focus(ticker, watcher)
-        assert watcher.take() == []
-        stage.call(ticker, "inc")
-        assert watcher.take() == ["-count(0) +count(1)"]
-        assert stage.main.observers(ticker) == (watcher,)
-
-    play(scene)
+@played(play)
+async def test_focus_begins_with_all_properties_and_is_idempotent(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    assert watcher.take() == ["+count(0)"]
+    stage.main.focus(ticker, watcher)
+    assert watcher.take() == []
+    stage.call(ticker, "inc")
+    assert watcher.take() == ["-count(0) +count(1)"]
+    assert stage.main.observers(ticker) == (watcher,)
 
 
-def test_stop_focus_removes_the_properties_and_a_later_focus_shows_the_current_values(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker, 10)
-        watcher = stage.watch(ticker)
-        stage.call(ticker, "inc")
-        stage.main.stop_focus(ticker, watcher)
-        assert watcher.take() == ["+count(10)", "-count(10) +count(11)", "-count(11)"]
-        stage.call(ticker, "inc")
-        stage.call(ticker, "tickInc")
-        assert watcher.take() == []
-        stage.main.focus(ticker, watcher)
-        assert watcher.take() == ["+count(13)"]
-
-    play(scene)
+@played(play)
+async def test_stop_focus_removes_the_properties_and_a_later_focus_shows_the_current_values(stage):
+    ticker = await stage.make(Ticker, 10)
+    watcher = stage.watch(ticker)
+    stage.call(ticker, "inc")
+    stage.main.stop_focus(ticker, watcher)
+    assert watcher.take() == ["+count(10)", "-count(10) +count(11)", "-count(11)"]
+    stage.call(ticker, "inc")
+    stage.call(ticker, "tickInc")
+    assert watcher.take() == []
+    stage.main.focus(ticker, watcher)
+    assert watcher.take() == ["+count(13)"]
 
 
-def test_stop_focus_without_focus_has_no_effect(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        stage.main.stop_focus(ticker, watcher)
-        watcher.take()
-        stage.main.stop_focus(ticker, watcher)
-        stage.main.dispose_artifact(ticker)
-        stage.main.stop_focus(ticker, watcher)
-        assert watcher.take() == []
-
-    play(scene)
+@played(play)
+async def test_stop_focus_without_focus_has_no_effect(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    stage.main.stop_focus(ticker, watcher)
+    watcher.take()
+    stage.main.stop_focus(ticker, watcher)
+    stage.main.dispose_artifact(ticker)
+    stage.main.stop_focus(ticker, watcher)
+    assert watcher.take() == []
 
 
-def test_focusing_an_artifact_without_properties_is_silent(play):
+def test_focusing_an_artifact_without_properties_is_silent():
     class Mute(Artifact):
         pass
 
@@ -137,107 +133,91 @@ def test_focusing_an_artifact_without_properties_is_silent(play):
     play(scene)
 
 
-def test_each_observer_gets_every_change_in_one_order(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
-        stage.call(ticker, "inc", agent="alice")
-        stage.main.stop_focus(ticker, bob)
-        stage.call(ticker, "inc", agent="bob")
-        assert alice.notes == ["+count(0)", "-count(0) +count(1)", "-count(1) +count(2)"]
-        assert bob.notes == ["+count(0)", "-count(0) +count(1)", "-count(1)"]
-
-    play(scene)
+@played(play)
+async def test_each_observer_gets_every_change_in_one_order(stage):
+    ticker = await stage.make(Ticker)
+    alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
+    stage.call(ticker, "inc", agent="alice")
+    stage.main.stop_focus(ticker, bob)
+    stage.call(ticker, "inc", agent="bob")
+    assert alice.notes == ["+count(0)", "-count(0) +count(1)", "-count(1) +count(2)"]
+    assert bob.notes == ["+count(0)", "-count(0) +count(1)", "-count(1)"]
 
 
-def test_several_updates_in_one_step_are_one_change(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        stage.call(ticker, "burst", 5)
-        assert watcher.notes == ["+count(0)", "-count(0) +count(5)"]
-
-    play(scene)
+@played(play)
+async def test_several_updates_in_one_step_are_one_change(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    stage.call(ticker, "burst", 5)
+    assert watcher.notes == ["+count(0)", "-count(0) +count(5)"]
 
 
-def test_an_update_to_an_equal_value_is_published(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        stage.call(ticker, "same")
-        assert watcher.notes == ["+count(0)", "-count(0) +count(0)"]
-
-    play(scene)
+@played(play)
+async def test_an_update_to_an_equal_value_is_published(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    stage.call(ticker, "same")
+    assert watcher.notes == ["+count(0)", "-count(0) +count(0)"]
 
 
-def test_a_property_added_and_removed_in_one_step_is_not_published(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        watcher.take()
-        stage.call(ticker, "flash")
-        stage.call(ticker, "quiet")
-        assert watcher.take() == []
-        stage.call(ticker, "mix")
-        assert watcher.take() == ["-count(0) +count(1) +new([1, 2])"]
-        stage.call(ticker, "wipe")
-        assert watcher.take() == ["-count(1)"]
-
-    play(scene)
+@played(play)
+async def test_a_property_added_and_removed_in_one_step_is_not_published(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    watcher.take()
+    stage.call(ticker, "flash")
+    stage.call(ticker, "quiet")
+    assert watcher.take() == []
+    stage.call(ticker, "mix")
+    assert watcher.take() == ["-count(0) +count(1) +new([1, 2])"]
+    stage.call(ticker, "wipe")
+    assert watcher.take() == ["-count(1)"]
 
 
-def test_a_signal_and_the_changes_before_it_are_one_publication_signal_first(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        watcher.take()
-        stage.call(ticker, "tickInc")
-        assert watcher.take() == ["~tick(1) -count(0) +count(1)"]
-
-    play(scene)
+@played(play)
+async def test_a_signal_and_the_changes_before_it_are_one_publication_signal_first(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    watcher.take()
+    stage.call(ticker, "tickInc")
+    assert watcher.take() == ["~tick(1) -count(0) +count(1)"]
 
 
-def test_a_signal_before_the_change_of_its_step_is_a_publication_of_its_own(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        watcher.take()
-        stage.call(ticker, "sigFirst")
-        assert watcher.take() == ["~early(0)", "-count(0) +count(1)"]
-        stage.call(ticker, "between")
-        assert watcher.take() == [
-            "~one -count(1) +count(2)",
-            "~two -count(2) +count(4)",
-            "-count(4) +count(5)",
-        ]
-
-    play(scene)
+@played(play)
+async def test_a_signal_before_the_change_of_its_step_is_a_publication_of_its_own(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    watcher.take()
+    stage.call(ticker, "sigFirst")
+    assert watcher.take() == ["~early(0)", "-count(0) +count(1)"]
+    stage.call(ticker, "between")
+    assert watcher.take() == [
+        "~one -count(1) +count(2)",
+        "~two -count(2) +count(4)",
+        "-count(4) +count(5)",
+    ]
 
 
-def test_a_signal_reaches_only_those_who_focus_at_that_time(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        stage.call(ticker, "tickInc")
-        watcher = stage.watch(ticker)
-        assert watcher.notes == ["+count(1)"]
-
-    play(scene)
+@played(play)
+async def test_a_signal_reaches_only_those_who_focus_at_that_time(stage):
+    ticker = await stage.make(Ticker)
+    stage.call(ticker, "tickInc")
+    watcher = stage.watch(ticker)
+    assert watcher.notes == ["+count(1)"]
 
 
-def test_a_signal_to_one_agent_reaches_it_alone_while_the_changes_reach_all(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
-        stage.call(ticker, "whisper", "bob")
-        assert alice.notes == ["+count(0)", "-count(0) +count(1)"]
-        assert bob.notes == ["+count(0)", "~psst(Atom('a')) -count(0) +count(1)"]
-        stage.call(ticker, "whisper", "carol")
-        assert alice.notes[-1] == bob.notes[-1] == "-count(1) +count(2)"
-
-    play(scene)
+@played(play)
+async def test_a_signal_to_one_agent_reaches_it_alone_while_the_changes_reach_all(stage):
+    ticker = await stage.make(Ticker)
+    alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
+    stage.call(ticker, "whisper", "bob")
+    assert alice.notes == ["+count(0)", "-count(0) +count(1)"]
+    assert bob.notes == ["+count(0)", "~psst(Atom('a')) -count(0) +count(1)"]
+    stage.call(ticker, "whisper", "carol")
+    assert alice.notes[-1] == bob.notes[-1] == "-count(1) +count(2)"
 
 
-def test_a_signal_to_one_agent_without_changes_reaches_no_other_observer(play):
+def test_a_signal_to_one_agent_without_changes_reaches_no_other_observer():
     class Whisper(Artifact):
         @operation
         def whisper(self, agent: str):
@@ -252,22 +232,20 @@ def test_a_signal_to_one_agent_without_changes_reaches_no_other_observer(play):
     play(scene)
 
 
-def test_what_was_committed_or_signalled_stays_when_the_step_fails(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        watcher.take()
-        assert not stage.call(ticker, "halfway").ok
-        assert watcher.take() == ["-count(0) +count(1)"]
-        assert not stage.call(ticker, "tell_and_fail").ok
-        assert watcher.take() == ["~done -count(1) +count(2)"]
-        stage.call(ticker, "inc")
-        assert watcher.take() == ["-count(2) +count(3)"]
-
-    play(scene)
+@played(play)
+async def test_what_was_committed_or_signalled_stays_when_the_step_fails(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    watcher.take()
+    assert not stage.call(ticker, "halfway").ok
+    assert watcher.take() == ["-count(0) +count(1)"]
+    assert not stage.call(ticker, "tell_and_fail").ok
+    assert watcher.take() == ["~done -count(1) +count(2)"]
+    stage.call(ticker, "inc")
+    assert watcher.take() == ["-count(2) +count(3)"]
 
 
-def test_signal_names_begin_with_a_lower_case_letter(play):
+def test_signal_names_begin_with_a_lower_case_letter():
     class Loud(Artifact):
         @operation
         def shout(self):
@@ -281,55 +259,49 @@ def test_signal_names_begin_with_a_lower_case_letter(play):
     play(scene)
 
 
-def test_annotations_of_a_property_are_published(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
-        watcher = stage.watch(ticker)
-        stage.call(ticker, "annotate")
-        assert watcher.observations[-1].added[0].annotations == (Structure("frame", ("map",)),)
-
-    play(scene)
+@played(play)
+async def test_annotations_of_a_property_are_published(stage):
+    ticker = await stage.make(Ticker)
+    watcher = stage.watch(ticker)
+    stage.call(ticker, "annotate")
+    assert watcher.observations[-1].added[0].annotations == (Structure("frame", ("map",)),)
 
 
-def test_a_broken_observer_is_reported_and_the_others_are_notified(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
+@played(play, expect_defects=True)
+async def test_a_broken_observer_is_reported_and_the_others_are_notified(stage):
+    ticker = await stage.make(Ticker)
 
-        class Broken:
-            agent = "broken"
+    class Broken:
+        agent = "broken"
 
-            def observe(self, observation):
-                raise ValueError("broken observer")
+        def observe(self, observation):
+            raise ValueError("broken observer")
 
-        stage.main.focus(ticker, Broken())
-        watcher = stage.watch(ticker)
-        assert stage.call(ticker, "inc").ok
-        assert watcher.notes[-1] == "-count(0) +count(1)"
-        assert [str(error) for error in stage.defects] == ["broken observer"] * 2
-        stage.main.dispose_artifact(ticker)
-
-    play(scene, expect_defects=True)
+    stage.main.focus(ticker, Broken())
+    watcher = stage.watch(ticker)
+    assert stage.call(ticker, "inc").ok
+    assert watcher.notes[-1] == "-count(0) +count(1)"
+    assert [str(error) for error in stage.defects] == ["broken observer"] * 2
+    stage.main.dispose_artifact(ticker)
 
 
-def test_an_observer_may_stop_while_it_is_notified(play):
-    async def scene(stage):
-        ticker = await stage.make(Ticker)
+@played(play)
+async def test_an_observer_may_stop_while_it_is_notified(stage):
+    ticker = await stage.make(Ticker)
 
-        class Once:
-            agent = "once"
-            seen = 0
+    class Once:
+        agent = "once"
+        seen = 0
 
-            def observe(self, observation):
-                self.seen += 1
-                if observation.changed:
-                    stage.main.stop_focus(ticker, self)
+        def observe(self, observation):
+            self.seen += 1
+            if observation.changed:
+                stage.main.stop_focus(ticker, self)
 
-        once = Once()
-        stage.main.focus(ticker, once)
-        watcher = stage.watch(ticker)
-        stage.call(ticker, "inc")
-        stage.call(ticker, "inc")
-        assert once.seen == 3, "focus, one change, and the end of the focus"
-        assert watcher.notes[-1] == "-count(1) +count(2)"
-
-    play(scene)
+    once = Once()
+    stage.main.focus(ticker, once)
+    watcher = stage.watch(ticker)
+    stage.call(ticker, "inc")
+    stage.call(ticker, "inc")
+    assert once.seen == 3, "focus, one change, and the end of the focus"
+    assert watcher.notes[-1] == "-count(1) +count(2)"

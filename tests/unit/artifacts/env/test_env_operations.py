@@ -4,6 +4,8 @@ import pytest
 
 from jacaros.artifacts import UNSET, Artifact, Atom, InvalidArtifact, Out, Structure, operation
 from jacaros.runtime.errors import InternalError
+from played import played
+from stage_lab import play
 
 
 class Counter(Artifact):
@@ -90,93 +92,79 @@ class Show(Artifact):
         self.log(" ".join([greeting, name, *more]))
 
 
-def test_a_plain_operation_has_ended_when_execute_returns(play):
-    async def scene(stage):
-        counter = await stage.make(Counter, 5)
-        call = stage.call(counter, "inc")
-        assert call.ok
-        assert call.execution.ended
-        assert stage.property(counter, "count") == (6,)
-
-    play(scene)
+@played(play)
+async def test_a_plain_operation_has_ended_when_execute_returns(stage):
+    counter = await stage.make(Counter, 5)
+    call = stage.call(counter, "inc")
+    assert call.ok
+    assert call.execution.ended
+    assert stage.property(counter, "count") == (6,)
 
 
-def test_observers_are_notified_before_the_caller(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        stage.watch(counter)
-        stage.story.clear()
-        stage.call(counter, "inc")
-        assert stage.story == [("main", "-count(0) +count(1)"), ("inc", "ok")]
-
-    play(scene)
+@played(play)
+async def test_observers_are_notified_before_the_caller(stage):
+    counter = await stage.make(Counter)
+    stage.watch(counter)
+    stage.story.clear()
+    stage.call(counter, "inc")
+    assert stage.story == [("main", "-count(0) +count(1)"), ("inc", "ok")]
 
 
-def test_default_values_of_parameters_give_several_arities(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        stage.call(counter, "inc")
-        stage.call(counter, "inc", 10)
-        assert stage.property(counter, "count") == (11,)
-
-    play(scene)
+@played(play)
+async def test_default_values_of_parameters_give_several_arities(stage):
+    counter = await stage.make(Counter)
+    stage.call(counter, "inc")
+    stage.call(counter, "inc", 10)
+    assert stage.property(counter, "count") == (11,)
 
 
-def test_outputs_count_in_the_arity_and_are_set(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        quotient, remainder = Out(), Out()
-        assert stage.call(counter, "divmod", 17, 5, quotient, remainder).ok
-        assert (quotient.value, remainder.value) == (3, 2)
-        left = Out()
-        assert stage.call(counter, "unset", left).ok
-        assert left.value is UNSET
-        assert not left.is_set
-
-    play(scene)
+@played(play)
+async def test_outputs_count_in_the_arity_and_are_set(stage):
+    counter = await stage.make(Counter)
+    quotient, remainder = Out(), Out()
+    assert stage.call(counter, "divmod", 17, 5, quotient, remainder).ok
+    assert (quotient.value, remainder.value) == (3, 2)
+    left = Out()
+    assert stage.call(counter, "unset", left).ok
+    assert left.value is UNSET
+    assert not left.is_set
 
 
-def test_overloading_by_number_of_arguments_and_an_exact_number_beats_any_number(play):
-    async def scene(stage):
-        show = await stage.make(Show)
+@played(play)
+async def test_overloading_by_number_of_arguments_and_an_exact_number_beats_any_number(stage):
+    show = await stage.make(Show)
 
-        def result(name, *args):
-            out = Out()
-            assert stage.call(show, name, *args, out).ok
-            return out.value
+    def result(name, *args):
+        out = Out()
+        assert stage.call(show, name, *args, out).ok
+        return out.value
 
-        assert result("show", 1) == "one 1"
-        assert result("show", 1, 2) == "two 1 2"
-        assert result("sum", 1, 2, 3, 4) == 10
-        assert result("sum", 9) == "exact 9"
-        assert result("sum") == 0
-
-    play(scene)
+    assert result("show", 1) == "one 1"
+    assert result("show", 1, 2) == "two 1 2"
+    assert result("sum", 1, 2, 3, 4) == 10
+    assert result("sum", 9) == "exact 9"
+    assert result("sum") == 0
 
 
-def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(play):
-    async def scene(stage):
-        show = await stage.make(Show)
-        assert stage.call(show, "greet", "bob").ok
-        assert stage.call(show, "greet", "bob", "hi", "and", "bye").ok
-        call = stage.call(show, "greet")
-        assert call.reason == Structure("unknown_operation", (show, "greet"))
-        assert "greet/any" in call.outcome.message
-        assert stage.lines == ["[it] hello bob", "[it] hi bob and bye"]
-
-    play(scene)
+@played(play)
+async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage):
+    show = await stage.make(Show)
+    assert stage.call(show, "greet", "bob").ok
+    assert stage.call(show, "greet", "bob", "hi", "and", "bye").ok
+    call = stage.call(show, "greet")
+    assert call.reason == Structure("unknown_operation", (show, "greet"))
+    assert "greet/any" in call.outcome.message
+    assert stage.lines == ["[it] hello bob", "[it] hi bob and bye"]
 
 
-def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        result = Out()
-        assert stage.call(counter, "half", 8.0, result).ok
-        assert result.value == 4.0
-        assert stage.call(counter, "root", 2, Atom("label"), result).ok
-        assert result.value == ["float", "label"]
-
-    play(scene)
+@played(play)
+async def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(stage):
+    counter = await stage.make(Counter)
+    result = Out()
+    assert stage.call(counter, "half", 8.0, result).ok
+    assert result.value == 4.0
+    assert stage.call(counter, "root", 2, Atom("label"), result).ok
+    assert result.value == ["float", "label"]
 
 
 @pytest.mark.parametrize(
@@ -191,193 +179,165 @@ def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(play):
         ("root", (10**400, "x", Out()), "argument 1 (number)", "a number", "1000"),
     ],
 )
-def test_a_wrong_argument_fails_and_is_named(play, operation, arguments, parameter, expected, got):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, operation, *arguments)
-        key = f"{operation}/{len(arguments)}"
-        assert call.reason == Structure("wrong_op_arguments", (counter, key))
-        assert f"operation {key} of artifact it: {parameter}: expected {expected}" in call.outcome.message
-        assert f"found {got}" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_a_wrong_argument_fails_and_is_named(stage, operation, arguments, parameter, expected, got):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, operation, *arguments)
+    key = f"{operation}/{len(arguments)}"
+    assert call.reason == Structure("wrong_op_arguments", (counter, key))
+    assert f"operation {key} of artifact it: {parameter}: expected {expected}" in call.outcome.message
+    assert f"found {got}" in call.outcome.message
 
 
-def test_an_unknown_operation_fails_with_a_suggestion(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "incc")
-        assert call.reason == Structure("unknown_operation", (counter, "incc"))
-        assert "did you mean `inc`?" in call.outcome.message
-        assert "inc/0, inc/1, half/2" in call.outcome.message
-        assert call.execution.ended
-
-    play(scene)
+@played(play)
+async def test_an_unknown_operation_fails_with_a_suggestion(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "incc")
+    assert call.reason == Structure("unknown_operation", (counter, "incc"))
+    assert "did you mean `inc`?" in call.outcome.message
+    assert "inc/0, inc/1, half/2" in call.outcome.message
+    assert call.execution.ended
 
 
-def test_the_error_for_a_wrong_arity_lists_the_known_ones(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "inc", 1, 2, 3)
-        assert call.reason == Structure("unknown_operation", (counter, "inc"))
-        assert (
-            "unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1" in call.outcome.message
-        )
-
-    play(scene)
+@played(play)
+async def test_the_error_for_a_wrong_arity_lists_the_known_ones(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "inc", 1, 2, 3)
+    assert call.reason == Structure("unknown_operation", (counter, "inc"))
+    assert "unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1" in call.outcome.message
 
 
-def test_a_failing_operation_has_a_message_and_a_reason(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "refuse", "wrong_key", 3)
-        assert call.outcome.message == "refused"
-        assert call.reason == Structure("wrong_key", (3, "text", True))
-
-    play(scene)
+@played(play)
+async def test_a_failing_operation_has_a_message_and_a_reason(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "refuse", "wrong_key", 3)
+    assert call.outcome.message == "refused"
+    assert call.reason == Structure("wrong_key", (3, "text", True))
 
 
-def test_a_reason_without_arguments_is_an_atom_and_a_failure_may_have_no_reason(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        plain = stage.call(counter, "plain").reason
-        assert plain == Atom("plain")
-        assert isinstance(plain, Atom)
-        jam = stage.call(counter, "jam")
-        assert (jam.outcome.message, jam.reason) == ("jammed", None)
-
-    play(scene)
+@played(play)
+async def test_a_reason_without_arguments_is_an_atom_and_a_failure_may_have_no_reason(stage):
+    counter = await stage.make(Counter)
+    plain = stage.call(counter, "plain").reason
+    assert plain == Atom("plain")
+    assert isinstance(plain, Atom)
+    jam = stage.call(counter, "jam")
+    assert (jam.outcome.message, jam.reason) == ("jammed", None)
 
 
-def test_a_failing_step_is_rolled_back_unobserved(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        watcher = stage.watch(counter)
-        watcher.take()
-        stage.call(counter, "refuse", "no", 1)
-        assert watcher.take() == []
-        assert stage.call(counter, "inc").ok
-        assert watcher.take() == ["-count(0) +count(1)"]
-
-    play(scene)
+@played(play)
+async def test_a_failing_step_is_rolled_back_unobserved(stage):
+    counter = await stage.make(Counter)
+    watcher = stage.watch(counter)
+    watcher.take()
+    stage.call(counter, "refuse", "no", 1)
+    assert watcher.take() == []
+    assert stage.call(counter, "inc").ok
+    assert watcher.take() == ["-count(0) +count(1)"]
 
 
-def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        watcher = stage.watch(counter)
-        watcher.take()
-        call = stage.call(counter, "crash")
-        assert call.reason == Structure("operation_error", ("crash/0",))
-        assert "RuntimeError" in call.outcome.message
-        assert "boom" in call.outcome.message
-        assert stage.logged("[it] error in operation crash/0")
-        assert stage.logged("in crash")
-        assert stage.logged("RuntimeError: boom")
-        assert not stage.logged("kernel/steps.py"), "the trace begins in the author's code"
-        assert stage.call(counter, "inc").ok
-        assert watcher.take() == ["-count(0) +count(1)"]
-
-    play(scene)
+@played(play)
+async def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(stage):
+    counter = await stage.make(Counter)
+    watcher = stage.watch(counter)
+    watcher.take()
+    call = stage.call(counter, "crash")
+    assert call.reason == Structure("operation_error", ("crash/0",))
+    assert "RuntimeError" in call.outcome.message
+    assert "boom" in call.outcome.message
+    assert stage.logged("[it] error in operation crash/0")
+    assert stage.logged("in crash")
+    assert stage.logged("RuntimeError: boom")
+    assert not stage.logged("kernel/steps.py"), "the trace begins in the author's code"
+    assert stage.call(counter, "inc").ok
+    assert watcher.take() == ["-count(0) +count(1)"]
 
 
-def test_an_internal_error_is_reported_and_the_operation_fails(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "defect")
-        assert call.reason == Structure("internal_error", ("defect/0",))
-        assert [str(error) for error in stage.defects] == ["our own fault"]
-        assert stage.call(counter, "inc").ok
-
-    play(scene, expect_defects=True)
+@played(play, expect_defects=True)
+async def test_an_internal_error_is_reported_and_the_operation_fails(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "defect")
+    assert call.reason == Structure("internal_error", ("defect/0",))
+    assert [str(error) for error in stage.defects] == ["our own fault"]
+    assert stage.call(counter, "inc").ok
 
 
-def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "badly")
-        assert call.reason == Structure("operation_error", ("badly/0",))
-        assert "write async def" in call.outcome.message
-
-    play(scene)
+@played(play)
+async def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "badly")
+    assert call.reason == Structure("operation_error", ("badly/0",))
+    assert "write async def" in call.outcome.message
 
 
-def test_the_caller_is_the_agent_that_asked(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        name = Out()
-        stage.call(counter, "who", name, agent="bob")
-        assert name.value == "bob"
-
-    play(scene)
+@played(play)
+async def test_the_caller_is_the_agent_that_asked(stage):
+    counter = await stage.make(Counter)
+    name = Out()
+    stage.call(counter, "who", name, agent="bob")
+    assert name.value == "bob"
 
 
-def test_properties_cannot_be_changed_outside_of_operations(play):
-    async def scene(stage):
-        kept = []
+@played(play)
+async def test_properties_cannot_be_changed_outside_of_operations(stage):
+    kept = []
 
-        class Leaky(Artifact):
-            def init(self):
-                self.define_property("p", 1)
-                kept.append(self)
+    class Leaky(Artifact):
+        def init(self):
+            self.define_property("p", 1)
+            kept.append(self)
 
-        await stage.make(Leaky)
-        leaky = kept[0]
-        for misuse in (
-            lambda: leaky.update_property("p", 2),
-            lambda: leaky.define_property("q", 2),
-            lambda: leaky.remove_property("p"),
-            lambda: leaky.signal("s"),
-            leaky.commit,
-            lambda: leaky.current,
-        ):
-            with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):
-                misuse()
-        assert leaky.value("p") == 1, "reading is allowed"
-        assert leaky.values("p") == (1,)
-        assert leaky.has_property("p", 1)
-        assert not leaky.has_property("p", 2)
-        assert leaky.caller is None
-
-    play(scene)
+    await stage.make(Leaky)
+    leaky = kept[0]
+    for misuse in (
+        lambda: leaky.update_property("p", 2),
+        lambda: leaky.define_property("q", 2),
+        lambda: leaky.remove_property("p"),
+        lambda: leaky.signal("s"),
+        leaky.commit,
+        lambda: leaky.current,
+    ):
+        with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):
+            misuse()
+    assert leaky.value("p") == 1, "reading is allowed"
+    assert leaky.values("p") == (1,)
+    assert leaky.has_property("p", 1)
+    assert not leaky.has_property("p", 2)
+    assert leaky.caller is None
 
 
-def test_an_error_in_the_callers_callback_is_reported_without_other_effects(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        call = stage.call(counter, "inc")
-        call.execution.request.on_done = None
+@played(play, expect_defects=True)
+async def test_an_error_in_the_callers_callback_is_reported_without_other_effects(stage):
+    counter = await stage.make(Counter)
+    call = stage.call(counter, "inc")
+    call.execution.request.on_done = None
 
-        def broken(outcome):
-            raise ValueError("broken caller")
+    def broken(outcome):
+        raise ValueError("broken caller")
 
-        request = call.execution.request
-        request.on_done = broken
-        stage.main.execute(request)
-        assert [str(error) for error in stage.defects] == ["broken caller"]
-        assert stage.call(counter, "inc").ok
-
-    play(scene, expect_defects=True)
+    request = call.execution.request
+    request.on_done = broken
+    stage.main.execute(request)
+    assert [str(error) for error in stage.defects] == ["broken caller"]
+    assert stage.call(counter, "inc").ok
 
 
-def test_a_call_from_a_callback_is_served_after_waiting_ones(play):
-    async def scene(stage):
-        counter = await stage.make(Counter)
-        order = []
+@played(play)
+async def test_a_call_from_a_callback_is_served_after_waiting_ones(stage):
+    counter = await stage.make(Counter)
+    order = []
 
-        class Again:
-            agent = "x"
+    class Again:
+        agent = "x"
 
-            def observe(self, observation):
-                order.append(observation.changed[0][1].values[0] if observation.changed else "focus")
-                if len(order) == 2:
-                    nested = stage.call(counter, "inc", 100)
-                    assert not nested.ok, "the artifact is not free while it publishes"
-                    order.append("asked")
+        def observe(self, observation):
+            order.append(observation.changed[0][1].values[0] if observation.changed else "focus")
+            if len(order) == 2:
+                nested = stage.call(counter, "inc", 100)
+                assert not nested.ok, "the artifact is not free while it publishes"
+                order.append("asked")
 
-        stage.main.focus(counter, Again())
-        stage.call(counter, "inc")
-        assert order == ["focus", 1, "asked", 101]
-        assert stage.story == [("inc", "ok"), ("inc", "ok")]
-
-    play(scene)
+    stage.main.focus(counter, Again())
+    stage.call(counter, "inc")
+    assert order == ["focus", 1, "asked", 101]
+    assert stage.story == [("inc", "ok"), ("inc", "ok")]

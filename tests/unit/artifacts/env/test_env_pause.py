@@ -1,6 +1,8 @@
 """Pausing: opt-in, immediate where it matters, and with the paused time known."""
 
 from jacaros.artifacts import Artifact, link, operation
+from played import played
+from stage_lab import play
 
 
 class Robot(Artifact):
@@ -92,270 +94,238 @@ def units(stage, robot):
     return stage.property(robot, "units")[0]
 
 
-def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 5)
-        await stage.clock.sleep(1.5)
-        move.execution.pause()
-        assert move.execution.paused
-        assert stage.robot.commands == [("halt", 1.5)]
-        await stage.clock.sleep(10.0)
-        assert units(stage, robot) == 2, "it came to its pause point and waits there"
-        move.execution.resume()
-        assert not move.execution.paused
-        await move.wait()
-        assert stage.robot.commands == [("halt", 1.5), "pause point", ("lost", 10.0)]
-        assert stage.robot.resumed == [11.5]
-        assert units(stage, robot) == 5
-        assert move.ended_at == 14.5
-
-    play(scene)
+@played(play)
+async def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 5)
+    await stage.clock.sleep(1.5)
+    move.execution.pause()
+    assert move.execution.paused
+    assert stage.robot.commands == [("halt", 1.5)]
+    await stage.clock.sleep(10.0)
+    assert units(stage, robot) == 2, "it came to its pause point and waits there"
+    move.execution.resume()
+    assert not move.execution.paused
+    await move.wait()
+    assert stage.robot.commands == [("halt", 1.5), "pause point", ("lost", 10.0)]
+    assert stage.robot.resumed == [11.5]
+    assert units(stage, robot) == 5
+    assert move.ended_at == 14.5
 
 
-def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 2)
-        await stage.clock.sleep(0.2)
-        move.execution.pause()
-        await stage.clock.sleep(0.3)
-        move.execution.resume()
-        await move.wait()
-        assert stage.robot.commands == [("halt", 0.2), ("lost", 0.3)]
-
-    play(scene)
+@played(play)
+async def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 2)
+    await stage.clock.sleep(0.2)
+    move.execution.pause()
+    await stage.clock.sleep(0.3)
+    move.execution.resume()
+    await move.wait()
+    assert stage.robot.commands == [("halt", 0.2), ("lost", 0.3)]
 
 
-def test_pausing_again_before_it_continues_keeps_it_paused(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 2)
-        await stage.clock.sleep(0.5)
-        move.execution.pause()
-        await stage.clock.sleep(1.0)
-        move.execution.resume()
-        move.execution.pause()
-        await stage.clock.sleep(5.0)
-        assert units(stage, robot) == 1
-        move.execution.resume()
-        await move.wait()
-        assert stage.robot.commands[-1] == ("lost", 6.0)
-
-    play(scene)
+@played(play)
+async def test_pausing_again_before_it_continues_keeps_it_paused(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 2)
+    await stage.clock.sleep(0.5)
+    move.execution.pause()
+    await stage.clock.sleep(1.0)
+    move.execution.resume()
+    move.execution.pause()
+    await stage.clock.sleep(5.0)
+    assert units(stage, robot) == 1
+    move.execution.resume()
+    await move.wait()
+    assert stage.robot.commands[-1] == ("lost", 6.0)
 
 
-def test_pause_and_resume_are_idempotent(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 1)
-        move.execution.resume()
-        await stage.clock.sleep(0.5)
-        move.execution.pause()
-        move.execution.pause()
-        move.execution.resume()
-        move.execution.resume()
-        await move.wait()
-        move.execution.pause()
-        assert not move.execution.paused
-        assert stage.robot.commands == [("halt", 0.5)]
-
-    play(scene)
+@played(play)
+async def test_pause_and_resume_are_idempotent(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 1)
+    move.execution.resume()
+    await stage.clock.sleep(0.5)
+    move.execution.pause()
+    move.execution.pause()
+    move.execution.resume()
+    move.execution.resume()
+    await move.wait()
+    move.execution.pause()
+    assert not move.execution.paused
+    assert stage.robot.commands == [("halt", 0.5)]
 
 
-def test_an_operation_that_is_not_pausable_continues(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        deaf = stage.call(robot, "deaf")
-        deaf.execution.pause()
-        assert not deaf.execution.paused
-        await deaf.wait()
-        assert deaf.ended_at == 1.0
-
-    play(scene)
+@played(play)
+async def test_an_operation_that_is_not_pausable_continues(stage):
+    robot = await robot_of(stage)
+    deaf = stage.call(robot, "deaf")
+    deaf.execution.pause()
+    assert not deaf.execution.paused
+    await deaf.wait()
+    assert deaf.ended_at == 1.0
 
 
-def test_others_run_while_one_is_paused_even_those_that_exclude_it(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        first = stage.call(robot, "move", 2)
-        await stage.clock.sleep(0.5)
-        second = stage.call(robot, "move", 1)
-        await stage.clock.sleep(0.1)
-        assert not second.execution.begun
-        first.execution.pause()
-        await second.wait()
-        assert second.ended_at == 1.6
-        first.execution.resume()
-        await first.wait()
-        assert units(stage, robot) == 3
-
-    play(scene)
+@played(play)
+async def test_others_run_while_one_is_paused_even_those_that_exclude_it(stage):
+    robot = await robot_of(stage)
+    first = stage.call(robot, "move", 2)
+    await stage.clock.sleep(0.5)
+    second = stage.call(robot, "move", 1)
+    await stage.clock.sleep(0.1)
+    assert not second.execution.begun
+    first.execution.pause()
+    await second.wait()
+    assert second.ended_at == 1.6
+    first.execution.resume()
+    await first.wait()
+    assert units(stage, robot) == 3
 
 
-def test_an_operation_paused_before_it_begins_does_not_begin_before_resume(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        stage.call(robot, "move", 1)
-        await stage.clock.sleep(0.5)
-        second = stage.call(robot, "move", 1)
-        second.execution.pause()
-        await stage.clock.sleep(10.0)
-        assert not second.execution.begun
-        second.execution.resume()
-        await second.wait()
-        assert second.ended_at == 11.5
-
-    play(scene)
+@played(play)
+async def test_an_operation_paused_before_it_begins_does_not_begin_before_resume(stage):
+    robot = await robot_of(stage)
+    stage.call(robot, "move", 1)
+    await stage.clock.sleep(0.5)
+    second = stage.call(robot, "move", 1)
+    second.execution.pause()
+    await stage.clock.sleep(10.0)
+    assert not second.execution.begun
+    second.execution.resume()
+    await second.wait()
+    assert second.ended_at == 11.5
 
 
-def test_a_paused_operation_can_be_cancelled(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 5)
-        await stage.clock.sleep(0.5)
-        move.execution.pause()
-        await stage.clock.sleep(5.0)
-        move.execution.cancel()
-        await stage.clock.sleep(1.0)
-        assert move.execution.ended
-        assert stage.robot._motion is None
-        assert move.outcome is None
-
-    play(scene)
+@played(play)
+async def test_a_paused_operation_can_be_cancelled(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 5)
+    await stage.clock.sleep(0.5)
+    move.execution.pause()
+    await stage.clock.sleep(5.0)
+    move.execution.cancel()
+    await stage.clock.sleep(1.0)
+    assert move.execution.ended
+    assert stage.robot._motion is None
+    assert move.outcome is None
 
 
-def test_an_operation_may_wait_for_resume_itself(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "waits_itself")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
-        await stage.clock.sleep(2.0)
-        assert stage.robot.commands == []
-        call.execution.resume()
-        await call.wait()
-        assert (stage.robot.commands, call.ended_at) == (["resumed"], 2.5)
-
-    play(scene)
+@played(play)
+async def test_an_operation_may_wait_for_resume_itself(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "waits_itself")
+    await stage.clock.sleep(0.5)
+    call.execution.pause()
+    await stage.clock.sleep(2.0)
+    assert stage.robot.commands == []
+    call.execution.resume()
+    await call.wait()
+    assert (stage.robot.commands, call.ended_at) == (["resumed"], 2.5)
 
 
-def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "broken_callback")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
-        assert call.execution.paused
-        assert stage.logged("ZeroDivisionError")
-        await stage.clock.sleep(5.0)
-        assert call.outcome is None
-        call.execution.resume()
-        await call.wait()
-        assert call.ok
-
-    play(scene)
+@played(play)
+async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "broken_callback")
+    await stage.clock.sleep(0.5)
+    call.execution.pause()
+    assert call.execution.paused
+    assert stage.logged("ZeroDivisionError")
+    await stage.clock.sleep(5.0)
+    assert call.outcome is None
+    call.execution.resume()
+    await call.wait()
+    assert call.ok
 
 
-def test_a_callback_registered_while_paused_is_called_at_once(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "late_callback")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
-        await call.wait()
-        assert stage.robot.commands == ["told at once"]
-
-    play(scene)
+@played(play)
+async def test_a_callback_registered_while_paused_is_called_at_once(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "late_callback")
+    await stage.clock.sleep(0.5)
+    call.execution.pause()
+    await call.wait()
+    assert stage.robot.commands == ["told at once"]
 
 
-def test_a_pause_goes_through_links(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        boss = await stage.make(Boss, name="boss")
-        stage.main.link(boss, "robot", robot)
-        send = stage.call(boss, "send", 2)
-        await stage.clock.sleep(0.5)
-        send.execution.pause()
-        await stage.clock.sleep(10.0)
-        assert stage.robot.commands == ["linked halt"]
-        assert units(stage, robot) == 1
-        send.execution.resume()
-        await send.wait()
-        assert send.ended_at == 11.5
-
-    play(scene)
+@played(play)
+async def test_a_pause_goes_through_links(stage):
+    robot = await robot_of(stage)
+    boss = await stage.make(Boss, name="boss")
+    stage.main.link(boss, "robot", robot)
+    send = stage.call(boss, "send", 2)
+    await stage.clock.sleep(0.5)
+    send.execution.pause()
+    await stage.clock.sleep(10.0)
+    assert stage.robot.commands == ["linked halt"]
+    assert units(stage, robot) == 1
+    send.execution.resume()
+    await send.wait()
+    assert send.ended_at == 11.5
 
 
-def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        boss = await stage.make(Boss, name="boss")
-        stage.main.link(boss, "robot", robot)
-        send = stage.call(boss, "send_later", 1)
-        await stage.clock.sleep(0.5)
-        send.execution.pause()
-        await stage.clock.sleep(10.0)
-        assert units(stage, robot) == 0
-        send.execution.resume()
-        await send.wait()
-        assert send.ended_at == 11.5
-
-    play(scene)
+@played(play)
+async def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(stage):
+    robot = await robot_of(stage)
+    boss = await stage.make(Boss, name="boss")
+    stage.main.link(boss, "robot", robot)
+    send = stage.call(boss, "send_later", 1)
+    await stage.clock.sleep(0.5)
+    send.execution.pause()
+    await stage.clock.sleep(10.0)
+    assert units(stage, robot) == 0
+    send.execution.resume()
+    await send.wait()
+    assert send.ended_at == 11.5
 
 
-def test_a_cancelled_wait_does_not_prevent_the_resume(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        call = stage.call(robot, "waits_itself")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
-        await stage.clock.sleep(2.0)
-        call.execution.task.cancel()
-        call.execution.resume()
-        await stage.clock.sleep(1.0)
-        assert (stage.robot.commands, call.outcome) == ([], None)
-
-    play(scene)
+@played(play)
+async def test_a_cancelled_wait_does_not_prevent_the_resume(stage):
+    robot = await robot_of(stage)
+    call = stage.call(robot, "waits_itself")
+    await stage.clock.sleep(0.5)
+    call.execution.pause()
+    await stage.clock.sleep(2.0)
+    call.execution.task.cancel()
+    call.execution.resume()
+    await stage.clock.sleep(1.0)
+    assert (stage.robot.commands, call.outcome) == ([], None)
 
 
-def test_observers_may_pause_an_operation_while_they_are_notified(play):
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 3)
-        await stage.clock.sleep(0.5)
+@played(play)
+async def test_observers_may_pause_an_operation_while_they_are_notified(stage):
+    robot = await robot_of(stage)
+    move = stage.call(robot, "move", 3)
+    await stage.clock.sleep(0.5)
 
-        class Pauser:
-            agent = "x"
+    class Pauser:
+        agent = "x"
 
-            def observe(self, observation):
-                if observation.changed:
-                    move.execution.pause()
+        def observe(self, observation):
+            if observation.changed:
+                move.execution.pause()
 
-        stage.main.focus(robot, Pauser())
-        stage.call(robot, "mark")
-        await stage.clock.sleep(5.0)
-        assert units(stage, robot) == 101, "the mark, and the move up to its next pause point"
-        stage.main.stop_focus(robot, stage.main.observers(robot)[0])
-        move.execution.resume()
-        await move.wait()
-        assert units(stage, robot) == 103
-
-    play(scene)
+    stage.main.focus(robot, Pauser())
+    stage.call(robot, "mark")
+    await stage.clock.sleep(5.0)
+    assert units(stage, robot) == 101, "the mark, and the move up to its next pause point"
+    stage.main.stop_focus(robot, stage.main.observers(robot)[0])
+    move.execution.resume()
+    await move.wait()
+    assert units(stage, robot) == 103
 
 
-def test_a_refused_request_can_be_treated_like_any_other(play):
-    async def scene(stage):
-        refused = stage.call(await robot_of(stage), "no_such").execution
-        refused.pause()
-        refused.on_pause(lambda: None)
-        refused.resume()
-        refused.cancel()
-        assert (refused.ended, refused.paused, refused.pausable, refused.take_paused_time()) == (
-            True,
-            False,
-            False,
-            0.0,
-        )
-
-    play(scene)
+@played(play)
+async def test_a_refused_request_can_be_treated_like_any_other(stage):
+    refused = stage.call(await robot_of(stage), "no_such").execution
+    refused.pause()
+    refused.on_pause(lambda: None)
+    refused.resume()
+    refused.cancel()
+    assert (refused.ended, refused.paused, refused.pausable, refused.take_paused_time()) == (
+        True,
+        False,
+        False,
+        0.0,
+    )

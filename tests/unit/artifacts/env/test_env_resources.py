@@ -12,6 +12,7 @@ from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.values import text
 from jacaros.artifacts.presence.session import Session
 from jacaros.runtime.clock import VirtualClock, run
+from played import played
 
 
 class Robot(Artifact):
@@ -95,124 +96,112 @@ def in_lab(body: Any) -> None:
     run(main, lab.clock)
 
 
-def test_operations_with_the_same_resource_run_in_turn() -> None:
-    async def body(lab: Lab) -> None:
-        lab.begin("one", 1)
-        lab.begin("two", 1, do="dock")
-        await lab.clock.sleep(3)
-        assert lab.lines == ["0 one begins", "1 one ends", "1 two begins", "2 two ends"]
-
-    in_lab(body)
+@played(in_lab)
+async def test_operations_with_the_same_resource_run_in_turn(lab: Lab) -> None:
+    lab.begin("one", 1)
+    lab.begin("two", 1, do="dock")
+    await lab.clock.sleep(3)
+    assert lab.lines == ["0 one begins", "1 one ends", "1 two begins", "2 two ends"]
 
 
-def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues() -> None:
-    async def body(lab: Lab) -> None:
-        lab.begin("tour", 3)
-        await lab.clock.sleep(1.05)
-        lab.begin("flee", 1, urgency=10)
-        assert lab.told == ["tour wheels"]
-        await lab.clock.sleep(10)
-        assert lab.lines == [
-            "0 tour begins",
-            "1.6 tour stands",
-            "1.6 flee begins",
-            "2.6 flee ends",
-            "2.6 tour continues",
-            "4.5 tour ends",
-        ]
-        assert lab.told == ["tour wheels", "tour None"]
-        assert lab.outcomes == {"tour": "ok", "flee": "ok"}
-
-    in_lab(body)
-
-
-def test_preemption_finishes_or_cancels_what_cannot_pause() -> None:
-    async def body(lab: Lab) -> None:
-        lab.begin("dock", 2, do="dock")
-        lab.begin("grasp", 5, do="grasp")
-        await lab.clock.sleep(1)
-        lab.begin("flee", 1, urgency=1)
-        await lab.clock.sleep(3)
-        assert lab.lines[:4] == ["0 dock begins", "2 dock ends", "2 flee begins", "3 flee ends"]
-        lab.begin("again", 1, urgency=1)
-        await lab.clock.sleep(3)
-        assert lab.lines[4:] == ["3 grasp begins", "4 grasp is over", "4 again begins", "5 again ends"]
-        assert lab.outcomes["grasp"] == "preempted(wheels)"
-
-    in_lab(body)
+@played(in_lab)
+async def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues(
+    lab: Lab,
+) -> None:
+    lab.begin("tour", 3)
+    await lab.clock.sleep(1.05)
+    lab.begin("flee", 1, urgency=10)
+    assert lab.told == ["tour wheels"]
+    await lab.clock.sleep(10)
+    assert lab.lines == [
+        "0 tour begins",
+        "1.6 tour stands",
+        "1.6 flee begins",
+        "2.6 flee ends",
+        "2.6 tour continues",
+        "4.5 tour ends",
+    ]
+    assert lab.told == ["tour wheels", "tour None"]
+    assert lab.outcomes == {"tour": "ok", "flee": "ok"}
 
 
-def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards() -> None:
-    async def body(lab: Lab) -> None:
-        tour = lab.begin("tour", 2)
-        await lab.clock.sleep(1.05)
-        tour.pause()
-        await lab.clock.sleep(1)
-        lab.begin("other", 2)
-        await lab.clock.sleep(1)
-        tour.resume()
-        await lab.clock.sleep(5)
-        assert lab.lines == [
-            "0 tour begins",
-            "1.6 tour stands",
-            "2.05 other begins",
-            "4.05 other ends",
-            "4.05 tour continues",
-            "4.95 tour ends",
-        ]
-        assert not lab.told, "it was suspended by its caller"
-
-    in_lab(body)
+@played(in_lab)
+async def test_preemption_finishes_or_cancels_what_cannot_pause(lab: Lab) -> None:
+    lab.begin("dock", 2, do="dock")
+    lab.begin("grasp", 5, do="grasp")
+    await lab.clock.sleep(1)
+    lab.begin("flee", 1, urgency=1)
+    await lab.clock.sleep(3)
+    assert lab.lines[:4] == ["0 dock begins", "2 dock ends", "2 flee begins", "3 flee ends"]
+    lab.begin("again", 1, urgency=1)
+    await lab.clock.sleep(3)
+    assert lab.lines[4:] == ["3 grasp begins", "4 grasp is over", "4 again begins", "5 again ends"]
+    assert lab.outcomes["grasp"] == "preempted(wheels)"
 
 
-def test_a_preempted_operation_that_is_suspended_does_not_continue() -> None:
-    async def body(lab: Lab) -> None:
-        tour = lab.begin("tour", 2)
-        await lab.clock.sleep(1.05)
-        lab.begin("flee", 1, urgency=1)
-        await lab.clock.sleep(1)
-        tour.pause()
-        assert lab.told == ["tour wheels", "tour None"]
-        await lab.clock.sleep(5)
-        assert lab.lines[-1] == "2.6 flee ends"
-        tour.resume()
-        await lab.clock.sleep(5)
-        assert lab.lines[-2:] == ["7.05 tour continues", "7.95 tour ends"]
-
-    in_lab(body)
-
-
-def test_the_end_of_an_agent_releases_what_it_held_and_waited_for() -> None:
-    async def body(lab: Lab) -> None:
-        first, second = lab.begin("first", 9), lab.begin("second", 9)
-        lab.begin("third", 1)
-        await lab.clock.sleep(0.05)
-        second.cancel()
-        first.cancel()
-        await lab.clock.sleep(2)
-        assert lab.lines == ["0 first begins", "0.05 third begins", "1.05 third ends"]
-        lab.begin("fourth", 9)
-        lab.begin("fifth", 9)
-        lab.environment.workspace("/main").dispose_artifact(lab.id)
-        await lab.clock.sleep(1)
-        arbiter = lab.environment.arbiter
-        assert not arbiter.waiting()
-        assert not arbiter.holders("wheels")
-        assert lab.outcomes["fifth"] == 'artifact_disposed("robot")'
-
-    in_lab(body)
+@played(in_lab)
+async def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards(lab: Lab) -> None:
+    tour = lab.begin("tour", 2)
+    await lab.clock.sleep(1.05)
+    tour.pause()
+    await lab.clock.sleep(1)
+    lab.begin("other", 2)
+    await lab.clock.sleep(1)
+    tour.resume()
+    await lab.clock.sleep(5)
+    assert lab.lines == [
+        "0 tour begins",
+        "1.6 tour stands",
+        "2.05 other begins",
+        "4.05 other ends",
+        "4.05 tour continues",
+        "4.95 tour ends",
+    ]
+    assert not lab.told, "it was suspended by its caller"
 
 
-def test_a_claim_that_must_not_wait_is_refused_immediately() -> None:
-    async def body(lab: Lab) -> None:
-        lab.begin("tour", 2)
-        outcomes: list[OperationOutcome] = []
-        request = OperationRequest(lab.id, "drive", ("x", 1), "a", on_done=outcomes.append, policy="refuse")
-        lab.environment.execute(request)
-        assert text(outcomes[0].reason, True) == "resource_busy(wheels)"
-        assert outcomes[0].message == "operation drive/2 of artifact robot: wheels is in use"
+@played(in_lab)
+async def test_a_preempted_operation_that_is_suspended_does_not_continue(lab: Lab) -> None:
+    tour = lab.begin("tour", 2)
+    await lab.clock.sleep(1.05)
+    lab.begin("flee", 1, urgency=1)
+    await lab.clock.sleep(1)
+    tour.pause()
+    assert lab.told == ["tour wheels", "tour None"]
+    await lab.clock.sleep(5)
+    assert lab.lines[-1] == "2.6 flee ends"
+    tour.resume()
+    await lab.clock.sleep(5)
+    assert lab.lines[-2:] == ["7.05 tour continues", "7.95 tour ends"]
 
-    in_lab(body)
+
+@played(in_lab)
+async def test_the_end_of_an_agent_releases_what_it_held_and_waited_for(lab: Lab) -> None:
+    first, second = lab.begin("first", 9), lab.begin("second", 9)
+    lab.begin("third", 1)
+    await lab.clock.sleep(0.05)
+    second.cancel()
+    first.cancel()
+    await lab.clock.sleep(2)
+    assert lab.lines == ["0 first begins", "0.05 third begins", "1.05 third ends"]
+    lab.begin("fourth", 9)
+    lab.begin("fifth", 9)
+    lab.environment.workspace("/main").dispose_artifact(lab.id)
+    await lab.clock.sleep(1)
+    arbiter = lab.environment.arbiter
+    assert not arbiter.waiting()
+    assert not arbiter.holders("wheels")
+    assert lab.outcomes["fifth"] == 'artifact_disposed("robot")'
+
+
+@played(in_lab)
+async def test_a_claim_that_must_not_wait_is_refused_immediately(lab: Lab) -> None:
+    lab.begin("tour", 2)
+    outcomes: list[OperationOutcome] = []
+    request = OperationRequest(lab.id, "drive", ("x", 1), "a", on_done=outcomes.append, policy="refuse")
+    lab.environment.execute(request)
+    assert text(outcomes[0].reason, True) == "resource_busy(wheels)"
+    assert outcomes[0].message == "operation drive/2 of artifact robot: wheels is in use"
 
 
 @pytest.mark.parametrize(
@@ -232,31 +221,27 @@ def test_wrong_declarations_are_refused_when_the_class_is_made(arguments: Any, m
         type("Wrong", (Artifact,), {"work": operation(**arguments)(work)})
 
 
-def test_two_environments_share_nothing() -> None:
-    async def body(lab: Lab) -> None:
-        other = Lab()
-        other.clock = lab.clock
-        other.environment = Environment(lab.clock)
-        await other.make()
-        lab.begin("one", 1)
-        other.begin("two", 1)
-        await asyncio.sleep(0)
-        await lab.clock.sleep(1.5)
-        assert other.lines == ["0 two begins", "1 two ends"]
-
-    in_lab(body)
+@played(in_lab)
+async def test_two_environments_share_nothing(lab: Lab) -> None:
+    other = Lab()
+    other.clock = lab.clock
+    other.environment = Environment(lab.clock)
+    await other.make()
+    lab.begin("one", 1)
+    other.begin("two", 1)
+    await asyncio.sleep(0)
+    await lab.clock.sleep(1.5)
+    assert other.lines == ["0 two begins", "1 two ends"]
 
 
-def test_operations_of_a_session_have_an_urgency() -> None:
-    async def body(lab: Lab) -> None:
-        session = Session(lab.environment, "script")
-        tour = session.begin("drive", "tour", 2)
-        await lab.clock.sleep(1.05)
-        await session.act("drive", "flee", 1, urgency=5)
-        await tour
-        assert lab.lines[2:] == ["1.6 flee begins", "2.6 flee ends", "2.6 tour continues", "3.5 tour ends"]
-
-    in_lab(body)
+@played(in_lab)
+async def test_operations_of_a_session_have_an_urgency(lab: Lab) -> None:
+    session = Session(lab.environment, "script")
+    tour = session.begin("drive", "tour", 2)
+    await lab.clock.sleep(1.05)
+    await session.act("drive", "flee", 1, urgency=5)
+    await tour
+    assert lab.lines[2:] == ["1.6 flee begins", "2.6 flee ends", "2.6 tour continues", "3.5 tour ends"]
 
 
 class Clumsy(Artifact):
@@ -281,16 +266,14 @@ class Clumsy(Artifact):
         self.start(self.carry)
 
 
-def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources() -> None:
-    async def body(lab: Lab) -> None:
-        clumsy = await lab.environment.workspace("/main").make_artifact("clumsy", Clumsy)
-        artifact: Any = lab.environment.artifact(clumsy)
-        lab.environment.execute(OperationRequest(clumsy, "rest"))
-        artifact.start("carry")
-        lab.environment.execute(OperationRequest(clumsy, "ask_for_it"))
-        await lab.clock.sleep(0.5)
-        assert artifact.carried == 0
-        await lab.clock.sleep(1)
-        assert artifact.carried == 2
-
-    in_lab(body)
+@played(in_lab)
+async def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources(lab: Lab) -> None:
+    clumsy = await lab.environment.workspace("/main").make_artifact("clumsy", Clumsy)
+    artifact: Any = lab.environment.artifact(clumsy)
+    lab.environment.execute(OperationRequest(clumsy, "rest"))
+    artifact.start("carry")
+    lab.environment.execute(OperationRequest(clumsy, "ask_for_it"))
+    await lab.clock.sleep(0.5)
+    assert artifact.carried == 0
+    await lab.clock.sleep(1)
+    assert artifact.carried == 2

@@ -5,6 +5,8 @@ import asyncio
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, Structure, operation
+from played import played
+from stage_lab import play
 
 
 class Lane(Artifact):
@@ -91,163 +93,141 @@ def trace(stage, lane):
     return stage.property(lane, "trace")[0]
 
 
-def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        a = stage.call(lane, "run", "a", 3, 0.4)
-        await stage.clock.sleep(0.13)
-        b = stage.call(lane, "run", "b", 2, 0.4)
-        await stage.clock.sleep(0.13)
-        assert stage.call(lane, "mark", "x").ok
-        await a.wait()
-        assert trace(stage, lane) == ["a1", "b1", "x", "a2", "b2", "a3"]
-        assert (b.ended_at, a.ended_at) == (0.93, 1.2)
-
-    play(scene)
+@played(play)
+async def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(stage):
+    lane = await stage.make(Lane)
+    a = stage.call(lane, "run", "a", 3, 0.4)
+    await stage.clock.sleep(0.13)
+    b = stage.call(lane, "run", "b", 2, 0.4)
+    await stage.clock.sleep(0.13)
+    assert stage.call(lane, "mark", "x").ok
+    await a.wait()
+    assert trace(stage, lane) == ["a1", "b1", "x", "a2", "b2", "a3"]
+    assert (b.ended_at, a.ended_at) == (0.93, 1.2)
 
 
-def test_a_pause_publishes_the_changes_so_far(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        watcher = stage.watch(lane)
-        stage.call(lane, "run", "a", 2, 0.1)
-        await stage.clock.sleep(0.05)
-        assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
-        await stage.clock.sleep(0.1)
-        assert watcher.notes[-1] == "-trace(['a1']) +trace(['a1', 'a2'])"
-
-    play(scene)
+@played(play)
+async def test_a_pause_publishes_the_changes_so_far(stage):
+    lane = await stage.make(Lane)
+    watcher = stage.watch(lane)
+    stage.call(lane, "run", "a", 2, 0.1)
+    await stage.clock.sleep(0.05)
+    assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
+    await stage.clock.sleep(0.1)
+    assert watcher.notes[-1] == "-trace(['a1']) +trace(['a1', 'a2'])"
 
 
-def test_awaiting_without_a_step_boundary_blocks_the_artifact(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        watcher = stage.watch(lane)
-        watcher.take()
-        hold = stage.call(lane, "hold", "a", 1.0)
-        await stage.clock.sleep(0.5)
-        mark = stage.call(lane, "mark", "x")
-        assert mark.outcome is None
-        assert watcher.take() == [], "nothing of the step is published"
-        await mark.wait()
-        assert (hold.ended_at, mark.ended_at) == (1.0, 1.0)
-        assert trace(stage, lane) == ["a begins", "a ends", "x"]
-        assert len(watcher.take()) == 2
-
-    play(scene)
+@played(play)
+async def test_awaiting_without_a_step_boundary_blocks_the_artifact(stage):
+    lane = await stage.make(Lane)
+    watcher = stage.watch(lane)
+    watcher.take()
+    hold = stage.call(lane, "hold", "a", 1.0)
+    await stage.clock.sleep(0.5)
+    mark = stage.call(lane, "mark", "x")
+    assert mark.outcome is None
+    assert watcher.take() == [], "nothing of the step is published"
+    await mark.wait()
+    assert (hold.ended_at, mark.ended_at) == (1.0, 1.0)
+    assert trace(stage, lane) == ["a begins", "a ends", "x"]
+    assert len(watcher.take()) == 2
 
 
-def test_operations_that_wait_for_the_artifact_are_served_in_their_order(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        stage.call(lane, "hold", "a", 1.0)
-        stage.call(lane, "mark", "x")
-        stage.call(lane, "at_once")
-        last = stage.call(lane, "mark", "y")
-        await last.wait()
-        assert trace(stage, lane) == ["a begins", "a ends", "x", "at once", "y"]
-
-    play(scene)
+@played(play)
+async def test_operations_that_wait_for_the_artifact_are_served_in_their_order(stage):
+    lane = await stage.make(Lane)
+    stage.call(lane, "hold", "a", 1.0)
+    stage.call(lane, "mark", "x")
+    stage.call(lane, "at_once")
+    last = stage.call(lane, "mark", "y")
+    await last.wait()
+    assert trace(stage, lane) == ["a begins", "a ends", "x", "at once", "y"]
 
 
-def test_an_operation_that_resumes_queues_behind_waiting_ones(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        run = stage.call(lane, "run", "r", 2, 1.0)
-        await stage.clock.sleep(0.9)
-        stage.call(lane, "hold", "h", 1.0)
-        stage.call(lane, "mark", "x")
-        await run.wait()
-        assert trace(stage, lane) == ["r1", "h begins", "h ends", "x", "r2"]
-
-    play(scene)
+@played(play)
+async def test_an_operation_that_resumes_queues_behind_waiting_ones(stage):
+    lane = await stage.make(Lane)
+    run = stage.call(lane, "run", "r", 2, 1.0)
+    await stage.clock.sleep(0.9)
+    stage.call(lane, "hold", "h", 1.0)
+    stage.call(lane, "mark", "x")
+    await run.wait()
+    assert trace(stage, lane) == ["r1", "h begins", "h ends", "x", "r2"]
 
 
-def test_until_continues_when_a_step_of_another_operation_makes_it_true(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        first, second = stage.call(lane, "wait", "1"), stage.call(lane, "wait", "2")
-        await stage.clock.sleep(1.0)
-        stage.call(lane, "mark", "x")
-        assert first.outcome is None
-        stage.call(lane, "openGate")
-        await second.wait()
-        assert trace(stage, lane) == ["x", "1", "2"]
-        third = stage.call(lane, "wait", "3")
-        await third.wait()
-        assert third.ended_at == 1.0, "a condition that is true at once does not delay"
-
-    play(scene)
+@played(play)
+async def test_until_continues_when_a_step_of_another_operation_makes_it_true(stage):
+    lane = await stage.make(Lane)
+    first, second = stage.call(lane, "wait", "1"), stage.call(lane, "wait", "2")
+    await stage.clock.sleep(1.0)
+    stage.call(lane, "mark", "x")
+    assert first.outcome is None
+    stage.call(lane, "openGate")
+    await second.wait()
+    assert trace(stage, lane) == ["x", "1", "2"]
+    third = stage.call(lane, "wait", "3")
+    await third.wait()
+    assert third.ended_at == 1.0, "a condition that is true at once does not delay"
 
 
-def test_an_error_in_a_condition_fails_the_operation(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        now, later = stage.call(lane, "wait_wrong"), stage.call(lane, "wait_wrong_later")
-        await now.wait()
-        assert now.reason == Structure("operation_error", ("wait_wrong/0",))
-        stage.call(lane, "openGate")
-        await later.wait()
-        assert later.reason == Structure("operation_error", ("wait_wrong_later/0",))
-        assert stage.call(lane, "mark", "x").ok
-
-    play(scene)
+@played(play)
+async def test_an_error_in_a_condition_fails_the_operation(stage):
+    lane = await stage.make(Lane)
+    now, later = stage.call(lane, "wait_wrong"), stage.call(lane, "wait_wrong_later")
+    await now.wait()
+    assert now.reason == Structure("operation_error", ("wait_wrong/0",))
+    stage.call(lane, "openGate")
+    await later.wait()
+    assert later.reason == Structure("operation_error", ("wait_wrong_later/0",))
+    assert stage.call(lane, "mark", "x").ok
 
 
-def test_anything_can_be_awaited_in_a_step_of_its_own(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        given = Out()
-        result = stage.call(lane, "result", given)
-        await stage.clock.sleep(0.5)
-        assert stage.call(lane, "mark", "meanwhile").ok
-        await result.wait()
-        assert given.value == 42
-
-    play(scene)
+@played(play)
+async def test_anything_can_be_awaited_in_a_step_of_its_own(stage):
+    lane = await stage.make(Lane)
+    given = Out()
+    result = stage.call(lane, "result", given)
+    await stage.clock.sleep(0.5)
+    assert stage.call(lane, "mark", "meanwhile").ok
+    await result.wait()
+    assert given.value == 42
 
 
-def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        call = stage.call(lane, "awaiting_fails")
-        await call.wait()
-        assert call.ok
-        assert trace(stage, lane) == ["before", "caught"]
-
-    play(scene)
+@played(play)
+async def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(stage):
+    lane = await stage.make(Lane)
+    call = stage.call(lane, "awaiting_fails")
+    await call.wait()
+    assert call.ok
+    assert trace(stage, lane) == ["before", "caught"]
 
 
 @pytest.mark.parametrize(
     ("name", "reason"),
     [("late", Structure("late", (2,))), ("crash", Structure("operation_error", ("crash/0",)))],
 )
-def test_only_the_failing_step_is_rolled_back(play, name, reason):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        call = stage.call(lane, name)
-        await call.wait()
-        assert call.reason == reason
-        assert trace(stage, lane) == ["first"]
-        assert call.ended_at == 0.05
-
-    play(scene)
+@played(play)
+async def test_only_the_failing_step_is_rolled_back(stage, name, reason):
+    lane = await stage.make(Lane)
+    call = stage.call(lane, name)
+    await call.wait()
+    assert call.reason == reason
+    assert trace(stage, lane) == ["first"]
+    assert call.ended_at == 0.05
 
 
-def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(play):
-    async def scene(stage):
-        lane = await stage.make(Lane)
-        stage.call(lane, "hold", "a", 1.0)
-        await stage.clock.sleep(0.5)
-        watcher = stage.watch(lane)
-        assert watcher.notes == ["+trace([])"]
-        await stage.clock.sleep(1.0)
-        assert watcher.notes[-1] == "-trace([]) +trace(['a begins', 'a ends'])"
-
-    play(scene)
+@played(play)
+async def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(stage):
+    lane = await stage.make(Lane)
+    stage.call(lane, "hold", "a", 1.0)
+    await stage.clock.sleep(0.5)
+    watcher = stage.watch(lane)
+    assert watcher.notes == ["+trace([])"]
+    await stage.clock.sleep(1.0)
+    assert watcher.notes[-1] == "-trace([]) +trace(['a begins', 'a ends'])"
 
 
-def test_only_a_coroutine_may_end_its_step_in_the_middle(play):
+def test_only_a_coroutine_may_end_its_step_in_the_middle():
     kept = []
 
     class Plain(Artifact):
@@ -264,7 +244,7 @@ def test_only_a_coroutine_may_end_its_step_in_the_middle(play):
     play(scene)
 
 
-def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(play):
+def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn():
     class Held(Artifact):
         def init(self):
             self.define_property("p", 0)
@@ -290,7 +270,7 @@ def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(play):
     play(scene)
 
 
-def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(play):
+def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only():
     class Waiting(Artifact):
         @operation
         async def wait(self):
@@ -306,7 +286,7 @@ def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(pl
     play(scene)
 
 
-def test_many_operations_on_many_artifacts_run_in_the_same_order_each_time(play):
+def test_many_operations_on_many_artifacts_run_in_the_same_order_each_time():
     def once():
         async def scene(stage):
             lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]

@@ -4,6 +4,8 @@ import asyncio
 import threading
 
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, Structure, operation
+from played import played
+from stage_lab import play
 
 
 class Blocking(Artifact):
@@ -47,59 +49,51 @@ async def until_inside(stage):
     await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 60.0)
 
 
-def test_others_use_the_artifact_while_a_thread_works_for_an_operation(play):
-    async def scene(stage):
-        blocking = await blocking_of(stage)
-        result = Out()
-        call = stage.call(blocking, "work", result)
-        await until_inside(stage)
-        assert stage.property(blocking, "count") == (1,)
-        assert stage.call(blocking, "inc").ok
-        stage.it.gate.set()
-        await call.wait()
-        assert (result.value, stage.property(blocking, "count")) == (42, (12,))
-        assert stage.elapsed == 0.0, "virtual time stood still"
-
-    play(scene)
+@played(play)
+async def test_others_use_the_artifact_while_a_thread_works_for_an_operation(stage):
+    blocking = await blocking_of(stage)
+    result = Out()
+    call = stage.call(blocking, "work", result)
+    await until_inside(stage)
+    assert stage.property(blocking, "count") == (1,)
+    assert stage.call(blocking, "inc").ok
+    stage.it.gate.set()
+    await call.wait()
+    assert (result.value, stage.property(blocking, "count")) == (42, (12,))
+    assert stage.elapsed == 0.0, "virtual time stood still"
 
 
-def test_disposal_does_not_wait_for_a_thread(play):
-    async def scene(stage):
-        blocking = await blocking_of(stage)
-        call = stage.call(blocking, "work", Out())
-        await until_inside(stage)
-        stage.main.dispose_artifact(blocking)
-        await call.wait()
-        assert call.reason == Structure("artifact_disposed", ("it",))
-        await stage.environment.close()
-        stage.it.gate.set()
-
-    play(scene)
+@played(play)
+async def test_disposal_does_not_wait_for_a_thread(stage):
+    blocking = await blocking_of(stage)
+    call = stage.call(blocking, "work", Out())
+    await until_inside(stage)
+    stage.main.dispose_artifact(blocking)
+    await call.wait()
+    assert call.reason == Structure("artifact_disposed", ("it",))
+    await stage.environment.close()
+    stage.it.gate.set()
 
 
-def test_a_thread_changes_nothing_itself(play):
-    async def scene(stage):
-        blocking = await blocking_of(stage)
-        call = stage.call(blocking, "meddle")
-        await call.wait()
-        assert call.outcome.message.startswith(InvalidArtifact.__name__)
-        assert "self.start(...)" in call.outcome.message
-        assert stage.property(blocking, "count") == (0,)
-
-    play(scene)
+@played(play)
+async def test_a_thread_changes_nothing_itself(stage):
+    blocking = await blocking_of(stage)
+    call = stage.call(blocking, "meddle")
+    await call.wait()
+    assert call.outcome.message.startswith(InvalidArtifact.__name__)
+    assert "self.start(...)" in call.outcome.message
+    assert stage.property(blocking, "count") == (0,)
 
 
-def test_any_thread_may_start_a_process(play):
-    async def scene(stage):
-        blocking = await blocking_of(stage)
-        await asyncio.get_running_loop().run_in_executor(None, stage.it.start, "inc")
-        await stage.clock.sleep(0)
-        assert stage.property(blocking, "count") == (10,)
-
-    play(scene)
+@played(play)
+async def test_any_thread_may_start_a_process(stage):
+    blocking = await blocking_of(stage)
+    await asyncio.get_running_loop().run_in_executor(None, stage.it.start, "inc")
+    await stage.clock.sleep(0)
+    assert stage.property(blocking, "count") == (10,)
 
 
-def test_a_thread_that_starts_a_process_after_the_end_of_the_loop_does_no_harm(play):
+def test_a_thread_that_starts_a_process_after_the_end_of_the_loop_does_no_harm():
     kept = []
 
     async def scene(stage):

@@ -1,6 +1,8 @@
 """Errors with ``await`` and ``return`` that Python itself does not report."""
 
 from jacaros.artifacts import Artifact, internal_operation, operation
+from played import played
+from stage_lab import play
 
 
 class Forgetful(Artifact):
@@ -56,7 +58,7 @@ class Forgetful(Artifact):
         self.sleep(1)
 
 
-def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(play):
+def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created():
     async def scene(stage):
         for name in ("a", "b"):
             await stage.make(Forgetful, name=name)
@@ -76,17 +78,15 @@ def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(
     assert "self.until(lambda: False) has no effect" in found[2]
 
 
-def test_a_coroutine_that_is_awaited_later_has_its_effect(play):
-    async def scene(stage):
-        it = await stage.make(Forgetful)
-        assert (await stage.call(it, "thrice").wait()).ok
-        assert stage.property(it, "count") == (5,)
-        assert stage.elapsed == 3
-
-    play(scene)
+@played(play)
+async def test_a_coroutine_that_is_awaited_later_has_its_effect(stage):
+    it = await stage.make(Forgetful)
+    assert (await stage.call(it, "thrice").wait()).ok
+    assert stage.property(it, "count") == (5,)
+    assert stage.elapsed == 3
 
 
-def test_a_lost_return_value_is_reported_once(play):
+def test_a_lost_return_value_is_reported_once():
     async def scene(stage):
         it = await stage.make(Forgetful)
         for name in ("answer", "answer", "late_answer"):

@@ -10,6 +10,8 @@ from jacaros.artifacts import (
     UnknownWorkspace,
     operation,
 )
+from played import played
+from stage_lab import play
 
 
 class Counter(Artifact):
@@ -29,122 +31,104 @@ class Other(Artifact):
     def inc_any(self, *x: object): ...
 
 
-def test_main_exists_with_its_standard_artifacts(play):
-    async def scene(stage):
-        assert stage.environment.workspaces() == (stage.main,)
-        assert (stage.main.path, stage.main.name) == ("/main", "main")
-        assert [each.name for each in stage.main.artifacts()] == [
-            "blackboard",
-            "console",
-            "manrepo",
-            "system",
-            "workspace",
-        ]
-        assert stage.main.lookup("console").creator is None
-
-    play(scene)
+@played(play)
+async def test_main_exists_with_its_standard_artifacts(stage):
+    assert stage.environment.workspaces() == (stage.main,)
+    assert (stage.main.path, stage.main.name) == ("/main", "main")
+    assert [each.name for each in stage.main.artifacts()] == [
+        "blackboard",
+        "console",
+        "manrepo",
+        "system",
+        "workspace",
+    ]
+    assert stage.main.lookup("console").creator is None
 
 
-def test_workspaces_form_a_tree(play):
-    async def scene(stage):
-        lab = stage.environment.create_workspace("/main/lab")
-        inner = stage.environment.create_workspace("/main/lab/inner")
-        assert (inner.path, inner.name) == ("/main/lab/inner", "inner")
-        assert stage.environment.workspace("/main/lab") is lab
-        assert [each.path for each in stage.environment.workspaces()] == [
-            "/main",
-            "/main/lab",
-            "/main/lab/inner",
-        ]
-        assert lab.lookup("console") is not stage.main.lookup("console")
-
-    play(scene)
+@played(play)
+async def test_workspaces_form_a_tree(stage):
+    lab = stage.environment.create_workspace("/main/lab")
+    inner = stage.environment.create_workspace("/main/lab/inner")
+    assert (inner.path, inner.name) == ("/main/lab/inner", "inner")
+    assert stage.environment.workspace("/main/lab") is lab
+    assert [each.path for each in stage.environment.workspaces()] == [
+        "/main",
+        "/main/lab",
+        "/main/lab/inner",
+    ]
+    assert lab.lookup("console") is not stage.main.lookup("console")
 
 
-def test_a_workspace_that_exists_or_has_no_parent_is_refused(play):
-    async def scene(stage):
-        with pytest.raises(OperationFailed, match="workspace `/main` already exists") as present:
-            stage.environment.create_workspace("/main")
-        assert present.value.reason == Structure("workspace_already_present", ("/main",))
-        with pytest.raises(
-            UnknownWorkspace, match=r"unknown workspace `/mian`; did you mean `/main`\?"
-        ) as unknown:
-            stage.environment.create_workspace("/mian/lab")
-        assert unknown.value.reason == Structure("unknown_workspace", ("/mian",))
-        with pytest.raises(UnknownWorkspace):
-            stage.environment.workspace("/main/lab")
-
-    play(scene)
+@played(play)
+async def test_a_workspace_that_exists_or_has_no_parent_is_refused(stage):
+    with pytest.raises(OperationFailed, match="workspace `/main` already exists") as present:
+        stage.environment.create_workspace("/main")
+    assert present.value.reason == Structure("workspace_already_present", ("/main",))
+    with pytest.raises(
+        UnknownWorkspace, match=r"unknown workspace `/mian`; did you mean `/main`\?"
+    ) as unknown:
+        stage.environment.create_workspace("/mian/lab")
+    assert unknown.value.reason == Structure("unknown_workspace", ("/mian",))
+    with pytest.raises(UnknownWorkspace):
+        stage.environment.workspace("/main/lab")
 
 
-def test_each_workspace_has_names_of_its_own(play):
-    async def scene(stage):
-        lab = stage.environment.create_workspace("/main/lab")
-        here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
-        assert stage.main.lookup("it") is here
-        assert lab.lookup("it") is there
-        assert (here.path, there.path) == ("/main/it", "/main/lab/it")
-
-    play(scene)
+@played(play)
+async def test_each_workspace_has_names_of_its_own(stage):
+    lab = stage.environment.create_workspace("/main/lab")
+    here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
+    assert stage.main.lookup("it") is here
+    assert lab.lookup("it") is there
+    assert (here.path, there.path) == ("/main/it", "/main/lab/it")
 
 
-def test_ids_are_valid_in_the_whole_environment(play):
-    async def scene(stage):
-        lab = stage.environment.create_workspace("/main/lab")
-        there = await lab.make_artifact("it", Counter)
-        watcher = stage.watch(there)
-        assert stage.call(there, "inc").ok
-        assert watcher.notes[-1] == "-count(0) +count(1)"
-        assert stage.main.observers(there) == (watcher,)
-
-    play(scene)
+@played(play)
+async def test_ids_are_valid_in_the_whole_environment(stage):
+    lab = stage.environment.create_workspace("/main/lab")
+    there = await lab.make_artifact("it", Counter)
+    watcher = stage.watch(there)
+    assert stage.call(there, "inc").ok
+    assert watcher.notes[-1] == "-count(0) +count(1)"
+    assert stage.main.observers(there) == (watcher,)
 
 
-def test_lookup_of_an_unknown_artifact_suggests_a_name(play):
-    async def scene(stage):
-        await stage.make(Counter, name="battery")
-        with pytest.raises(
-            UnknownArtifact, match=r"unknown artifact `batery` in workspace /main; did you mean `battery`\?"
-        ) as caught:
-            stage.main.lookup("batery")
-        assert caught.value.reason == Structure("artifact_not_available", ("batery",))
-
-    play(scene)
+@played(play)
+async def test_lookup_of_an_unknown_artifact_suggests_a_name(stage):
+    await stage.make(Counter, name="battery")
+    with pytest.raises(
+        UnknownArtifact, match=r"unknown artifact `batery` in workspace /main; did you mean `battery`\?"
+    ) as caught:
+        stage.main.lookup("batery")
+    assert caught.value.reason == Structure("artifact_not_available", ("batery",))
 
 
-def test_providers_of_an_operation_are_found_in_the_order_of_creation(play):
-    async def scene(stage):
-        assert stage.main.providers("inc", 0) == ()
-        first, second = await stage.make(Counter, name="a"), await stage.make(Other, name="b")
-        assert stage.main.providers("inc", 0) == (first, second)
-        assert stage.main.providers("inc", 0) == (first, second)
-        assert stage.main.providers("inc_any", 3) == (second,)
-        assert stage.main.providers("inc", 1) == ()
-        stage.main.dispose_artifact(first)
-        assert stage.main.providers("inc", 0) == (second,)
-
-    play(scene)
+@played(play)
+async def test_providers_of_an_operation_are_found_in_the_order_of_creation(stage):
+    assert stage.main.providers("inc", 0) == ()
+    first, second = await stage.make(Counter, name="a"), await stage.make(Other, name="b")
+    assert stage.main.providers("inc", 0) == (first, second)
+    assert stage.main.providers("inc", 0) == (first, second)
+    assert stage.main.providers("inc_any", 3) == (second,)
+    assert stage.main.providers("inc", 1) == ()
+    stage.main.dispose_artifact(first)
+    assert stage.main.providers("inc", 0) == (second,)
 
 
-def test_creation_and_disposal_can_be_watched(play):
-    async def scene(stage):
-        seen = []
-        stop = stage.main.watch(lambda artifact, present: seen.append((artifact.name, present)))
-        counter = await stage.make(Counter)
-        stage.main.dispose_artifact(counter)
-        stop()
-        stop()
-        await stage.make(Counter)
-        assert seen == [("it", True), ("it", False)]
-
-    play(scene)
+@played(play)
+async def test_creation_and_disposal_can_be_watched(stage):
+    seen = []
+    stop = stage.main.watch(lambda artifact, present: seen.append((artifact.name, present)))
+    counter = await stage.make(Counter)
+    stage.main.dispose_artifact(counter)
+    stop()
+    stop()
+    await stage.make(Counter)
+    assert seen == [("it", True), ("it", False)]
 
 
-def test_a_broken_watcher_is_reported(play):
-    async def scene(stage):
-        stop = stage.main.watch(lambda artifact, present: 1 / 0)
-        await stage.make(Counter)
-        stop()
-        assert [type(error) for error in stage.defects] == [ZeroDivisionError]
-
-    play(scene, expect_defects=True)
+@played(play, expect_defects=True)
+async def test_a_broken_watcher_is_reported(stage):
+    stop = stage.main.watch(lambda artifact, present: 1 / 0)
+    await stage.make(Counter)
+    stop()
+    assert [type(error) for error in stage.defects] == [ZeroDivisionError]

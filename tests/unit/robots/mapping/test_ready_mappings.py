@@ -18,6 +18,7 @@ from jacaros.robots.mapping.operations import OperationKind
 from jacaros.robots.ros.action import ServerGoal
 from jacaros.robots.ros.fields import FieldType
 from jacaros.runtime.files.yaml import Problem
+from played import played
 
 TWIST = "geometry_msgs/msg/Twist"
 STAMPED = "geometry_msgs/msg/TwistStamped"
@@ -97,54 +98,46 @@ def test_going_to_a_pose(file: str) -> None:
     with_ready(file, body)
 
 
-def test_feedback_of_nav2_is_there_while_the_robot_is_on_its_way() -> None:
-    async def body(robot: Ready) -> None:
-        tried.update({("nav2.yaml", "distance_left"), ("nav2.yaml", "recoveries")})
-        await robot.do("navigate_to", 2, 0, 0)
-        left = [values[0] for values in robot.watcher.values("distance_left")]
-        assert left[0] > 1.5
-        assert left[-1] < 0.3
-        assert robot.watcher.values("recoveries") == [(0,)]
-        assert robot.watcher.holds("distance_left") == []
-
-    with_ready("nav2.yaml", body)
+@played(with_ready, "nav2.yaml")
+async def test_feedback_of_nav2_is_there_while_the_robot_is_on_its_way(robot: Ready) -> None:
+    tried.update({("nav2.yaml", "distance_left"), ("nav2.yaml", "recoveries")})
+    await robot.do("navigate_to", 2, 0, 0)
+    left = [values[0] for values in robot.watcher.values("distance_left")]
+    assert left[0] > 1.5
+    assert left[-1] < 0.3
+    assert robot.watcher.values("recoveries") == [(0,)]
+    assert robot.watcher.holds("distance_left") == []
 
 
-def test_going_through_poses() -> None:
-    async def body(robot: Ready) -> None:
-        tried.add(("nav2.yaml", "poses_left"))
-        await robot.do("navigate_through", poses((1.5, 0, 0), (2, 1, 90), (2, 2, 90)))
-        assert near(robot.lab, 2, 2)
-        assert {values[0] for values in robot.watcher.values("poses_left")} >= {3, 2, 1}
-
-    with_ready("nav2.yaml", body)
+@played(with_ready, "nav2.yaml")
+async def test_going_through_poses(robot: Ready) -> None:
+    tried.add(("nav2.yaml", "poses_left"))
+    await robot.do("navigate_through", poses((1.5, 0, 0), (2, 1, 90), (2, 2, 90)))
+    assert near(robot.lab, 2, 2)
+    assert {values[0] for values in robot.watcher.values("poses_left")} >= {3, 2, 1}
 
 
-def test_following_waypoints_and_those_that_were_missed() -> None:
-    async def body(robot: Ready) -> None:
-        tried.add(("nav2.yaml", "waypoint"))
-        missed: Out = Out()
-        await robot.do("follow_waypoints", poses((1, 0, 0), (50, 0, 0), (2, 0, 0)), missed)
-        assert missed.value == [1]
-        assert near(robot.lab, 2, 0)
-        assert robot.watcher.values("waypoint") == [(0,), (1,), (2,)]
-
-    with_ready("nav2.yaml", body)
+@played(with_ready, "nav2.yaml")
+async def test_following_waypoints_and_those_that_were_missed(robot: Ready) -> None:
+    tried.add(("nav2.yaml", "waypoint"))
+    missed: Out = Out()
+    await robot.do("follow_waypoints", poses((1, 0, 0), (50, 0, 0), (2, 0, 0)), missed)
+    assert missed.value == [1]
+    assert near(robot.lab, 2, 0)
+    assert robot.watcher.values("waypoint") == [(0,), (1,), (2,)]
 
 
-def test_docking_by_nav2() -> None:
-    async def body(robot: Ready) -> None:
-        tried.add(("nav2.yaml", "docking"))
-        await robot.do("dock_at", "dock")
-        assert robot.lab.world is not None
-        assert robot.lab.world.robot(None).dock is not None
-        assert robot.watcher.values("docking")[0] == (Atom("nav_to_staging_pose"),)
-        await robot.do("leave_dock")
-        robot.lab.pose()
-        assert robot.lab.world.robot(None).dock is None
-        assert (await robot.reason("dock_at", "dock_7")).startswith("aborted(901,")
-
-    with_ready("nav2.yaml", body)
+@played(with_ready, "nav2.yaml")
+async def test_docking_by_nav2(robot: Ready) -> None:
+    tried.add(("nav2.yaml", "docking"))
+    await robot.do("dock_at", "dock")
+    assert robot.lab.world is not None
+    assert robot.lab.world.robot(None).dock is not None
+    assert robot.watcher.values("docking")[0] == (Atom("nav_to_staging_pose"),)
+    await robot.do("leave_dock")
+    robot.lab.pose()
+    assert robot.lab.world.robot(None).dock is None
+    assert (await robot.reason("dock_at", "dock_7")).startswith("aborted(901,")
 
 
 @pytest.mark.parametrize("file", ["turtlebot2.yaml", "turtlebot4.yaml"])
@@ -285,23 +278,21 @@ def test_the_cliffs_of_a_kobuki() -> None:
     with_ready("turtlebot2.yaml", body, None)
 
 
-def test_the_lights_and_tunes_of_a_create() -> None:
-    async def body(robot: Ready) -> None:
-        red, off = Structure("color", (255, 0, 0)), Structure("color", (0, 0, 0))
-        for _ in range(2):
-            await robot.do("lights", [red] * 2 + [off] * 4)
-        await robot.do("play", [Structure("note", (440, 0.5)), Structure("note", (880, 0.25))])
-        await robot.lab.sleep(0.1)
-        assert robot.lab.world is not None
-        lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
-        assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
-        assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}
-        publisher = robot.lab.backend.publisher("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
-        publisher.publish(publisher.message())
-        await robot.lab.sleep(0.1)
-        assert robot.lab.world.ground_truth.events[-1].data == {"colors": []}, "the robot has its lights back"
-
-    with_ready("turtlebot4.yaml", body)
+@played(with_ready, "turtlebot4.yaml")
+async def test_the_lights_and_tunes_of_a_create(robot: Ready) -> None:
+    red, off = Structure("color", (255, 0, 0)), Structure("color", (0, 0, 0))
+    for _ in range(2):
+        await robot.do("lights", [red] * 2 + [off] * 4)
+    await robot.do("play", [Structure("note", (440, 0.5)), Structure("note", (880, 0.25))])
+    await robot.lab.sleep(0.1)
+    assert robot.lab.world is not None
+    lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
+    assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
+    assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}
+    publisher = robot.lab.backend.publisher("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
+    publisher.publish(publisher.message())
+    await robot.lab.sleep(0.1)
+    assert robot.lab.world.ground_truth.events[-1].data == {"colors": []}, "the robot has its lights back"
 
 
 GOALS = [

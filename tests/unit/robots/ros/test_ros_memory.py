@@ -12,6 +12,7 @@ from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, run
+from played import played
 
 ADD = "example_interfaces/srv/AddTwoInts"
 
@@ -35,221 +36,195 @@ def play(scene: Callable[[Nodes], Coroutine[Any, Any, None]]) -> None:
     run(lambda: scene(nodes), nodes.clock)
 
 
-def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics() -> None:
-    async def scene(nodes: Nodes) -> None:
-        one, two = await nodes.open("one"), await nodes.open("two")
-        got: list[tuple[str, int]] = []
-        for topic in ("/a", "/b"):
-            for node in (one, two):
-                node.subscription(
-                    topic,
-                    "std_msgs/msg/Int32",
-                    lambda s: got.append((s.topic, s.message.data)),
-                    QoS(depth=50),
-                )
-        a, b = one.publisher("/a", "std_msgs/msg/Int32"), two.publisher("/b", "std_msgs/msg/Int32")
-        for number in range(5):
-            a.publish(a.message(data=number))
-            b.publish(b.message(data=number))
-        assert got == []  # never inside publish
-        await nodes.clock.sleep(0)
-        assert got == [(t, n) for n in range(5) for t in ("/a", "/a", "/b", "/b")]
-
-    play(scene)
-
-
-def test_a_message_is_passed_by_reference_and_takes_no_time() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        got: list[Sample] = []
-        node.subscription("/a", "std_msgs/msg/Int32", got.append)
-        publisher = node.publisher("/a", "std_msgs/msg/Int32")
-        await nodes.clock.sleep(2.5)
-        message = publisher.message(data=1)
-        publisher.publish(message)
-        await nodes.clock.sleep(1)
-        assert got[0].message is message
-        assert got[0].stamp == VIRTUAL_EPOCH + 2.5
-
-    play(scene)
-
-
-def test_a_message_published_in_a_callback_comes_after_what_waits() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        got: list[int] = []
-        publisher = node.publisher("/a", "std_msgs/msg/Int32")
-
-        def receive(sample: Sample) -> None:
-            got.append(sample.message.data)
-            if sample.message.data == 1:
-                publisher.publish(publisher.message(data=10))
-
-        node.subscription("/a", "std_msgs/msg/Int32", receive)
-        for number in (1, 2, 3):
-            publisher.publish(publisher.message(data=number))
-        await nodes.clock.sleep(0.1)
-        assert got == [1, 2, 3, 10]
-
-    play(scene)
-
-
-def test_closing_in_a_callback_stops_what_waits() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        got: list[int] = []
-        subscription = node.subscription(
-            "/a", "std_msgs/msg/Int32", lambda s: (got.append(s.message.data), subscription.close())[0]
-        )
-        publisher = node.publisher("/a", "std_msgs/msg/Int32")
-        for number in (1, 2, 3):
-            publisher.publish(publisher.message(data=number))
-        await nodes.clock.sleep(0.1)
-        assert got == [1]
-        assert publisher.subscription_count == 0
-
-    play(scene)
-
-
-def test_nodes_with_different_types_for_a_topic_both_log_it() -> None:
-    async def scene(nodes: Nodes) -> None:
-        one, two = await nodes.open("one"), await nodes.open("two")
-        publisher = one.publisher("/a", "std_msgs/msg/Int32")
-        got: list[Sample] = []
-        subscription = two.subscription("/a", "std_msgs/msg/String", got.append)
-        publisher.publish(publisher.message(data=1))
-        await nodes.clock.sleep(0)
-        assert (got, publisher.subscription_count, subscription.publisher_count) == ([], 0, 0)
-        assert nodes.log == [
-            (
-                "topic /a: /two expects std_msgs/msg/String and does not receive what is published here as "
-                "std_msgs/msg/Int32"
-            ),
-            (
-                "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; to receive it, write "
-                "std_msgs/msg/Int32 here"
-            ),
-        ]
-
-    play(scene)
-
-
-def test_an_incompatible_wish_is_reported() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        node.publisher("/a", "std_msgs/msg/Int32", QoS(reliability="best_effort"))
-        node.subscription("/a", "std_msgs/msg/Int32", print)
-        assert nodes.log == [
-            (
-                "topic /a: incompatible QoS: not connected: the subscription requests reliable, "
-                "the publisher offers best_effort; "
-                "request at most what the publisher offers"
+@played(play)
+async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics(nodes: Nodes) -> None:
+    one, two = await nodes.open("one"), await nodes.open("two")
+    got: list[tuple[str, int]] = []
+    for topic in ("/a", "/b"):
+        for node in (one, two):
+            node.subscription(
+                topic,
+                "std_msgs/msg/Int32",
+                lambda s: got.append((s.topic, s.message.data)),
+                QoS(depth=50),
             )
-        ]
-
-    play(scene)
-
-
-def test_transient_local_keeps_as_many_messages_as_its_depth() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        kept = QoS(durability="transient_local", depth=3)
-        publisher = node.publisher("/a", "std_msgs/msg/Int32", kept)
-        for number in range(5):
-            publisher.publish(publisher.message(data=number))
-        got: list[int] = []
-        node.subscription("/a", "std_msgs/msg/Int32", lambda s: got.append(s.message.data), kept)
-        await nodes.clock.sleep(0.1)
-        assert got == [2, 3, 4]
-
-    play(scene)
+    a, b = one.publisher("/a", "std_msgs/msg/Int32"), two.publisher("/b", "std_msgs/msg/Int32")
+    for number in range(5):
+        a.publish(a.message(data=number))
+        b.publish(b.message(data=number))
+    assert got == []  # never inside publish
+    await nodes.clock.sleep(0)
+    assert got == [(t, n) for n in range(5) for t in ("/a", "/a", "/b", "/b")]
 
 
-def test_leaving_nodes_take_their_topics_and_services_along() -> None:
-    async def scene(nodes: Nodes) -> None:
-        one, two = await nodes.open("one"), await nodes.open("two")
-        publisher = one.publisher("/a", "std_msgs/msg/Int32")
-        two.subscription("/a", "std_msgs/msg/Int32", print)
-        two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
-        client = one.client("/add", ADD)
-        assert (publisher.subscription_count, client.ready) == (1, True)
-        await two.close()
-        assert (publisher.subscription_count, client.ready) == (0, False)
-        assert two.connected is False
-
-    play(scene)
-
-
-def test_time_outs_are_measured_on_the_clock() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-
-        async def slow(request: Any) -> dict[str, int]:
-            await nodes.clock.sleep(100)
-            return {"sum": request.a}
-
-        node.service("/slow", ADD, slow)
-        client = node.client("/slow", ADD)
-        with pytest.raises(CallTimedOut):
-            await client.call({"a": 1}, timeout=99)
-        assert nodes.clock.elapsed == 99
-        assert (await client.call(client.request(a=7), timeout=101)).sum == 7
-        assert nodes.clock.elapsed == 199
-
-    play(scene)
+@played(play)
+async def test_a_message_is_passed_by_reference_and_takes_no_time(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    got: list[Sample] = []
+    node.subscription("/a", "std_msgs/msg/Int32", got.append)
+    publisher = node.publisher("/a", "std_msgs/msg/Int32")
+    await nodes.clock.sleep(2.5)
+    message = publisher.message(data=1)
+    publisher.publish(message)
+    await nodes.clock.sleep(1)
+    assert got[0].message is message
+    assert got[0].stamp == VIRTUAL_EPOCH + 2.5
 
 
-def test_waiting_for_the_server_uses_up_the_time_out() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
+@played(play)
+async def test_a_message_published_in_a_callback_comes_after_what_waits(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    got: list[int] = []
+    publisher = node.publisher("/a", "std_msgs/msg/Int32")
 
-        async def slow(request: Any) -> None:
-            await nodes.clock.sleep(3)
+    def receive(sample: Sample) -> None:
+        got.append(sample.message.data)
+        if sample.message.data == 1:
+            publisher.publish(publisher.message(data=10))
 
-        nodes.clock.call_later(2, lambda: node.service("/slow", ADD, slow))
-        with pytest.raises(CallTimedOut):
-            await node.client("/slow", ADD).call({}, timeout=4)
-        assert nodes.clock.elapsed == 4
-
-    play(scene)
-
-
-def test_closing_a_service_fails_the_calls_under_way() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-
-        async def never(request: Any) -> None:
-            await nodes.clock.sleep(1e9)
-
-        service = node.service("/never", ADD, never)
-        nodes.clock.call_later(5, service.close)
-        with pytest.raises(CallFailed, match="closed during the call"):
-            await node.client("/never", ADD).call({})
-
-    play(scene)
+    node.subscription("/a", "std_msgs/msg/Int32", receive)
+    for number in (1, 2, 3):
+        publisher.publish(publisher.message(data=number))
+    await nodes.clock.sleep(0.1)
+    assert got == [1, 2, 3, 10]
 
 
-def test_a_call_of_another_type_fails() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        node.service("/add", ADD, lambda r: None)
-        with pytest.raises(
-            CallFailed, match="is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty"
-        ):
-            await node.client("/add", "std_srvs/srv/Empty").call()
+@played(play)
+async def test_closing_in_a_callback_stops_what_waits(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    got: list[int] = []
+    subscription = node.subscription(
+        "/a", "std_msgs/msg/Int32", lambda s: (got.append(s.message.data), subscription.close())[0]
+    )
+    publisher = node.publisher("/a", "std_msgs/msg/Int32")
+    for number in (1, 2, 3):
+        publisher.publish(publisher.message(data=number))
+    await nodes.clock.sleep(0.1)
+    assert got == [1]
+    assert publisher.subscription_count == 0
 
-    play(scene)
+
+@played(play)
+async def test_nodes_with_different_types_for_a_topic_both_log_it(nodes: Nodes) -> None:
+    one, two = await nodes.open("one"), await nodes.open("two")
+    publisher = one.publisher("/a", "std_msgs/msg/Int32")
+    got: list[Sample] = []
+    subscription = two.subscription("/a", "std_msgs/msg/String", got.append)
+    publisher.publish(publisher.message(data=1))
+    await nodes.clock.sleep(0)
+    assert (got, publisher.subscription_count, subscription.publisher_count) == ([], 0, 0)
+    assert nodes.log == [
+        (
+            "topic /a: /two expects std_msgs/msg/String and does not receive what is published here as "
+            "std_msgs/msg/Int32"
+        ),
+        (
+            "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; to receive it, write "
+            "std_msgs/msg/Int32 here"
+        ),
+    ]
 
 
-def test_a_newer_service_replaces_the_older_one() -> None:
-    async def scene(nodes: Nodes) -> None:
-        node = await nodes.open("node")
-        old = node.service("/add", ADD, lambda r: {"sum": 1})
-        node.service("/add", ADD, lambda r: {"sum": 2})
-        old.close()
-        assert (await node.client("/add", ADD).call()).sum == 2
+@played(play)
+async def test_an_incompatible_wish_is_reported(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    node.publisher("/a", "std_msgs/msg/Int32", QoS(reliability="best_effort"))
+    node.subscription("/a", "std_msgs/msg/Int32", print)
+    assert nodes.log == [
+        (
+            "topic /a: incompatible QoS: not connected: the subscription requests reliable, "
+            "the publisher offers best_effort; "
+            "request at most what the publisher offers"
+        )
+    ]
 
-    play(scene)
+
+@played(play)
+async def test_transient_local_keeps_as_many_messages_as_its_depth(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    kept = QoS(durability="transient_local", depth=3)
+    publisher = node.publisher("/a", "std_msgs/msg/Int32", kept)
+    for number in range(5):
+        publisher.publish(publisher.message(data=number))
+    got: list[int] = []
+    node.subscription("/a", "std_msgs/msg/Int32", lambda s: got.append(s.message.data), kept)
+    await nodes.clock.sleep(0.1)
+    assert got == [2, 3, 4]
+
+
+@played(play)
+async def test_leaving_nodes_take_their_topics_and_services_along(nodes: Nodes) -> None:
+    one, two = await nodes.open("one"), await nodes.open("two")
+    publisher = one.publisher("/a", "std_msgs/msg/Int32")
+    two.subscription("/a", "std_msgs/msg/Int32", print)
+    two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
+    client = one.client("/add", ADD)
+    assert (publisher.subscription_count, client.ready) == (1, True)
+    await two.close()
+    assert (publisher.subscription_count, client.ready) == (0, False)
+    assert two.connected is False
+
+
+@played(play)
+async def test_time_outs_are_measured_on_the_clock(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+
+    async def slow(request: Any) -> dict[str, int]:
+        await nodes.clock.sleep(100)
+        return {"sum": request.a}
+
+    node.service("/slow", ADD, slow)
+    client = node.client("/slow", ADD)
+    with pytest.raises(CallTimedOut):
+        await client.call({"a": 1}, timeout=99)
+    assert nodes.clock.elapsed == 99
+    assert (await client.call(client.request(a=7), timeout=101)).sum == 7
+    assert nodes.clock.elapsed == 199
+
+
+@played(play)
+async def test_waiting_for_the_server_uses_up_the_time_out(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+
+    async def slow(request: Any) -> None:
+        await nodes.clock.sleep(3)
+
+    nodes.clock.call_later(2, lambda: node.service("/slow", ADD, slow))
+    with pytest.raises(CallTimedOut):
+        await node.client("/slow", ADD).call({}, timeout=4)
+    assert nodes.clock.elapsed == 4
+
+
+@played(play)
+async def test_closing_a_service_fails_the_calls_under_way(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+
+    async def never(request: Any) -> None:
+        await nodes.clock.sleep(1e9)
+
+    service = node.service("/never", ADD, never)
+    nodes.clock.call_later(5, service.close)
+    with pytest.raises(CallFailed, match="closed during the call"):
+        await node.client("/never", ADD).call({})
+
+
+@played(play)
+async def test_a_call_of_another_type_fails(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    node.service("/add", ADD, lambda r: None)
+    with pytest.raises(
+        CallFailed, match="is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty"
+    ):
+        await node.client("/add", "std_srvs/srv/Empty").call()
+
+
+@played(play)
+async def test_a_newer_service_replaces_the_older_one(nodes: Nodes) -> None:
+    node = await nodes.open("node")
+    old = node.service("/add", ADD, lambda r: {"sum": 1})
+    node.service("/add", ADD, lambda r: {"sum": 2})
+    old.close()
+    assert (await node.client("/add", ADD).call()).sum == 2
 
 
 def test_two_runs_are_the_same() -> None:

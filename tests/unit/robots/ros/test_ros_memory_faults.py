@@ -14,6 +14,7 @@ from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.parameter import Declaration
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import VirtualClock, run
+from played import played
 
 ADD, COUNT, INT = "example_interfaces/srv/AddTwoInts", "jacaros_interfaces/action/Count", "std_msgs/msg/Int32"
 
@@ -61,18 +62,16 @@ def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
     run(lambda: scene(lab), lab.clock)
 
 
-def test_messages_can_be_delayed() -> None:
-    async def scene(lab: Lab) -> None:
-        await lab.open()
-        end = lab.graph.disturb("/n", delayed(0.25))
-        await lab.publish(2)
-        await lab.clock.sleep(1.0)
-        assert lab.got == [(0.25, 0), (0.35, 1)]
-        end()
-        await lab.publish(1)
-        assert lab.got[2:] == [(1.2, 0)]
-
-    play(scene)
+@played(play)
+async def test_messages_can_be_delayed(lab: Lab) -> None:
+    await lab.open()
+    end = lab.graph.disturb("/n", delayed(0.25))
+    await lab.publish(2)
+    await lab.clock.sleep(1.0)
+    assert lab.got == [(0.25, 0), (0.35, 1)]
+    end()
+    await lab.publish(1)
+    assert lab.got[2:] == [(1.2, 0)]
 
 
 def test_a_jitter_lets_messages_overtake_each_other_in_the_same_way_each_time() -> None:
@@ -92,180 +91,158 @@ def test_a_jitter_lets_messages_overtake_each_other_in_the_same_way_each_time() 
     assert seen[0] == seen[1]
 
 
-def test_messages_can_be_dropped() -> None:
-    async def scene(lab: Lab) -> None:
-        await lab.open()
-        lab.graph.disturb("/n", dropped(0.5, seed=1))
-        await lab.publish(200)
-        assert 60 < len(lab.got) < 140
-        lab.graph.disturb("/n", dropped())
-        lab.got.clear()
-        await lab.publish(20)
-        assert lab.got == []
-
-    play(scene)
+@played(play)
+async def test_messages_can_be_dropped(lab: Lab) -> None:
+    await lab.open()
+    lab.graph.disturb("/n", dropped(0.5, seed=1))
+    await lab.publish(200)
+    assert 60 < len(lab.got) < 140
+    lab.graph.disturb("/n", dropped())
+    lab.got.clear()
+    await lab.publish(20)
+    assert lab.got == []
 
 
-def test_messages_can_come_several_times_and_late() -> None:
-    async def scene(lab: Lab) -> None:
-        await lab.open()
-        lab.graph.disturb("/n", both(delayed(0.5), duplicated(3, apart=0.1)))
-        await lab.publish(1, apart=2.0)
-        assert lab.got == [(0.5, 0), (0.6, 0), (0.7, 0)]
-
-    play(scene)
+@played(play)
+async def test_messages_can_come_several_times_and_late(lab: Lab) -> None:
+    await lab.open()
+    lab.graph.disturb("/n", both(delayed(0.5), duplicated(3, apart=0.1)))
+    await lab.publish(1, apart=2.0)
+    assert lab.got == [(0.5, 0), (0.6, 0), (0.7, 0)]
 
 
-def test_later_subscriptions_are_disturbed_too() -> None:
-    async def scene(lab: Lab) -> None:
-        _, there = await lab.open()
-        lab.graph.disturb("/n", dropped())
-        late: list[Any] = []
-        there.subscription("/n", INT, late.append)
-        await lab.publish(3)
-        assert (lab.got, late) == ([], [])
-
-    play(scene)
+@played(play)
+async def test_later_subscriptions_are_disturbed_too(lab: Lab) -> None:
+    _, there = await lab.open()
+    lab.graph.disturb("/n", dropped())
+    late: list[Any] = []
+    there.subscription("/n", INT, late.append)
+    await lab.publish(3)
+    assert (lab.got, late) == ([], [])
 
 
-def test_a_vanished_node_is_silent() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        hooked: list[str] = []
-        here.add_exit_hook(lambda: hooked.append("ran"))
-        lab.graph.vanish("/here")
-        await lab.publish(2)
-        assert (lab.got, hooked) == ([], [])
-        assert (await there.contents()).nodes == ("/there",)
-        with pytest.raises(RosError, match="was taken away"):
-            here.publisher("/n", INT)
-        with pytest.raises(RosError, match="unknown node, service or action: /nobody"):
-            lab.graph.vanish("/nobody")
-
-    play(scene)
+@played(play)
+async def test_a_vanished_node_is_silent(lab: Lab) -> None:
+    here, there = await lab.open()
+    hooked: list[str] = []
+    here.add_exit_hook(lambda: hooked.append("ran"))
+    lab.graph.vanish("/here")
+    await lab.publish(2)
+    assert (lab.got, hooked) == ([], [])
+    assert (await there.contents()).nodes == ("/there",)
+    with pytest.raises(RosError, match="was taken away"):
+        here.publisher("/n", INT)
+    with pytest.raises(RosError, match="unknown node, service or action: /nobody"):
+        lab.graph.vanish("/nobody")
 
 
-def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        ended: list[str] = []
+@played(play)
+async def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out(lab: Lab) -> None:
+    here, there = await lab.open()
+    ended: list[str] = []
 
-        async def handle(request: Any) -> Any:
-            try:
-                await lab.clock.sleep(1.0)
-            finally:
-                ended.append("handler")
+    async def handle(request: Any) -> Any:
+        try:
+            await lab.clock.sleep(1.0)
+        finally:
+            ended.append("handler")
 
-        there.service("/add", ADD, handle)
-        client = here.client("/add", ADD)
-        call = asyncio.get_running_loop().create_task(client.call({}))
-        await lab.clock.sleep(0.5)
-        lab.graph.vanish("/add")
-        with pytest.raises(CallFailed, match="went away during the call"):
-            await call
-        assert (lab.clock.elapsed, ended, client.ready) == (0.5 + SERVER_LOST_AFTER, ["handler"], False)
-
-    play(scene)
+    there.service("/add", ADD, handle)
+    client = here.client("/add", ADD)
+    call = asyncio.get_running_loop().create_task(client.call({}))
+    await lab.clock.sleep(0.5)
+    lab.graph.vanish("/add")
+    with pytest.raises(CallFailed, match="went away during the call"):
+        await call
+    assert (lab.clock.elapsed, ended, client.ready) == (0.5 + SERVER_LOST_AFTER, ["handler"], False)
 
 
-def test_a_vanished_action_server_is_lost_after_a_while() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.action_server("/count", COUNT, lab.count)
-        client = here.action_client("/count", COUNT)
-        goal = await client.send({"target": 100, "period": 1.0})
-        await lab.clock.sleep(0.5)
-        lab.graph.vanish("/count")
-        with pytest.raises(ServerLost, match="went away during goal"):
-            await goal.outcome()
-        assert lab.clock.elapsed == pytest.approx(0.5 + SERVER_LOST_AFTER)
-
-    play(scene)
+@played(play)
+async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.action_server("/count", COUNT, lab.count)
+    client = here.action_client("/count", COUNT)
+    goal = await client.send({"target": 100, "period": 1.0})
+    await lab.clock.sleep(0.5)
+    lab.graph.vanish("/count")
+    with pytest.raises(ServerLost, match="went away during goal"):
+        await goal.outcome()
+    assert lab.clock.elapsed == pytest.approx(0.5 + SERVER_LOST_AFTER)
 
 
-def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.action_server("/count", COUNT, lab.count)
-        client = here.action_client("/count", COUNT)
-        goal = await client.send({"target": 100, "period": 1.0})
-        lab.graph.vanish("/count")
-        await lab.clock.sleep(1.0)
-        there.action_server("/count", COUNT, lab.count)
-        with pytest.raises(ServerLost, match="was replaced by another"):
-            await goal.outcome()
-        assert lab.clock.elapsed == pytest.approx(1.0)
-
-    play(scene)
+@played(play)
+async def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.action_server("/count", COUNT, lab.count)
+    client = here.action_client("/count", COUNT)
+    goal = await client.send({"target": 100, "period": 1.0})
+    lab.graph.vanish("/count")
+    await lab.clock.sleep(1.0)
+    there.action_server("/count", COUNT, lab.count)
+    with pytest.raises(ServerLost, match="was replaced by another"):
+        await goal.outcome()
+    assert lab.clock.elapsed == pytest.approx(1.0)
 
 
-def test_an_interrupted_graph_is_found_again_without_a_restart() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.service("/add", ADD, lambda request: {"sum": request.a + request.b})
-        connection: list[bool] = []
-        here.on_connection(connection.append)
-        client = here.client("/add", ADD)
-        await lab.publish(1)
-        lab.graph.interrupt()
-        await lab.publish(3)
-        assert [number for _, number in lab.got] == [0]
-        assert (here.connected, client.ready, lab.publisher.subscription_count) == (False, False, 0)
-        with pytest.raises(ServiceUnavailable):
-            await client.call({"a": 1, "b": 2}, timeout=0.5)
-        call = asyncio.get_running_loop().create_task(client.call({"a": 1, "b": 2}))
-        await lab.clock.sleep(1.0)
-        lab.graph.restore()
-        assert (await call).sum == 3
-        await lab.clock.sleep(0.0)
-        assert [number for _, number in lab.got] == [0, 2]  # what is latched comes again
-        assert connection == [False, True]
-
-    play(scene)
+@played(play)
+async def test_an_interrupted_graph_is_found_again_without_a_restart(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.service("/add", ADD, lambda request: {"sum": request.a + request.b})
+    connection: list[bool] = []
+    here.on_connection(connection.append)
+    client = here.client("/add", ADD)
+    await lab.publish(1)
+    lab.graph.interrupt()
+    await lab.publish(3)
+    assert [number for _, number in lab.got] == [0]
+    assert (here.connected, client.ready, lab.publisher.subscription_count) == (False, False, 0)
+    with pytest.raises(ServiceUnavailable):
+        await client.call({"a": 1, "b": 2}, timeout=0.5)
+    call = asyncio.get_running_loop().create_task(client.call({"a": 1, "b": 2}))
+    await lab.clock.sleep(1.0)
+    lab.graph.restore()
+    assert (await call).sum == 3
+    await lab.clock.sleep(0.0)
+    assert [number for _, number in lab.got] == [0, 2]  # what is latched comes again
+    assert connection == [False, True]
 
 
-def test_a_short_interruption_does_not_lose_a_goal() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.action_server("/count", COUNT, lab.count)
-        client = here.action_client("/count", COUNT)
-        feedback: list[int] = []
-        goal = await client.send(
-            {"target": 4, "period": 0.5}, on_feedback=lambda message: feedback.append(message.current)
-        )
-        await lab.clock.sleep(0.7)
-        lab.graph.interrupt()
-        await lab.clock.sleep(SERVER_LOST_AFTER - 0.5)  # the goal ends meanwhile
-        lab.graph.restore()
-        outcome = await goal.outcome(timeout=1.0)
-        assert (outcome.status, outcome.result.last, feedback) == (GoalStatus.SUCCEEDED, 4, [0])
-
-    play(scene)
+@played(play)
+async def test_a_short_interruption_does_not_lose_a_goal(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.action_server("/count", COUNT, lab.count)
+    client = here.action_client("/count", COUNT)
+    feedback: list[int] = []
+    goal = await client.send(
+        {"target": 4, "period": 0.5}, on_feedback=lambda message: feedback.append(message.current)
+    )
+    await lab.clock.sleep(0.7)
+    lab.graph.interrupt()
+    await lab.clock.sleep(SERVER_LOST_AFTER - 0.5)  # the goal ends meanwhile
+    lab.graph.restore()
+    outcome = await goal.outcome(timeout=1.0)
+    assert (outcome.status, outcome.result.last, feedback) == (GoalStatus.SUCCEEDED, 4, [0])
 
 
-def test_a_long_interruption_loses_a_goal() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.action_server("/count", COUNT, lab.count)
-        goal = await here.action_client("/count", COUNT).send({"target": 100, "period": 1.0})
-        lab.graph.interrupt()
-        with pytest.raises(ServerLost):
-            await goal.outcome(timeout=60.0)
-
-    play(scene)
+@played(play)
+async def test_a_long_interruption_loses_a_goal(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.action_server("/count", COUNT, lab.count)
+    goal = await here.action_client("/count", COUNT).send({"target": 100, "period": 1.0})
+    lab.graph.interrupt()
+    with pytest.raises(ServerLost):
+        await goal.outcome(timeout=60.0)
 
 
-def test_parameters_cannot_be_reached_in_an_interrupted_graph() -> None:
-    async def scene(lab: Lab) -> None:
-        here, there = await lab.open()
-        there.parameters().declare("speed", Declaration(1.0))
-        lab.graph.interrupt()
-        with pytest.raises(ServiceUnavailable, match="parameters of node /there"):
-            await here.parameters("/there").get("speed", timeout=1.0)
-        lab.graph.restore()
-        assert await here.parameters("/there").get("speed", timeout=1.0) == 1.0
-
-    play(scene)
+@played(play)
+async def test_parameters_cannot_be_reached_in_an_interrupted_graph(lab: Lab) -> None:
+    here, there = await lab.open()
+    there.parameters().declare("speed", Declaration(1.0))
+    lab.graph.interrupt()
+    with pytest.raises(ServiceUnavailable, match="parameters of node /there"):
+        await here.parameters("/there").get("speed", timeout=1.0)
+    lab.graph.restore()
+    assert await here.parameters("/there").get("speed", timeout=1.0) == 1.0
 
 
 def test_two_delays_add_up() -> None:

@@ -12,6 +12,7 @@ from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world import World, WorldError, read_world
 from jacaros.robots.world.physics.perception import LaserPerception
 from jacaros.runtime.errors import UsageError
+from played import played
 
 TWO_ROOMS = """
 name: two rooms
@@ -173,16 +174,14 @@ def test_a_closed_door_blocks_the_view() -> None:
     assert list(sight.closed_doors(here)) == ["pantry"]
 
 
-def test_the_map_shows_doors_as_free() -> None:
-    async def body(lab: Lab) -> None:
-        client = lab.backend.client("/map_server/map", "nav_msgs/srv/GetMap")
-        found = (await client.call(timeout=5.0)).map
-        column = math.floor(2.0 / found.info.resolution)
-        middle = math.floor(1.0 / found.info.resolution) * found.info.width + column
-        assert found.data[middle] == 0
-        assert found.data[math.floor(0.2 / found.info.resolution) * found.info.width + column] == 100
-
-    in_world(TWO_ROOMS, body)
+@played(in_world, TWO_ROOMS)
+async def test_the_map_shows_doors_as_free(lab: Lab) -> None:
+    client = lab.backend.client("/map_server/map", "nav_msgs/srv/GetMap")
+    found = (await client.call(timeout=5.0)).map
+    column = math.floor(2.0 / found.info.resolution)
+    middle = math.floor(1.0 / found.info.resolution) * found.info.width + column
+    assert found.data[middle] == 0
+    assert found.data[math.floor(0.2 / found.info.resolution) * found.info.width + column] == 100
 
 
 def test_all_mistakes_of_doors_are_reported_in_one_pass() -> None:

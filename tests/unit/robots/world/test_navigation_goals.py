@@ -19,6 +19,7 @@ from jacaros.robots.world import World
 from jacaros.robots.world.data.grid import Grid
 from jacaros.robots.world.navigation.driver import Driver, Pace, Route
 from jacaros.robots.world.navigation.planner import NavigationFailure, Planner
+from played import played
 
 
 @pytest.mark.slow
@@ -92,20 +93,18 @@ def test_a_goal_that_cannot_be_reached_is_aborted_with_nav2s_code(
 
 
 @pytest.mark.parametrize("wrong", [{"x": math.nan}, {"y": math.inf}, {"w": 0.0}])
-def test_invalid_goals_are_rejected_or_aborted_by_move_base(wrong: dict[str, float]) -> None:
-    async def body(lab: Lab) -> None:
-        goal = pose(1, 1)
-        for part in goal["pose"].values():
-            part.update({key: value for key, value in wrong.items() if key in part})
-        with pytest.raises(GoalRejected):
-            await lab.send("/navigate_to_pose", NAVIGATE, pose=goal)
-        with pytest.raises(GoalRejected, match="pose 1"):
-            await lab.send("/follow_waypoints", "nav2_msgs/action/FollowWaypoints", poses=[pose(0, 1), goal])
-        outcome = await lab.do("/move_base", "move_base_msgs/action/MoveBase", target_pose=goal)
-        assert outcome.status == GoalStatus.ABORTED
-        assert "NaN" in outcome.text or "not a rotation" in outcome.text
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_invalid_goals_are_rejected_or_aborted_by_move_base(lab: Lab, wrong: dict[str, float]) -> None:
+    goal = pose(1, 1)
+    for part in goal["pose"].values():
+        part.update({key: value for key, value in wrong.items() if key in part})
+    with pytest.raises(GoalRejected):
+        await lab.send("/navigate_to_pose", NAVIGATE, pose=goal)
+    with pytest.raises(GoalRejected, match="pose 1"):
+        await lab.send("/follow_waypoints", "nav2_msgs/action/FollowWaypoints", poses=[pose(0, 1), goal])
+    outcome = await lab.do("/move_base", "move_base_msgs/action/MoveBase", target_pose=goal)
+    assert outcome.status == GoalStatus.ABORTED
+    assert "NaN" in outcome.text or "not a rotation" in outcome.text
 
 
 NOISY = """
@@ -128,54 +127,48 @@ def test_a_goal_is_reached_despite_bad_odometry() -> None:
     assert bumps(in_world(NOISY, body, seed=4).world) == []
 
 
-def test_the_robot_passes_through_poses_without_stopping() -> None:
-    async def body(lab: Lab) -> None:
-        speeds = []
-        handle = await lab.send(
-            "/navigate_through_poses",
-            "nav2_msgs/action/NavigateThroughPoses",
-            poses=[pose(1, 0.1), pose(2, 0.4, PI / 2)],
-        )
-        for _ in range(40):
-            await lab.clock.sleep(0.1)
-            speeds.append(lab.world.robot().speed)
-        assert (await handle.outcome()).status == GoalStatus.SUCCEEDED
-        near(lab.world, 2, 0.4, PI / 2)
-        assert min(speeds[12:]) > 0.25
-        left = [feedback.number_of_poses_remaining for feedback in lab.feedback]
-        assert sorted(set(left), reverse=True) == [2, 1]
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_the_robot_passes_through_poses_without_stopping(lab: Lab) -> None:
+    speeds = []
+    handle = await lab.send(
+        "/navigate_through_poses",
+        "nav2_msgs/action/NavigateThroughPoses",
+        poses=[pose(1, 0.1), pose(2, 0.4, PI / 2)],
+    )
+    for _ in range(40):
+        await lab.clock.sleep(0.1)
+        speeds.append(lab.world.robot().speed)
+    assert (await handle.outcome()).status == GoalStatus.SUCCEEDED
+    near(lab.world, 2, 0.4, PI / 2)
+    assert min(speeds[12:]) > 0.25
+    left = [feedback.number_of_poses_remaining for feedback in lab.feedback]
+    assert sorted(set(left), reverse=True) == [2, 1]
 
 
-def test_unreachable_waypoints_are_reported_as_missed() -> None:
-    async def body(lab: Lab) -> None:
-        outcome = await lab.do(
-            "/follow_waypoints",
-            "nav2_msgs/action/FollowWaypoints",
-            poses=[pose(0, 1), pose(9, 0), pose(0, 2, PI)],
-            number_of_loops=1,
-        )
-        assert outcome.status == GoalStatus.SUCCEEDED
-        missed = outcome.result.missed_waypoints
-        assert [(each.index, each.error_code) for each in missed] == [(1, 204), (1, 204)]
-        assert [feedback.current_waypoint for feedback in lab.feedback] == [0, 1, 2, 0, 1, 2]
-        near(lab.world, 0, 2, PI)
-        empty = await lab.do("/follow_waypoints", "nav2_msgs/action/FollowWaypoints")
-        assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 602)
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_unreachable_waypoints_are_reported_as_missed(lab: Lab) -> None:
+    outcome = await lab.do(
+        "/follow_waypoints",
+        "nav2_msgs/action/FollowWaypoints",
+        poses=[pose(0, 1), pose(9, 0), pose(0, 2, PI)],
+        number_of_loops=1,
+    )
+    assert outcome.status == GoalStatus.SUCCEEDED
+    missed = outcome.result.missed_waypoints
+    assert [(each.index, each.error_code) for each in missed] == [(1, 204), (1, 204)]
+    assert [feedback.current_waypoint for feedback in lab.feedback] == [0, 1, 2, 0, 1, 2]
+    near(lab.world, 0, 2, PI)
+    empty = await lab.do("/follow_waypoints", "nav2_msgs/action/FollowWaypoints")
+    assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 602)
 
 
-def test_a_goal_pose_on_a_topic_is_enough() -> None:
-    async def body(lab: Lab) -> None:
-        for topic, goal in (("/goal_pose", pose(1, 0)), ("/move_base_simple/goal", pose(0, 1))):
-            publisher = lab.backend.publisher(topic, "geometry_msgs/msg/PoseStamped")
-            publisher.publish(publisher.message(**goal))
-            await lab.clock.sleep(15.0)
-            near(lab.world, goal["pose"]["position"]["x"], goal["pose"]["position"]["y"], 0)
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_a_goal_pose_on_a_topic_is_enough(lab: Lab) -> None:
+    for topic, goal in (("/goal_pose", pose(1, 0)), ("/move_base_simple/goal", pose(0, 1))):
+        publisher = lab.backend.publisher(topic, "geometry_msgs/msg/PoseStamped")
+        publisher.publish(publisher.message(**goal))
+        await lab.clock.sleep(15.0)
+        near(lab.world, goal["pose"]["position"]["x"], goal["pose"]["position"]["y"], 0)
 
 
 PROGRAM = """

@@ -8,36 +8,33 @@ from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
 from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.ros.open import open_backend
+from played import played
 
 
-def test_cancelling_stops_the_robot() -> None:
-    async def body(lab: Lab) -> None:
-        handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        await lab.clock.sleep(3.0)
-        assert lab.world.robot().speed > 0.2
-        assert await handle.cancel()
-        assert (await handle.outcome()).status == GoalStatus.CANCELED
-        await lab.stands()
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_cancelling_stops_the_robot(lab: Lab) -> None:
+    handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    await lab.clock.sleep(3.0)
+    assert lab.world.robot().speed > 0.2
+    assert await handle.cancel()
+    assert (await handle.outcome()).status == GoalStatus.CANCELED
+    await lab.stands()
 
 
-def test_a_newer_goal_preempts_goals_of_other_actions_too() -> None:
-    async def body(lab: Lab) -> None:
-        first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        await lab.clock.sleep(2.0)
-        second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
-        assert (await first.outcome()).status == GoalStatus.ABORTED
-        await lab.clock.sleep(2.0)
-        third = await lab.do("/move_base", "move_base_msgs/action/MoveBase", target_pose=pose(0, 2))
-        outcome = await second.outcome()
-        assert outcome.status == GoalStatus.ABORTED
-        assert "newer goal" in outcome.text
-        assert third.status == GoalStatus.SUCCEEDED
-        await lab.stands()
-        near(lab.world, 0, 2, 0)
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_a_newer_goal_preempts_goals_of_other_actions_too(lab: Lab) -> None:
+    first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    await lab.clock.sleep(2.0)
+    second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
+    assert (await first.outcome()).status == GoalStatus.ABORTED
+    await lab.clock.sleep(2.0)
+    third = await lab.do("/move_base", "move_base_msgs/action/MoveBase", target_pose=pose(0, 2))
+    outcome = await second.outcome()
+    assert outcome.status == GoalStatus.ABORTED
+    assert "newer goal" in outcome.text
+    assert third.status == GoalStatus.SUCCEEDED
+    await lab.stands()
+    near(lab.world, 0, 2, 0)
 
 
 async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
@@ -47,76 +44,66 @@ async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
     assert "is running; cancel that goal first" in outcome.text
 
 
-def test_a_goal_cancelled_just_before_the_next_one_ends_as_aborted() -> None:
-    async def body(lab: Lab) -> None:
-        first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        await lab.clock.sleep(1.0)
-        assert await first.cancel()
-        # From another node: our own would wait.
-        other = open_backend("memory", lab.clock, "other", graph=lab.backend.graph)
-        await other.start()
-        second = await other.action_client("/navigate_to_pose", NAVIGATE).send({"pose": pose(2, 0)})
-        assert (await first.outcome()).status == GoalStatus.ABORTED
-        assert (await second.outcome()).status == GoalStatus.SUCCEEDED
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_a_goal_cancelled_just_before_the_next_one_ends_as_aborted(lab: Lab) -> None:
+    first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    await lab.clock.sleep(1.0)
+    assert await first.cancel()
+    # From another node: our own would wait.
+    other = open_backend("memory", lab.clock, "other", graph=lab.backend.graph)
+    await other.start()
+    second = await other.action_client("/navigate_to_pose", NAVIGATE).send({"pose": pose(2, 0)})
+    assert (await first.outcome()).status == GoalStatus.ABORTED
+    assert (await second.outcome()).status == GoalStatus.SUCCEEDED
 
 
-def test_nav2s_two_navigators_do_not_preempt_each_other() -> None:
-    async def body(lab: Lab) -> None:
-        through = "nav2_msgs/action/NavigateThroughPoses"
-        first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        await lab.clock.sleep(1.0)
-        await occupied(lab, "/navigate_through_poses", through, poses=[pose(0, 1)])
-        second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
-        assert (await first.outcome()).status == GoalStatus.ABORTED
-        await occupied(lab, "/navigate_through_poses", through, poses=[pose(0, 1)])
-        await second.cancel()
-        assert (await second.outcome()).status == GoalStatus.CANCELED
-        third = await lab.send("/navigate_through_poses", through, poses=[pose(0, 1)])
-        await occupied(lab, "/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        assert (await third.outcome()).status == GoalStatus.SUCCEEDED
+@played(in_world, "house")
+async def test_nav2s_two_navigators_do_not_preempt_each_other(lab: Lab) -> None:
+    through = "nav2_msgs/action/NavigateThroughPoses"
+    first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    await lab.clock.sleep(1.0)
+    await occupied(lab, "/navigate_through_poses", through, poses=[pose(0, 1)])
+    second = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
+    assert (await first.outcome()).status == GoalStatus.ABORTED
+    await occupied(lab, "/navigate_through_poses", through, poses=[pose(0, 1)])
+    await second.cancel()
+    assert (await second.outcome()).status == GoalStatus.CANCELED
+    third = await lab.send("/navigate_through_poses", through, poses=[pose(0, 1)])
+    await occupied(lab, "/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    assert (await third.outcome()).status == GoalStatus.SUCCEEDED
+    assert (await lab.go(0, 0)).status == GoalStatus.SUCCEEDED
+    empty = await lab.do("/navigate_through_poses", through)
+    assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 309)
+
+
+@played(in_world, "house")
+async def test_a_goal_preempts_docking(lab: Lab) -> None:
+    for wait in (1.0, 5.5):  # on the way to the dock, and close before it
+        docking = await lab.send("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
+        await lab.clock.sleep(wait)
         assert (await lab.go(0, 0)).status == GoalStatus.SUCCEEDED
-        empty = await lab.do("/navigate_through_poses", through)
-        assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 309)
-
-    in_world("house", body)
-
-
-def test_a_goal_preempts_docking() -> None:
-    async def body(lab: Lab) -> None:
-        for wait in (1.0, 5.5):  # on the way to the dock, and close before it
-            docking = await lab.send("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
-            await lab.clock.sleep(wait)
-            assert (await lab.go(0, 0)).status == GoalStatus.SUCCEEDED
-            outcome = await docking.outcome()
-            assert (outcome.status, outcome.result.success) == (GoalStatus.ABORTED, False)
-            assert "newer goal" in outcome.text
-            await lab.stands()
-
-    in_world("house", body)
-
-
-def test_closing_the_servers_stops_the_robot() -> None:
-    async def body(lab: Lab) -> None:
-        handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
-        await lab.clock.sleep(3.0)
-        for navigation in lab.node.navigation:
-            navigation.close()
-        assert (await handle.outcome()).status == GoalStatus.ABORTED
+        outcome = await docking.outcome()
+        assert (outcome.status, outcome.result.success) == (GoalStatus.ABORTED, False)
+        assert "newer goal" in outcome.text
         await lab.stands()
 
-    in_world("house", body)
+
+@played(in_world, "house")
+async def test_closing_the_servers_stops_the_robot(lab: Lab) -> None:
+    handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
+    await lab.clock.sleep(3.0)
+    for navigation in lab.node.navigation:
+        navigation.close()
+    assert (await handle.outcome()).status == GoalStatus.ABORTED
+    await lab.stands()
 
 
-def test_a_battery_that_runs_empty_ends_the_goal() -> None:
-    async def body(lab: Lab) -> None:
-        lab.world.robot().battery.level = 2.0
-        outcome = await lab.go(2, 2)
-        assert outcome.status == GoalStatus.ABORTED
-        assert (outcome.result.error_code, outcome.result.error_msg) == (105, "the battery is empty")
-
-    in_world("house", body)
+@played(in_world, "house")
+async def test_a_battery_that_runs_empty_ends_the_goal(lab: Lab) -> None:
+    lab.world.robot().battery.level = 2.0
+    outcome = await lab.go(2, 2)
+    assert outcome.status == GoalStatus.ABORTED
+    assert (outcome.result.error_code, outcome.result.error_msg) == (105, "the battery is empty")
 
 
 PARKED = """

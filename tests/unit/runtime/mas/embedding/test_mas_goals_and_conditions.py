@@ -10,6 +10,7 @@ from jacaros import Atom, GoalFailed, Mas, Structure
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
+from played import played
 
 
 def test_until_waits_for_a_condition() -> None:
@@ -51,19 +52,17 @@ def test_a_timeout_of_a_condition_shows_related_beliefs() -> None:
     run(test)
 
 
-def test_a_cancelled_wait_leaves_nothing_behind() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "+!long <- .wait(10000).")
-        for waiting in (bob.until("never"), bob.achieve("long").wait()):
-            task = asyncio.ensure_future(waiting)
-            await mas.sleep(0.1)
-            task.cancel()
-            with pytest.raises(asyncio.CancelledError):
-                await task
-        assert not bob.mind.waits.conditions
-        assert bob.goals == ["long"]
-
-    run(test)
+@played(run)
+async def test_a_cancelled_wait_leaves_nothing_behind(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "+!long <- .wait(10000).")
+    for waiting in (bob.until("never"), bob.achieve("long").wait()):
+        task = asyncio.ensure_future(waiting)
+        await mas.sleep(0.1)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+    assert not bob.mind.waits.conditions
+    assert bob.goals == ["long"]
 
 
 def test_beliefs_percepts_and_signals_can_be_added() -> None:
@@ -110,84 +109,76 @@ def test_beliefs_can_be_added_while_an_agent_prints() -> None:
     jacaros.run(main(), clock="fast")
 
 
-def test_a_failed_goal_raises_with_its_reasons() -> None:
-    async def test(mas: Mas) -> None:
-        await mas.make_artifact("counter", Counter)
-        bob = mas.add_agent(
-            "bob", '+!go <- .fail(blocked(wall), error_msg("no way")). +!add <- inc(far). +!fly <- soar.'
-        )
-        with pytest.raises(GoalFailed) as failed:
-            await bob.achieve("go")
-        assert (
-            str(failed.value)
-            == "goal !go of agent bob failed: no way (blocked(wall), error(internal_action)), in <bob>:1"
-        )
-        assert failed.value.goal == "go"
-        assert failed.value.message == "no way"
-        assert Structure("blocked", (Atom("wall"),)) in failed.value.reasons
-        assert failed.value.reason("blocked") == "wall"
-        assert failed.value.reason("other") is None
-        mas.add_agent("eve", "+!open(D) : shut(D).")
-        with pytest.raises(GoalFailed) as failed:
-            await mas.agent("eve").achieve("open(hatch)")
-        assert failed.value.__notes__ == [
-            "does not fit: +!open(D) (<eve>:1), stops at `shut(D)` with D=hatch: no belief `shut`"
-        ]
-        with pytest.raises(GoalFailed, match="no relevant plan for !missing"):
-            await bob.achieve("missing")
-        with pytest.raises(GoalFailed) as failed:
-            await bob.achieve("add")
-        assert failed.value.reason("env_failure_reason").functor == "wrong_op_arguments"  # type: ignore[attr-defined]
-        with pytest.raises(GoalFailed) as failed:
-            await bob.achieve("fly")
-        assert failed.value.message == "no artifact of workspace /main has an operation soar/0"
-
-    run(test)
+@played(run)
+async def test_a_failed_goal_raises_with_its_reasons(mas: Mas) -> None:
+    await mas.make_artifact("counter", Counter)
+    bob = mas.add_agent(
+        "bob", '+!go <- .fail(blocked(wall), error_msg("no way")). +!add <- inc(far). +!fly <- soar.'
+    )
+    with pytest.raises(GoalFailed) as failed:
+        await bob.achieve("go")
+    assert (
+        str(failed.value)
+        == "goal !go of agent bob failed: no way (blocked(wall), error(internal_action)), in <bob>:1"
+    )
+    assert failed.value.goal == "go"
+    assert failed.value.message == "no way"
+    assert Structure("blocked", (Atom("wall"),)) in failed.value.reasons
+    assert failed.value.reason("blocked") == "wall"
+    assert failed.value.reason("other") is None
+    mas.add_agent("eve", "+!open(D) : shut(D).")
+    with pytest.raises(GoalFailed) as failed:
+        await mas.agent("eve").achieve("open(hatch)")
+    assert failed.value.__notes__ == [
+        "does not fit: +!open(D) (<eve>:1), stops at `shut(D)` with D=hatch: no belief `shut`"
+    ]
+    with pytest.raises(GoalFailed, match="no relevant plan for !missing"):
+        await bob.achieve("missing")
+    with pytest.raises(GoalFailed) as failed:
+        await bob.achieve("add")
+    assert failed.value.reason("env_failure_reason").functor == "wrong_op_arguments"  # type: ignore[attr-defined]
+    with pytest.raises(GoalFailed) as failed:
+        await bob.achieve("fly")
+    assert failed.value.message == "no artifact of workspace /main has an operation soar/0"
 
 
-def test_waiting_forever_on_the_virtual_clock_raises() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", '+!long <- .wait("+never"). +!later(N) <- .wait(N); +later.')
-        bob.achieve("later(5000)")
-        assert await bob.until("later") == {}
-        for waiting in (bob.achieve("long").wait(), bob.until("p"), mas.mailbox("me").get()):
-            with pytest.raises(TimeoutError, match="and never will: all agents are idle"):
-                await waiting
-        assert await asyncio.to_thread(lambda: 7) == 7
-
-    run(test)
-
-
-def test_goals_can_be_dropped_or_time_out() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "+!long <- .wait(10000). +!forget <- .drop_intention(long).")
-        goal = bob.achieve("long")
-        with pytest.raises(TimeoutError, match=r"bob did not achieve !long \(it is waiting\) within 2 s"):
-            await goal.wait(timeout=2)
-        assert goal.state == "waiting"
-        goal.drop()
-        with pytest.raises(GoalFailed, match="goal !long of agent bob was dropped"):
-            await goal
-        waiting = asyncio.ensure_future(bob.achieve("long").wait())
-        await mas.sleep(1)
-        bob.achieve("forget")
-        with pytest.raises(GoalFailed, match="was dropped"):
+@played(run)
+async def test_waiting_forever_on_the_virtual_clock_raises(mas: Mas) -> None:
+    bob = mas.add_agent("bob", '+!long <- .wait("+never"). +!later(N) <- .wait(N); +later.')
+    bob.achieve("later(5000)")
+    assert await bob.until("later") == {}
+    for waiting in (bob.achieve("long").wait(), bob.until("p"), mas.mailbox("me").get()):
+        with pytest.raises(TimeoutError, match="and never will: all agents are idle"):
             await waiting
+    assert await asyncio.to_thread(lambda: 7) == 7
 
-    run(test)
+
+@played(run)
+async def test_goals_can_be_dropped_or_time_out(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "+!long <- .wait(10000). +!forget <- .drop_intention(long).")
+    goal = bob.achieve("long")
+    with pytest.raises(TimeoutError, match=r"bob did not achieve !long \(it is waiting\) within 2 s"):
+        await goal.wait(timeout=2)
+    assert goal.state == "waiting"
+    goal.drop()
+    with pytest.raises(GoalFailed, match="goal !long of agent bob was dropped"):
+        await goal
+    waiting = asyncio.ensure_future(bob.achieve("long").wait())
+    await mas.sleep(1)
+    bob.achieve("forget")
+    with pytest.raises(GoalFailed, match="was dropped"):
+        await waiting
 
 
-def test_until_idle_waits_for_idleness() -> None:
-    async def test(mas: Mas) -> None:
-        await mas.until_idle()
-        mas.add_agent("bob", "!go. +!go <- .wait(3000); +done. +!busy <- .wait(1); !busy.")
-        await mas.until_idle()
-        assert mas.agent("bob").believes("done")
-        mas.agent("bob").achieve("busy")
-        with pytest.raises(TimeoutError, match="the agents did not become idle within 2 s"):
-            await mas.until_idle(timeout=2)
-
-    run(test)
+@played(run)
+async def test_until_idle_waits_for_idleness(mas: Mas) -> None:
+    await mas.until_idle()
+    mas.add_agent("bob", "!go. +!go <- .wait(3000); +done. +!busy <- .wait(1); !busy.")
+    await mas.until_idle()
+    assert mas.agent("bob").believes("done")
+    mas.agent("bob").achieve("busy")
+    with pytest.raises(TimeoutError, match="the agents did not become idle within 2 s"):
+        await mas.until_idle(timeout=2)
 
 
 def test_an_operation_of_a_session_is_under_way() -> None:

@@ -16,6 +16,7 @@ from jacaros.runtime.clock import VirtualClock, WallClock, clock_of, new_event_l
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.deployment import AgentSpec, FocusSpec, ProjectError
 from jacaros.runtime.mas.embedding.waits import RunEnded, UnknownAgent
+from played import played
 
 
 def test_an_agent_from_a_text_achieves_a_goal() -> None:
@@ -83,55 +84,49 @@ def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
     assert run(test, project=project).exit_code == 3
 
 
-def test_artifacts_are_made_focused_and_used() -> None:
-    async def test(mas: Mas) -> None:
-        mas.add_artifact_types(Counter)
-        lab = mas.create_workspace("lab")
-        counter = await mas.make_artifact("counter", Counter, [1], workspace=lab)
-        program = '+!go <- inc; makeArtifact(mine, "Counter", [7], Id); focus(Id); double(4, X); +doubled(X).'
-        bob = mas.add_agent("bob", program, focus=[counter], join=["/main"])
-        await bob.achieve("go")
-        assert bob.answers("count(X)[artifact_name(N)]") == [
-            {"X": 7, "N": Atom("mine")},
-            {"X": 2, "N": Atom("counter")},
-        ]
-        assert bob.ask("doubled(X)") == {"X": 8}
-
-    run(test)
+@played(run)
+async def test_artifacts_are_made_focused_and_used(mas: Mas) -> None:
+    mas.add_artifact_types(Counter)
+    lab = mas.create_workspace("lab")
+    counter = await mas.make_artifact("counter", Counter, [1], workspace=lab)
+    program = '+!go <- inc; makeArtifact(mine, "Counter", [7], Id); focus(Id); double(4, X); +doubled(X).'
+    bob = mas.add_agent("bob", program, focus=[counter], join=["/main"])
+    await bob.achieve("go")
+    assert bob.answers("count(X)[artifact_name(N)]") == [
+        {"X": 7, "N": Atom("mine")},
+        {"X": 2, "N": Atom("counter")},
+    ]
+    assert bob.ask("doubled(X)") == {"X": 8}
 
 
-def test_focus_takes_names_paths_and_specs() -> None:
-    async def test(mas: Mas) -> None:
-        mas.create_workspace("lab")
-        for workspace in ("/main", "lab"):
-            await mas.make_artifact("counter", Counter, [len(workspace)], workspace=workspace)
-        for name, wanted, count in (
-            ("a", "counter", 5),
-            ("b", "lab/counter", 3),
-            ("c", "/main/lab/counter", 3),
-            ("d", FocusSpec("counter", "lab"), 3),
-        ):
-            agent = mas.add_agent(name, "!look. +!look : count(X) <- +seen(X).", focus=[wanted])
-            assert await agent.until("seen(X)", timeout=1) == {"X": count}
-        with pytest.raises(OperationFailed, match=r"unknown artifact `conter` .*; did you mean `counter`"):
-            mas.add_agent("e", "", focus=["conter"])
-        with pytest.raises(OperationFailed, match="unknown workspace `/main/lob`"):
-            mas.add_agent("e", "", join=["lob"])
-        assert "e" not in [agent.name for agent in mas.agents]
-
-    run(test)
+@played(run)
+async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
+    mas.create_workspace("lab")
+    for workspace in ("/main", "lab"):
+        await mas.make_artifact("counter", Counter, [len(workspace)], workspace=workspace)
+    for name, wanted, count in (
+        ("a", "counter", 5),
+        ("b", "lab/counter", 3),
+        ("c", "/main/lab/counter", 3),
+        ("d", FocusSpec("counter", "lab"), 3),
+    ):
+        agent = mas.add_agent(name, "!look. +!look : count(X) <- +seen(X).", focus=[wanted])
+        assert await agent.until("seen(X)", timeout=1) == {"X": count}
+    with pytest.raises(OperationFailed, match=r"unknown artifact `conter` .*; did you mean `counter`"):
+        mas.add_agent("e", "", focus=["conter"])
+    with pytest.raises(OperationFailed, match="unknown workspace `/main/lob`"):
+        mas.add_agent("e", "", join=["lob"])
+    assert "e" not in [agent.name for agent in mas.agents]
 
 
-def test_output_is_a_stream() -> None:
-    async def test(mas: Mas) -> None:
-        everything, bobs = mas.output(), mas.output("bob")
-        mas.add_agent("bob", "!go. +!go <- .print(a); .wait(1000); .print(b); .wait(1000); .stopMAS.")
-        mas.add_agent("ann", "!go. +!go <- .wait(500); .print(c).")
-        assert str(await bobs.get(timeout=1)) == "[bob] a"
-        assert [line.text async for line in bobs] == ["b"]
-        assert [tuple(line) for line in everything.take()] == [("bob", "a"), ("ann", "c"), ("bob", "b")]
-
-    run(test)
+@played(run)
+async def test_output_is_a_stream(mas: Mas) -> None:
+    everything, bobs = mas.output(), mas.output("bob")
+    mas.add_agent("bob", "!go. +!go <- .print(a); .wait(1000); .print(b); .wait(1000); .stopMAS.")
+    mas.add_agent("ann", "!go. +!go <- .wait(500); .print(c).")
+    assert str(await bobs.get(timeout=1)) == "[bob] a"
+    assert [line.text async for line in bobs] == ["b"]
+    assert [tuple(line) for line in everything.take()] == [("bob", "a"), ("ann", "c"), ("bob", "b")]
 
 
 def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[str]) -> None:
@@ -146,18 +141,16 @@ def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[st
     assert "careful" in shown.err
 
 
-def test_a_session_can_act_beside_the_agents() -> None:
-    async def test(mas: Mas) -> None:
-        await mas.make_artifact("counter", Counter, [5])
-        bob = mas.add_agent("bob", "", focus=["counter"])
-        painter = mas.session("painter")
-        assert await painter.act("double", 4, Out()) == 8
-        await painter.act("inc")
-        assert await bob.until("count(X) & X > 5") == {"X": 6}
-        with pytest.raises(OperationFailed, match="unknown workspace `/main/lab`"):
-            mas.session("other", workspace="lab")
-
-    run(test)
+@played(run)
+async def test_a_session_can_act_beside_the_agents(mas: Mas) -> None:
+    await mas.make_artifact("counter", Counter, [5])
+    bob = mas.add_agent("bob", "", focus=["counter"])
+    painter = mas.session("painter")
+    assert await painter.act("double", 4, Out()) == 8
+    await painter.act("inc")
+    assert await bob.until("count(X) & X > 5") == {"X": 6}
+    with pytest.raises(OperationFailed, match="unknown workspace `/main/lab`"):
+        mas.session("other", workspace="lab")
 
 
 def test_errors_are_raised_at_the_call(tmp_path: Path) -> None:
@@ -285,12 +278,10 @@ def test_calls_from_another_thread_are_refused_with_a_fix() -> None:
 
 
 @pytest.mark.parametrize("name", ["", "a b", "a\n[b] forged", "n\0"])
-def test_a_name_that_would_forge_output_is_refused(name: str) -> None:
-    async def test(mas: Mas) -> None:
-        with pytest.raises(UsageError, match="invalid agent name"):
-            mas.add_agent(name, "x.")
-
-    run(test, [])
+@played(run, lines=[])
+async def test_a_name_that_would_forge_output_is_refused(mas: Mas, name: str) -> None:
+    with pytest.raises(UsageError, match="invalid agent name"):
+        mas.add_agent(name, "x.")
 
 
 def test_an_agent_continues_in_another_run() -> None:
@@ -341,47 +332,41 @@ def test_an_agent_that_continues_perceives_anew() -> None:
     assert lines == ["[bob] open", "[bob] wide", "[bob] open"]
 
 
-def test_there_is_no_agent_when_what_was_stored_does_not_fit_its_program() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "!go. +!go <- .wait(1000).")
-        await mas.sleep(0.5)
-        kept = bob.stored()
-        bob.kill()
-        with pytest.raises(ValueError, match="the program has changed"):
-            mas.add_agent("bob", "+!go <- .print(other).", stored=kept)
-        with pytest.raises(UsageError, match="is a Python agent"):
-            mas.add_agent("ann", type("Ann", (jacaros.PythonAgent,), {}), stored=kept)
-        mas.add_agent("bob", "!go. +!go <- .wait(1000).", stored=kept)
-        assert [each.name for each in mas.agents] == ["bob"]
-
-    run(test)
+@played(run)
+async def test_there_is_no_agent_when_what_was_stored_does_not_fit_its_program(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "!go. +!go <- .wait(1000).")
+    await mas.sleep(0.5)
+    kept = bob.stored()
+    bob.kill()
+    with pytest.raises(ValueError, match="the program has changed"):
+        mas.add_agent("bob", "+!go <- .print(other).", stored=kept)
+    with pytest.raises(UsageError, match="is a Python agent"):
+        mas.add_agent("ann", type("Ann", (jacaros.PythonAgent,), {}), stored=kept)
+    mas.add_agent("bob", "!go. +!go <- .wait(1000).", stored=kept)
+    assert [each.name for each in mas.agents] == ["bob"]
 
 
-def test_an_agent_in_the_middle_of_a_step_is_not_stored() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "!go. +!go <- .print(now).")
-        refused: list[str] = []
+@played(run)
+async def test_an_agent_in_the_middle_of_a_step_is_not_stored(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "!go. +!go <- .print(now).")
+    refused: list[str] = []
 
-        def store(agent: str, text: str) -> None:
-            with pytest.raises(UsageError, match="agent bob is in the middle of a step") as why:
-                bob.stored()
-            refused.append(f"{agent} {text} {why.typename}")
-
-        mas.on_print(store)
-        await mas.until_idle()
-        assert refused == ["bob now UsageError"]
-
-    run(test)
-
-
-def test_an_agent_whose_goal_python_code_awaits_is_not_stored() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "+!go <- .wait(1000).")
-        goal = bob.achieve("go")
-        await mas.sleep(0.5)
-        with pytest.raises(jacaros.NotStorable, match="Python code awaits a goal"):
+    def store(agent: str, text: str) -> None:
+        with pytest.raises(UsageError, match="agent bob is in the middle of a step") as why:
             bob.stored()
-        await goal
-        assert bob.stored()["agent"] == "bob"
+        refused.append(f"{agent} {text} {why.typename}")
 
-    run(test)
+    mas.on_print(store)
+    await mas.until_idle()
+    assert refused == ["bob now UsageError"]
+
+
+@played(run)
+async def test_an_agent_whose_goal_python_code_awaits_is_not_stored(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "+!go <- .wait(1000).")
+    goal = bob.achieve("go")
+    await mas.sleep(0.5)
+    with pytest.raises(jacaros.NotStorable, match="Python code awaits a goal"):
+        bob.stored()
+    await goal
+    assert bob.stored()["agent"] == "bob"

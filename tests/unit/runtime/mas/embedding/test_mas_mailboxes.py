@@ -7,6 +7,7 @@ from jacaros import Atom, Mas, Structure
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.embedding.mailbox import Mailbox
 from jacaros.runtime.mas.embedding.waits import UnknownAgent
+from played import played
 
 
 def test_python_code_has_mailboxes() -> None:
@@ -52,24 +53,20 @@ def test_python_code_has_mailboxes() -> None:
     assert lines == ["[bob] weather(fine)[source(me)]"]
 
 
-def test_messages_are_iterated_as_they_arrive() -> None:
-    async def test(mas: Mas) -> None:
-        me = mas.mailbox("me")
-        mas.add_agent(
-            "bob", "!go. +!go <- for (.range(I, 1, 3)) { .wait(1000); .send(me, tell, n(I)) }; .stopMAS."
-        )
-        numbers = [message.content.arguments[0] async for message in me]
-        assert numbers == [1, 2, 3]
-
-    run(test)
+@played(run)
+async def test_messages_are_iterated_as_they_arrive(mas: Mas) -> None:
+    me = mas.mailbox("me")
+    mas.add_agent(
+        "bob", "!go. +!go <- for (.range(I, 1, 3)) { .wait(1000); .send(me, tell, n(I)) }; .stopMAS."
+    )
+    numbers = [message.content.arguments[0] async for message in me]
+    assert numbers == [1, 2, 3]
 
 
-def test_the_names_of_mailboxes_are_known_to_agents() -> None:
-    async def test(mas: Mas) -> None:
-        box: Mailbox = mas.mailbox("me")
-        bob = mas.add_agent("bob", "+!go <- .all_names(L); +names(L).")
-        assert repr(box) == "<mailbox me, 0 messages>"
-        await bob.achieve("go")
-        assert bob.ask("names(L)") == {"L": [Atom("bob"), Atom("me")]}
-
-    run(test)
+@played(run)
+async def test_the_names_of_mailboxes_are_known_to_agents(mas: Mas) -> None:
+    box: Mailbox = mas.mailbox("me")
+    bob = mas.add_agent("bob", "+!go <- .all_names(L); +names(L).")
+    assert repr(box) == "<mailbox me, 0 messages>"
+    await bob.achieve("go")
+    assert bob.ask("names(L)") == {"L": [Atom("bob"), Atom("me")]}

@@ -2,8 +2,6 @@
 
 import asyncio
 
-import pytest
-
 from jacaros.artifacts import Environment, OperationRequest, UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -113,22 +111,17 @@ class Stage:
         return any(text in line for line in self.lines)
 
 
-@pytest.fixture
-def play():
+def play(scene, *, expect_defects=False, **resources):
     """Play a scene, ``async def scene(stage)``; then dispose everything, and nothing of ours may be wrong."""
+    clock = VirtualClock()
+    stages = []
 
-    def play_scene(scene, *, expect_defects=False, **resources):
-        clock = VirtualClock()
-        stages = []
+    async def main():
+        stage = Stage(clock, resources)
+        stages.append(stage)
+        await scene(stage)
+        await stage.environment.close()
 
-        async def main():
-            stage = Stage(clock, resources)
-            stages.append(stage)
-            await scene(stage)
-            await stage.environment.close()
-
-        run(main, clock)
-        assert expect_defects or stages[0].defects == []
-        return stages[0]
-
-    return play_scene
+    run(main, clock)
+    assert expect_defects or stages[0].defects == []
+    return stages[0]
