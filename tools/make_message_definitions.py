@@ -11,7 +11,7 @@ from typing import Any
 
 from rosbags.typesys import Stores, get_typestore
 
-FILE = Path(__file__).parents[1] / "src" / "jacaros" / "ros" / "interfaces" / "jazzy.msg"
+FILE = Path(__file__).parents[1] / "src" / "jacaros" / "robots" / "ros" / "interfaces" / "jazzy.msg"
 HEAD = """\
 # Message definitions of ROS 2 Jazzy, without comments; tools/make_message_definitions.py writes this file.
 # Licence: BSD-3-Clause for tf2_msgs and unique_identifier_msgs, Apache-2.0 for all others.

@@ -33,7 +33,7 @@ from jacaros.runtime.cli.main import COMMANDS, jacaros
 from jacaros.runtime.files.entries import declared_entries
 
 ROOT = Path(__file__).resolve().parent.parent
-REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"
+REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "look" / "page" / "static"
 NOTE = "<!-- Written by tools/make_reference.py from the code; change it there. -->\n"
 LINKS = {
     "ReadingPolicy": "[reading sensors](#reading-sensors)",

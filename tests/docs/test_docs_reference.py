@@ -16,7 +16,7 @@ from jacaros.robots.world.data.ground_truth import FIELDS
 from jacaros.robots.world.files.world import shipped_worlds
 from jacaros.runtime.cli.main import COMMANDS
 
-REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "inspector" / "static"
+REFERENCE, STATIC = ROOT / "docs" / "reference", ROOT / "src" / "jacaros" / "look" / "page" / "static"
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,10 @@ from random import Random
 import msgspec
 import pytest
 
-from jacaros.look import recording as reading
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import EmbeddedScene, RobotView
 from jacaros.look.page.watch import Watch
+from jacaros.look.records import recording as reading
 from jacaros.look.records.line_format import CompressedLines, Lines, unpacked
 from jacaros.look.records.recording import Recording
 from jacaros.look.records.records import Happened, Text

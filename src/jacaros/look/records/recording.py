@@ -180,7 +180,7 @@ def _record(line: str) -> AnyLine | None:
     """Return the record of a line; None for one of an unknown kind.
 
     Raises:
-        ValidationError: it is no record.
+        ValidationError: it is not a record.
         JSONDecodeError: it is not JSON.
     """
     try:

@@ -32,6 +32,8 @@ KINDS = ("vacuum", "mop", "scrub")
 
 Task = tuple[str, str]
 """Kind of a task, and its object."""
+NO_MORE: tuple[tuple[str, tuple[Task, ...]], ...] = ()
+"""The usual value of the option ``more_rooms``."""
 
 TASKS: tuple[tuple[Task, ...], ...] = (
     (),
@@ -91,7 +93,7 @@ class ArtCleaning(RosArtifact):
 
     def open(self) -> None:
         """Define the properties; the robot begins in the hallway."""
-        more: tuple[tuple[str, tuple[Task, ...]], ...] = self.option("more_rooms", ())
+        more = self.option("more_rooms", NO_MORE)
         self._rooms = (*ROOMS, *(name for name, _ in more))
         self._tasks_of = (*TASKS, *(tasks for _, tasks in more))
         self.define_property("atRoom", 0)

@@ -20,7 +20,7 @@ Reader = Callable[[object], object]
 def read_arguments(
     arguments: Iterable[object], known: Mapping[str, Reader], artifact: str
 ) -> tuple[str, dict[str, object]]:
-    """Split the arguments of ``makeArtifact`` into the robot's name (empty if there is none) and options.
+    """Split the arguments of ``makeArtifact`` into the robot's name (empty without one) and options.
 
     Args:
         arguments: as given by the agent or the Python program.

@@ -101,7 +101,7 @@ class Codec:
 
     Attributes:
         fill: builds the message, request or goal.
-        end: builds the last message of repeated publishing; None: there is none.
+        end: builds the last message of repeated publishing; None: no last message.
         outputs: read the output parameters from the response or result.
         code: reads the Code of ``aborted(Code,Text)``; None: the usual field.
         aborted: read what follows Code and Text.

@@ -97,7 +97,7 @@ def test_every_form_of_a_line() -> None:
 
 
 def test_rosbags_reads_the_same_from_every_file_of_ours() -> None:
-    for file in sorted((ROOT / "src" / "jacaros" / "ros" / "interfaces").glob("*/msg/*.msg")):
+    for file in sorted((ROOT / "src" / "jacaros" / "robots" / "ros" / "interfaces").glob("*/msg/*.msg")):
         package, text = file.parent.parent.name, file.read_text(encoding="utf-8")
         [(constants, fields)] = get_types_from_msg(text, f"{package}/msg/{file.stem}").values()
         found = parse_definition(text, package)

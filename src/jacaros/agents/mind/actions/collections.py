@@ -63,8 +63,8 @@ def _create(name: str, kind: type[Collection]) -> None:
     """
 
     def create(ctx: Context, variable: Term, order: Term = None) -> bool:
-        priority = (True,) if isinstance(order, Functor) and order.name == "priority" else ()
-        return variable.__class__ is Var and ctx.unify(variable, kind(*priority))
+        priority = isinstance(order, Functor) and order.name == "priority"
+        return variable.__class__ is Var and ctx.unify(variable, QueueValue(True) if priority else kind())
 
     internal_action(f".{name}.create", arity=(1, 2) if kind is QueueValue else 1)(create)
 

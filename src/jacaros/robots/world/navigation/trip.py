@@ -229,7 +229,7 @@ class Trip:
             self._vias = vias
 
     def _way_now(self) -> list[Point] | None:
-        """Return the path around the obstacles; None if there is none."""
+        """Return the path around the obstacles; None if no path exists."""
         with suppress(NavigationFailure):
             return self._way(self._others)
         return None

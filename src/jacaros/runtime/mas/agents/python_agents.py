@@ -165,7 +165,7 @@ class PythonAgentHost(AgentHost):
 
     def _settled(self) -> None:
         """Check whether the run is idle, as after the turn of any agent."""
-        self.system.scheduler.make_ready(self)
+        self.ready()
 
     def halt(self) -> None:
         """Cancel its tasks and operations. Their ``finally`` blocks run, and may still act and print."""

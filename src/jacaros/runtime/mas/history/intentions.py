@@ -1,7 +1,7 @@
 """Records of intentions: changes in those of agents that had a turn, at most ten times a second."""
 
 from collections.abc import Callable, Sequence
-from itertools import zip_longest
+from itertools import chain, repeat
 from operator import is_
 from typing import Any, NamedTuple
 
@@ -156,7 +156,7 @@ class IntentionRecords:
             levels = [levels[0], *levels[1 - DEEPEST :]]
         return [
             before if before is not None and before.is_still(*level) else self._level(*level)
-            for before, level in zip_longest(known[: len(levels)], levels)
+            for before, level in zip(chain(known, repeat(None)), levels, strict=False)
         ]
 
     def _level(self, frame: Frame, above: Frame | None) -> _Level:

@@ -51,8 +51,8 @@ class ObservedSystem(Protocol):
     def when_situated(self, callback: "Callable[[Environment], None]") -> Callable[[], None]:
         """Call *callback* with the environment, now or when it is created. Return a function that ends this."""
 
-    def listen_to_log(self, callback: Callable[[str, str], None]) -> Callable[[], None]:
-        """Call *callback* with text and level of each line of the log. Return a function that ends this."""
+    def listen_to_log(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
+        """Call *listener* with text and level of each line of the log. Return a function that ends this."""
 
 
 class RunEnvironmentRecords:
