@@ -41,6 +41,7 @@ mutants: $(VENV)/.installed-dev
 # Reference pages and pictures generated from the code.
 reference: $(VENV)/.installed-dev
 	$(VENV)/bin/python tools/make_reference.py
+	$(VENV)/bin/python tools/make_schemas.py
 	$(VENV)/bin/python tools/draw_layers.py
 	$(VENV)/bin/python tools/make_pictures.py
 

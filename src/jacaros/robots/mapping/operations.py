@@ -448,12 +448,12 @@ KEYS: dict[str, dict[str, Reader]] = {
     "read": {"read": _properties},
 }
 """The keys of each kind of operation, with their readers; the first names it."""
-_COMMON: dict[str, Reader] = {
+COMMON: dict[str, Reader] = {
     "parameters": _into("parameters", _parameters),
     "description": _into("description", Node.text),
     "uses": _into("uses", _uses),
 }
-_ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for kind in KEYS for key in list(KEYS[kind])[1:]))))
+_ALL_KEYS = tuple(dict.fromkeys((*COMMON, *(key for kind in KEYS for key in list(KEYS[kind])[1:]))))
 
 
 def read_operation(name: Node, node: Node) -> OperationPart:
@@ -470,7 +470,7 @@ def read_operation(name: Node, node: Node) -> OperationPart:
         name.wrong(f"the operation `{part.name}` {found}", help)
         return part
     kind, own = OperationKind(kinds[0]), KEYS[kinds[0]]
-    readers = {kinds[0]: own[kinds[0]], **_COMMON, **own}
+    readers = {kinds[0]: own[kinds[0]], **COMMON, **own}
     entries = node.mapping(*readers, required=("value",) if kind is OperationKind.SET else ())
     waits = kind in (OperationKind.SERVICE, OperationKind.SET, OperationKind.GET)
     part = replace(part, kind=kind, timeout=CALL_TIMEOUT if waits else None)

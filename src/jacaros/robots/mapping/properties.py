@@ -464,7 +464,8 @@ def _value(node: Node) -> ParameterValue:
 
 # Derived: events composed of those of other properties and signals of the file.
 
-_COMMON = ("value", "lateness", "description")
+DERIVED = ("value", "lateness", "description")
+"""The keys of all derived properties, beside those of their operators."""
 _EXAMPLE = "write one, such as {count: bump, within: 5, at_least: 3}"
 
 
@@ -500,7 +501,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
     options = {
         key: constant(each) if key == "equals" else each.value
         for key, each in entries.items()
-        if key not in (operator, *_COMMON)
+        if key not in (operator, *DERIVED)
     }
     wrong = list(faults(operator, names, options))
     for fault in wrong:

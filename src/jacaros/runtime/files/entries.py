@@ -6,7 +6,7 @@ mapping; a field without a default is required.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, fields, replace
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 from jacaros.runtime.files.yaml import Node
@@ -25,12 +25,14 @@ class Entry:
         help: one line of documentation.
         key: name in the file; that of the field if empty.
         read: the reader; None if the code that reads the mapping gives it.
+        schema: JSON Schema of the values, for editors; empty for values of any kind.
     """
 
     words: str
     help: str = ""
     key: str = ""
     read: Reader | None = None
+    schema: Mapping[str, Any] = field(default_factory=dict)
 
 
 def declared_entries(described: Any) -> dict[str, tuple[str, Entry, bool]]:
@@ -66,7 +68,7 @@ def read(node: Node, usual: _T, **readers: Reader) -> _T:
 
 def section(help: str) -> Entry:
     """Return the entry of a mapping that is read into the fields of its default."""
-    return Entry("mapping", help, "", read)
+    return Entry("mapping", help, "", read, {"type": "object"})
 
 
 def number(
@@ -81,30 +83,37 @@ def number(
     words = (
         f"{least:g} to {most:g}" if most < 1e9 else f"at least {least:g}" if least > -math.inf else "number"
     )
-    return Entry(f"{words} {unit}".strip(), help, key, lambda node, _: change(node.number(least, most)))
+    limits = {"minimum": least, "maximum": most}
+    schema = {"type": "number", **{name: each for name, each in limits.items() if abs(each) < 1e9}}
+    return Entry(
+        f"{words} {unit}".strip(), help, key, lambda node, _: change(node.number(least, most)), schema
+    )
 
 
 def whole(least: int, help: str) -> Entry:
     """Return the entry of an integer, *least* or more."""
-    return Entry(f"integer, at least {least}", help, "", lambda node, _: node.whole(least, least))
+    schema = {"type": "integer", "minimum": least}
+    return Entry(f"integer, at least {least}", help, "", lambda node, _: node.whole(least, least), schema)
 
 
 def choice(*choices: str, help: str) -> Entry:
     """Return the entry of one of several words."""
     words = ", ".join(f"`{each}`" for each in choices)
-    return Entry(words, help, "", lambda node, _: node.choice(*choices))
+    return Entry(words, help, "", lambda node, _: node.choice(*choices), {"enum": choices})
 
 
 def either(help: str, key: str, off: str, on: str) -> Entry:
     """Return the entry of a word for False, or one for True."""
-    return Entry(f"`{off}`, `{on}`", help, key, lambda node, _: node.choice(off, on) == on)
+    return Entry(
+        f"`{off}`, `{on}`", help, key, lambda node, _: node.choice(off, on) == on, {"enum": (off, on)}
+    )
 
 
 def flag(help: str) -> Entry:
     """Return the entry of ``false`` or ``true``."""
-    return Entry("`false`, `true`", help, "", lambda node, _: node.truth())
+    return Entry("`false`, `true`", help, "", lambda node, _: node.truth(), {"type": "boolean"})
 
 
 def text(help: str) -> Entry:
     """Return the entry of a string."""
-    return Entry("text", help, "", lambda node, _: node.text())
+    return Entry("text", help, "", lambda node, _: node.text(), {"type": ["string", "number", "boolean"]})

@@ -39,8 +39,8 @@ from jacaros.runtime.files.texts import is_file, suggestion
 from jacaros.runtime.files.yaml import Node, Problem, read_document, top_keys
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
-_KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))
-_TELLING = frozenset(_KEYS) - {"name", "seed"}
+KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))
+_TELLING = frozenset(KEYS) - {"name", "seed"}
 """Keys that are rare in other YAML files."""
 _DOOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -136,7 +136,7 @@ def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | N
 
 
 def _world(document: Node, folder: Path) -> WorldDescription:
-    entries = document.mapping(*_KEYS, required=("robots",))
+    entries = document.mapping(*KEYS, required=("robots",))
     found = _map(entries["map"], folder) if "map" in entries else None
     bounds = (
         found.bounds if found is not None and not entries.keys() & {"size", "bounds"} else _bounds(entries)
