@@ -80,7 +80,7 @@ def made(seconds: float) -> list[Sample]:
 
 def patterns(samples: list[Sample]) -> Go:
     """The operators alone."""
-    from jacaros.artifacts.streams import Pattern, Spec
+    from jacaros.robots.streams import Pattern, Spec
 
     outputs = 0
 

@@ -397,7 +397,7 @@ KINDS = {
     "mas2j": FileKind(
         ".mas2j", lambda: _files("examples/**/*.mas2j", "tests/compatibility/*.mas2j"), _read_project
     ),
-    "mapping": FileKind(".yaml", lambda: _files("src/jacaros/artifacts/**/*.yaml"), _read_mapping),
+    "mapping": FileKind(".yaml", lambda: _files("src/jacaros/robots/mappings/*.yaml"), _read_mapping),
     "world": FileKind(".yaml", lambda: _files("src/jacaros/robots/world/worlds/*.yaml"), _read_world),
     "parameters": FileKind(".yaml", lambda: _PARAMETERS, _read_parameters),
     "recording": FileKind(".jsonl", _recordings, _read_recording, _json_lines_changed),

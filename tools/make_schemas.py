@@ -11,11 +11,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from jacaros.artifacts.streams import OPERATORS
 from jacaros.robots.mapping import fields, operations, properties
 from jacaros.robots.mapping.file import ArtifactPart
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Segment
+from jacaros.robots.streams import OPERATORS
 from jacaros.robots.world.data import robot, world
 from jacaros.robots.world.data.faults import KINDS, Fault
 from jacaros.robots.world.files.robot import SECTIONS

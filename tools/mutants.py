@@ -46,7 +46,7 @@ from mutation_operators import Mutant, mutants_of
 ROOT = Path(__file__).resolve().parent.parent
 MIND = (
     "tests/unit/agents",
-    "tests/unit/artifacts/streams",
+    "tests/unit/robots/streams",
     "tests/unit/runtime/mas/debugging",
     "tests/integration/test_resources.py",
     "tests/conformance",

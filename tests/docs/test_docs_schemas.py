@@ -15,7 +15,9 @@ from jacaros.robots.world.files.world import is_world
 ROOT = Path(__file__).parents[2]
 SCHEMAS = ROOT / "docs" / "reference" / "schemas"
 KINDS = {"world": is_world, "faults": is_fault_file, "mapping": is_mapping}
-FILES = sorted(each for folder in ("src", "examples", "experiment") for each in (ROOT / folder).rglob("*.yaml"))
+FILES = sorted(
+    each for folder in ("src", "examples", "experiment") for each in (ROOT / folder).rglob("*.yaml")
+)
 YAML_FILES = [(kind, each) for each in FILES for kind, is_kind in KINDS.items() if is_kind(each)]
 
 

@@ -9,7 +9,7 @@ from types import FrameType
 import pytest
 
 from jacaros.agents.language.directives import PATTERNS
-from jacaros.artifacts.streams import OPERATORS
+from jacaros.robots.streams import OPERATORS
 from jacaros.testing import AgentHarness
 
 ROOT = Path(__file__).parents[2]

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from jacaros.artifacts import Atom, Structure
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.kit.options import WrongOption, read_arguments
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
 from jacaros.robots.mapping.decoding import Values
+from jacaros.robots.streams import ReadingPolicy
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -9,13 +9,13 @@ import pytest
 from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import Structure, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.mapping.decoding import Values
+from jacaros.robots.streams import ReadingPolicy
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.trace import Cause
 

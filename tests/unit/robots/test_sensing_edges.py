@@ -8,7 +8,6 @@ from navigator import Navigator, failed, succeeded, suspended
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.kit.faults import Faults, Stamps
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
@@ -18,6 +17,7 @@ from jacaros.robots.mapping.fields import Conversion, Line, conversion
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.plane.pose import Pose
+from jacaros.robots.streams import ReadingPolicy
 from jacaros.runtime.clock import VirtualClock, run
 
 

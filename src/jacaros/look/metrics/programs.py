@@ -31,11 +31,8 @@ from jacaros.runtime.mas.project.cursor import ProjectCursor
 from jacaros.runtime.mas.project.reading import read_project
 
 OWN: Final = (
-    *(
-        f"jacaros.artifacts.{each}"
-        for each in ("kit", "map", "mapping", "registry", "robots", "thesis", "tools")
-    ),
-    "jacaros.artifacts.behaviour_trees",
+    *(f"jacaros.robots.{each}" for each in ("artifacts", "kit", "map", "mapping", "registry")),
+    *(f"jacaros.artifacts.{each}" for each in ("behaviour_trees", "tools")),
 )
 """Our packages that a program could contain itself. Language, middleware and simulator are the platform."""
 

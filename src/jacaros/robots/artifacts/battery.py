@@ -5,13 +5,13 @@ from functools import partial
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.kit.options import not_negative, number, one_of, positive, text
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.message import constant
 from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.qos import SENSOR_DATA
+from jacaros.robots.streams import ReadingPolicy
 
 FULL, MEDIUM, LOW = 100, 50, 20
 """Percent: charged; medium from here down; low from here down."""

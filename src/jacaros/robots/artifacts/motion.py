@@ -11,7 +11,6 @@ from typing import ClassVar, NoReturn
 
 from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.robots.artifacts.drive_model import (
     STANDSTILL,
@@ -41,6 +40,7 @@ from jacaros.robots.plane.pose import Pose
 from jacaros.robots.ros.errors import CapabilityMissing
 from jacaros.robots.ros.names import frame_name
 from jacaros.robots.ros.qos import SENSOR_DATA
+from jacaros.robots.streams import ReadingPolicy
 
 TWIST = "geometry_msgs/msg/Twist"
 

@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 from weakref import WeakSet
 
 from jacaros.artifacts.env.artifact import Out, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.drive_model import Velocity
 from jacaros.robots.kit.faults import Header
 from jacaros.robots.kit.options import text
@@ -19,6 +18,7 @@ from jacaros.robots.ros.errors import TransformUnavailable
 from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.qos import SENSOR_DATA
+from jacaros.robots.streams import ReadingPolicy
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 

@@ -7,13 +7,13 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.values import Atom
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.kit.faults import Header
 from jacaros.robots.kit.options import positive, text
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading, not_finite
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.backend import Sample
 from jacaros.robots.ros.qos import SENSOR_DATA
+from jacaros.robots.streams import ReadingPolicy
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Positions of the sampled ranges in the scan: from its first beam to its last."""

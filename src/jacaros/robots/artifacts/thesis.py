@@ -5,7 +5,6 @@ from typing import Any, ClassVar
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.env.values import Structure
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.kit.connection import MATCH_OPTIONS
 from jacaros.robots.kit.options import positive, text, yes_or_no
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
@@ -13,6 +12,7 @@ from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.backend import Sample
 from jacaros.robots.ros.node import Publisher
 from jacaros.robots.ros.services import Client
+from jacaros.robots.streams import ReadingPolicy
 
 ROOMS = ("hallway", "living Room", "kitchen", "bathroom")
 """The rooms by number, in the thesis's words: programs compare and print them."""

@@ -8,12 +8,12 @@ import math
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.drive_model import Velocity
 from jacaros.robots.artifacts.maneuver import DriveTo, Straight, Timed, Turn, TurnTo, go_to
 from jacaros.robots.artifacts.motion import WheeledArtifact
 from jacaros.robots.artifacts.odometry import Odometry
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
+from jacaros.robots.streams import ReadingPolicy
 
 BLIND_TURN = Velocity(0.0, 0.5)
 """Turn rate of `rotateD` (rad/s), as in the original system."""

@@ -22,10 +22,10 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from jacaros.artifacts.streams import ReadingPolicy as ReadingPolicy
-from jacaros.artifacts.streams import Values
 from jacaros.robots.kit.options import Reader, bands, one_of, positive, yes_or_no
 from jacaros.robots.ros.waiting import within
+from jacaros.robots.streams import ReadingPolicy as ReadingPolicy
+from jacaros.robots.streams import Values
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 

@@ -10,7 +10,6 @@ from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import marks_of
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.streams import ReadingPolicy, Values
 from jacaros.robots.kit.acting import GoalOptions, GoalRunner, Suspending, Switch, missing_number
 from jacaros.robots.kit.connection import (
     GUARD_TIMEOUT,
@@ -35,6 +34,7 @@ from jacaros.robots.ros.node import Capability, Closable, Publisher, Subscriptio
 from jacaros.robots.ros.parameter import Declaration, ParameterValue
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
 from jacaros.robots.ros.services import Client, Service
+from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.trace import Cause
 
 C = TypeVar("C", bound=Closable)

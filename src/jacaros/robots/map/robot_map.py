@@ -5,7 +5,6 @@ from functools import partial
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.odometry import Odometer, Odometry
 from jacaros.robots.kit.faults import Header
 from jacaros.robots.kit.options import not_negative, number, one_of, positive, text, yes_or_no
@@ -19,6 +18,7 @@ from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.qos import LATCHED, SENSOR_DATA
+from jacaros.robots.streams import ReadingPolicy
 
 AMCL_POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 

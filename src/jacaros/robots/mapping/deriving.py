@@ -1,14 +1,14 @@
-"""Derived properties: messages of other properties go through a pattern of `jacaros.artifacts.streams`."""
+"""Derived properties: messages of other properties go through a pattern of `jacaros.robots.streams`."""
 
 from collections import deque
 from functools import partial
 
-from jacaros.artifacts.streams import HIDE, SHOW, Pattern, Spec, Values
 from jacaros.robots.mapping.file import ArtifactPart
 from jacaros.robots.mapping.frames import StampedFrames
 from jacaros.robots.mapping.host import Host
 from jacaros.robots.mapping.properties import DerivedPart, FramePart
 from jacaros.robots.ros.message import to_seconds
+from jacaros.robots.streams import HIDE, SHOW, Pattern, Spec, Values
 from jacaros.runtime.clock import Timer
 from jacaros.runtime.files.texts import is_worth_a_line
 from jacaros.runtime.trace import Cause

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
-from jacaros.artifacts.streams import OPERATORS, Spec
 from jacaros.robots.mapping.fields import (
     NOTHING,
     START,
@@ -32,6 +31,7 @@ from jacaros.robots.mapping.properties import (
     read_property,
     read_signal,
 )
+from jacaros.robots.streams import OPERATORS, Spec
 from jacaros.runtime.files.entries import Entry, declared_entries, values
 from jacaros.runtime.files.texts import is_file, suggestion
 from jacaros.runtime.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys

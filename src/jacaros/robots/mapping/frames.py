@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.artifacts.streams import Values
 from jacaros.robots.mapping.decoding import converted
 from jacaros.robots.mapping.fields import FieldPart
 from jacaros.robots.mapping.host import Host
@@ -14,6 +13,7 @@ from jacaros.robots.plane.pose import pitch_of, roll_of
 from jacaros.robots.ros.errors import CapabilityMissing, TransformUnavailable
 from jacaros.robots.ros.protocols.transform import Transform
 from jacaros.robots.ros.waiting import MISSING_AFTER
+from jacaros.robots.streams import Values
 from jacaros.runtime.files.texts import is_worth_a_line
 from jacaros.runtime.trace import Cause
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import internal_operation
-from jacaros.artifacts.streams import ReadingPolicy, Values
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.mapping.fields import Place, Written
@@ -14,6 +13,7 @@ from jacaros.robots.ros.errors import RosError
 from jacaros.robots.ros.names import frame_name
 from jacaros.robots.ros.node import TopicEvent, TopicTrouble
 from jacaros.robots.ros.waiting import MISSING_AFTER
+from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.files.yaml import Problem, shown
 from jacaros.runtime.trace import Cause
 

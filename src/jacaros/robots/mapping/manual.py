@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from jacaros.artifacts.env.values import text
-from jacaros.artifacts.streams import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.robots.mapping.checking import message_types
 from jacaros.robots.mapping.decoding import fields_of, octet, owner_of
 from jacaros.robots.mapping.encoding import builder, fitting
@@ -40,6 +39,7 @@ from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.robots.ros.message import TIMES
 from jacaros.robots.ros.parameter import kind_of
+from jacaros.robots.streams import OPERATORS, VALUE, ReadingPolicy, Spec
 from jacaros.runtime.files.yaml import Problem
 
 

@@ -5,16 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
-from jacaros.artifacts.streams import (
-    LONGEST,
-    OPERATORS,
-    PARTNERS_WAIT,
-    Fault,
-    ReadingPolicy,
-    Spec,
-    faults,
-    unknown,
-)
 from jacaros.robots.mapping.fields import (
     START,
     UNITS,
@@ -44,6 +34,16 @@ from jacaros.robots.mapping.fields import (
 from jacaros.robots.ros.errors import ParameterRefused
 from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
 from jacaros.robots.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, QoS
+from jacaros.robots.streams import (
+    LONGEST,
+    OPERATORS,
+    PARTNERS_WAIT,
+    Fault,
+    ReadingPolicy,
+    Spec,
+    faults,
+    unknown,
+)
 from jacaros.runtime.files.yaml import Node, Problem
 
 

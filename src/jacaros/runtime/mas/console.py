@@ -11,7 +11,7 @@ from typing import Protocol, TextIO
 
 from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, Stream
 
-_NOT_OF_USERS = (str(Path(__file__).parents[1]), sysconfig.get_path("stdlib"), "<")
+_NOT_OF_USERS = (str(Path(__file__).parents[2]), sysconfig.get_path("stdlib"), "<")
 """Beginnings of the names of files that are not the user's code."""
 
 LEVELS = ("debug", "info", "warning", "error")

@@ -101,12 +101,12 @@ def test_artifacts_of_the_package_are_library_code_with_what_they_import(
 ) -> None:
     found = library(measured(tmp_path, files))
     assert {
-        "artifacts/robots/battery.py",
-        "artifacts/kit/ros_artifact.py",
-        "artifacts/kit/__init__.py",
+        "robots/artifacts/battery.py",
+        "robots/kit/ros_artifact.py",
+        "robots/kit/__init__.py",
     } <= found
-    assert not {"artifacts/robots/velocity.py", "artifacts/registry.py"} & found
-    assert all(name.startswith("artifacts/") for name in found), "the platform does not count"
+    assert not {"robots/artifacts/velocity.py", "robots/registry.py"} & found
+    assert all(name.startswith(("robots/", "artifacts/")) for name in found), "the platform does not count"
 
 
 def test_a_shipped_mapping_is_library_code_with_its_reader(tmp_path: Path) -> None:
@@ -116,8 +116,8 @@ def test_a_shipped_mapping_is_library_code_with_its_reader(tmp_path: Path) -> No
             {"a.asl": AGENT, "a.jcm": 'mas a { agent a mapping: "turtlebot4.yaml" world: "house" }\n'},
         )
     )
-    assert {"artifacts/mappings/turtlebot4.yaml", "artifacts/mapping/artifact.py"} <= found
-    assert not any(name.endswith("nav2.yaml") or name.startswith("sim/") for name in found)
+    assert {"robots/mappings/turtlebot4.yaml", "robots/mapping/artifact.py"} <= found
+    assert not any(name.endswith("nav2.yaml") or name.startswith("robots/world/") for name in found)
 
 
 BASELINE = {

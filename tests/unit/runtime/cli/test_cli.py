@@ -210,7 +210,7 @@ NOT_FOR_A_LONE_PROGRAM = (
         "jacaros.runtime.mas.project.reading",
         "jacaros.runtime.mas.environment",
         "jacaros.robots.world",
-        "jacaros.artifacts.streams",
+        "jacaros.robots.streams",
     ),
     *("jacaros.testing",),
     # of the middleware a run needs only the owner of its signals, jacaros.robots.ros.lifetime

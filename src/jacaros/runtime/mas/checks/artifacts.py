@@ -36,7 +36,7 @@ _OPEN_WORLD: Final = frozenset({"linkRemoteWorkspace", "linkWorkspace", "linkWor
 _FAKE: Final = "fake_action"
 """The goal by which a test simulates the environment."""
 
-_CLOSED: Final = "jacaros.artifacts."
+_CLOSED: Final = ("jacaros.artifacts.", "jacaros.robots.")
 """Modules whose artifacts have only the operations that their classes declare."""
 
 _OPEN_METHODS: Final = ("define_operation", "make_artifact", "create(")

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from jacaros.artifacts.streams import Spec, Values
+from jacaros.robots.streams import Spec, Values
 
 Event = tuple[int, float, Values | None]
 """Number of the stream, time, values."""

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive import Event, shown
 
-from jacaros.artifacts.streams import Pattern, Spec, Values
+from jacaros.robots.streams import Pattern, Spec, Values
 
 STEP = 0.25
 """Times are multiples of it, so that sums of them are exact."""
