@@ -28,7 +28,7 @@ PACKAGES = (
     "artifacts.env",
     "artifacts.kernel",
     "artifacts.presence",
-    "artifacts.streams",
+    "robots.streams",
 )
 WEAK = {
     "agents.terms.values._functors": "names that are in use",

@@ -39,6 +39,7 @@ HOSTS = {
     "localhost",
     "docs.oasis-open.org",  # the format SARIF
     "github.com",  # the repository itself, see REPOSITORY
+    "json-schema.org",  # the name of its dialect
     "json.schemastore.org",  # the name of its schema
     "keepachangelog.com",
     "semver.org",
