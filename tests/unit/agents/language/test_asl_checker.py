@@ -133,29 +133,13 @@ def test_the_help_for_an_unknown_action_comes_from_the_caller():
 @pytest.mark.parametrize(
     ("text", "message", "help"),
     [
-        (
-            "+!g <- .findall(a, b).",
-            "internal action `.findall` expects 3 arguments, found 2",
-            None,
-        ),
-        (
-            "+!g <- .add_plan.",
-            "internal action `.add_plan` expects 1 to 3 arguments, found none",
-            None,
-        ),
-        (
-            "+!g <- .length(L, N, L, N).",
-            "internal action `.length` expects 2 arguments, found 4",
-            None,
-        ),
-        (
-            "+!g(X) : math.sin(X, X) <- a.",
-            "function `math.sin` expects 1 argument, found 2",
-            None,
-        ),
+        ("+!g <- .findall(a, b).", "internal action `.findall` expects 3 arguments, found 2", None),
+        ("+!g <- .add_plan.", "internal action `.add_plan` expects 1 to 3 arguments, found none", None),
+        ("+!g <- .length(L, N, L, N).", "internal action `.length` expects 2 arguments, found 4", None),
+        ("+!g(X) : math.sin(X, X) <- a.", "function `math.sin` expects 1 argument, found 2", None),
     ],
 )
-def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
+def test_wrong_numbers_of_arguments(text, message, help):
     (found,) = [each for each in warnings(text) if each.code == "wrong-arguments"]
     assert (found.message, found.help) == (message, help)
 
@@ -170,7 +154,7 @@ def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
         "+!g <- while (.fail) { a }.",
     ],
 )
-def test_actions_that_act_are_not_conditions(text: str):
+def test_actions_that_act_are_not_conditions(text):
     assert codes(text) == ["acting-condition"]
 
 
@@ -191,7 +175,7 @@ def test_misspelt_performatives_are_reported():
         "+!h <- a. { +e <- a. +e <- b. }",
     ],
 )
-def test_a_plan_after_one_for_the_same_events_is_unreachable(text: str):
+def test_a_plan_after_one_for_the_same_events_is_unreachable(text):
     assert codes(text) == ["plan-never-selected"]
 
 
@@ -210,7 +194,7 @@ def test_a_plan_after_one_for_the_same_events_is_unreachable(text: str):
         "+!X <- a(X). +!g <- b.",
     ],
 )
-def test_plans_that_may_be_selected(text: str):
+def test_plans_that_may_be_selected(text):
     assert "plan-never-selected" not in codes(text)
 
 
@@ -228,7 +212,7 @@ def test_plans_that_may_be_selected(text: str):
         "p(X) & X < 3 & X > 5",
     ],
 )
-def test_conditions_that_contradict_themselves(context: str):
+def test_conditions_that_contradict_themselves(context):
     assert "context-never-true" in codes(f"+!g : {context} <- a.")
 
 
@@ -245,7 +229,7 @@ def test_conditions_that_contradict_themselves(context: str):
         "not false",
     ],
 )
-def test_conditions_that_may_hold(context: str):
+def test_conditions_that_may_hold(context):
     assert "context-never-true" not in codes(f"+!g : {context} <- a.")
 
 
@@ -261,7 +245,7 @@ def test_comparisons_with_variables_without_a_value():
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
 
 
-def test_comparing_an_atom_with_a_number_is_reported() -> None:
+def test_comparing_an_atom_with_a_number_is_reported():
     assert codes("+!g : x > 3 <- a.") == ["ordered-atom"]
     assert codes("+!g : p(X) <- if (2*X <= limit) { a }.") == ["ordered-atom"]
     assert codes("+!g : p(X) & X > a & x == 3 <- a.") == []
@@ -327,7 +311,7 @@ def test_a_run_leaves_out_matters_of_style():
         ('+!g <- a(X, "// jacaros: ignore singleton-variable").', ["X"]),
     ],
 )
-def test_comments_switch_warnings_off(text: str, left: list[str]):
+def test_comments_switch_warnings_off(text, left):
     found = [each.message.split("`")[1] for each in wanted(warnings(text))]
     assert found == left
 
@@ -354,7 +338,7 @@ def test_unknown_codes_are_reported():
         ("", "a", True),
     ],
 )
-def test_slips_are_recognised(written: str, meant: str, like: bool):
+def test_slips_are_recognised(written, meant, like):
     assert is_slip_of(written, meant) is like
 
 
@@ -406,7 +390,7 @@ def test_conditions_and_clean_up_goals_of_labels_are_looked_at():
         ),
     ],
 )
-def test_a_value_that_was_probably_meant_otherwise_is_noted(step: str, message: str, help: str) -> None:
+def test_a_value_that_was_probably_meant_otherwise_is_noted(step, message, help):
     [note] = warnings(f"+!g <- {step}.")
     assert (note.severity, note.message, note.help) == ("note", message, help)
     assert check_for_run(program(f"+!g <- {step}."), KNOWN) == []
@@ -415,5 +399,5 @@ def test_a_value_that_was_probably_meant_otherwise_is_noted(step: str, message: 
 @pytest.mark.parametrize(
     "step", [".wait(10)", ".wait(0)", ".wait(done)", '.print("at home")', "go('at home')"]
 )
-def test_other_values_are_not_noted(step: str) -> None:
+def test_other_values_are_not_noted(step):
     assert warnings(f"+!g <- {step}.") == []

@@ -58,7 +58,7 @@ def without_numbers(text: str) -> str:
 
 
 @pytest.mark.parametrize("expected", REFUSED, ids=lambda path: path.stem)
-def test_a_wrong_program_is_refused_at_its_line(expected: Path):
+def test_a_wrong_program_is_refused_at_its_line(expected):
     program = expected.with_suffix(".asl")
     if not program.exists():
         program = expected.with_suffix("") / program.name

@@ -177,7 +177,7 @@ def test_sub_plans_are_indented():
         ("", ""),
     ],
 )
-def test_comments_stay(before: str, after: str | None):
+def test_comments_stay(before, after):
     result = formatted(before)
     assert comments_of(result) == comments_of(before)
     assert formatted(result) == result
@@ -211,7 +211,7 @@ SMALL = [path.read_text(encoding="utf-8") for path in PROGRAMS if path.stat().st
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
 )
 @given(st.data())
-def test_comments_between_any_tokens_stay(data: st.DataObject):
+def test_comments_between_any_tokens_stay(data):
     text = data.draw(st.sampled_from(SMALL))
     lines = text.split("\n")
     for token in reversed(tokenize(SourceFile("x", text), lambda _: None)[:-2]):

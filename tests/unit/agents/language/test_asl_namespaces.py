@@ -80,7 +80,7 @@ def test_keywords_stay_in_the_default_namespace():
 
 
 @pytest.mark.parametrize("kind", ["", ", local", ", global"])
-def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(kind: str) -> None:
+def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(kind):
     assert belief_texts(f"{{ namespace(n{kind}) }} b. c.") == ["b", "c"]
 
 
@@ -210,5 +210,5 @@ def test_a_rule_can_be_registered_as_a_function():
         "begin",
     ],
 )
-def test_wrong_directives_are_refused(directive: str):
+def test_wrong_directives_are_refused(directive):
     assert len(places(f"{{ {directive} }}")) == 1

@@ -191,6 +191,6 @@ def test_plans_at_run_time():
 
 
 @pytest.mark.parametrize("text", ["p.", "!g.", "+!g <- ", "+!g. p", "{ +!g }"])
-def test_only_plans_are_plans(text: str):
+def test_only_plans_are_plans(text):
     with pytest.raises(AslError):
         parse_plans(text)

@@ -90,12 +90,7 @@ def test_carets_are_below_the_error_even_after_tabs():
 @pytest.mark.parametrize(
     ("text", "line", "message", "help"),
     [
-        (
-            "+!g\n<- X = else.",
-            2,
-            "reserved word `else` used as a name",
-            "quote it as an atom",
-        ),
+        ("+!g\n<- X = else.", 2, "reserved word `else` used as a name", "quote it as an atom"),
         (
             "\ngröße(3).",
             2,
@@ -144,20 +139,10 @@ def test_carets_are_below_the_error_even_after_tabs():
         ("+!g <- a <- b.", 1, "second `<-` in a plan", "if this is a new plan"),
         ("+!g <- +!h.", 1, "expected a step, found the trigger `+!`", "post a goal with `!g`"),
         ("+!g <- if (a) { b } else if (c) { d }.", 1, "write `elif` for `else if`", "elif (condition)"),
-        (
-            "+!g <- if (a) { b }; else { c }.",
-            1,
-            "`else` without `if`",
-            "remove the `;`",
-        ),
+        ("+!g <- if (a) { b }; else { c }.", 1, "`else` without `if`", "remove the `;`"),
         ("+!g <- while x { b }.", 1, "expected `(` and the condition of `while`, found `x`", None),
         ("+!g <- a; ; b.", 1, "empty step between two `;`", None),
-        (
-            "+!g <- for (X in [1]) { p }.",
-            1,
-            "unknown keyword `in`",
-            "find elements of a list with `.member`",
-        ),
+        ("+!g <- for (X in [1]) { p }.", 1, "unknown keyword `in`", "find elements of a list with `.member`"),
         (
             "+!g <- if x > 3 { p }.",
             1,
@@ -180,12 +165,7 @@ def test_carets_are_below_the_error_even_after_tabs():
             "write values between strings",
         ),
         ("def go(): pass", 1, "Python keyword `def` in an agent program", "this is an agent program"),
-        (
-            "+!g <- X = foo + 1.",
-            1,
-            "operand of `+` is not a number",
-            "ask for the value first",
-        ),
+        ("+!g <- X = foo + 1.", 1, "operand of `+` is not a number", "ask for the value first"),
         (
             '+!g <- X = "a" + "b".',
             1,
@@ -214,7 +194,7 @@ def test_carets_are_below_the_error_even_after_tabs():
         ("p[a|b].", 1, "expected a variable as the tail of annotations", "write `p(X)"),
     ],
 )
-def test_common_mistakes(text: str, line: int, message: str, help: str | None):
+def test_common_mistakes(text, line, message, help):
     first = errors(text)[0]
     assert first.span is not None
     assert first.span.line == line
@@ -281,7 +261,7 @@ def test_labels_of_subplans_are_apart_from_those_of_the_program():
         ("+!g <- !h().", "+!g <- !h.", "empty brackets"),
     ],
 )
-def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text: str, plain: str, message: str):
+def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text, plain, message):
     old = '+!make <- makeArtifact("m", "jason.architecture.ArtCmdVel"). '
     program, (warning,) = load_program("x", old + text)
     assert (warning.severity, warning.message) == ("warning", message)

@@ -26,7 +26,7 @@ from jacaros.agents.language.lowering import format_term
         ("+4", 4.0),
     ],
 )
-def test_numbers(text: str, value: float):
+def test_numbers(text, value):
     assert parse_term(text) == nodes.Number(value)
 
 
@@ -46,7 +46,7 @@ def test_numbers(text: str, value: float):
         ("X = (a & b)", "(X = (a & b))"),
     ],
 )
-def test_operators_bind_as_in_the_language(text: str, grouped: str):
+def test_operators_bind_as_in_the_language(text, grouped):
     assert format_term(parse_term(text)) == grouped
 
 
@@ -117,7 +117,7 @@ def test_a_quoted_name_with_a_dot_is_an_atom():
         ("{ b(X) }", nodes.BodyTerm),
     ],
 )
-def test_braces_hold_bodies_triggers_plans_and_rules(text: str, node: type):
+def test_braces_hold_bodies_triggers_plans_and_rules(text, node):
     assert isinstance(parse_term(text), node)
 
 

@@ -15,21 +15,21 @@ def begun(program: str) -> AgentHarness:
     return agent
 
 
-def test_an_action_suspends_only_its_intention() -> None:
+def test_an_action_suspends_only_its_intention():
     agent = AgentHarness(MOVE)
     agent.run()
     assert agent.prints == ["other"]
     assert [str(act) for act in agent.acts] == ["move(1,X)"]
 
 
-def test_outputs_are_bound_when_the_action_ends() -> None:
+def test_outputs_are_bound_when_the_action_ends():
     agent = begun(MOVE)
     agent.act("move").complete(7)
     agent.run()
     assert agent.prints == ["moved(7)", "other"]
 
 
-def test_an_action_that_ends_immediately_continues_in_the_next_cycle() -> None:
+def test_an_action_that_ends_immediately_continues_in_the_next_cycle():
     agent = AgentHarness(
         "!g. +!g <- a; .print(1); b; .print(2).", actions={"a": lambda: True, "b": lambda: True}
     )
@@ -37,7 +37,7 @@ def test_an_action_that_ends_immediately_continues_in_the_next_cycle() -> None:
     assert agent.prints == ["1", "2"]
 
 
-def test_a_failure_reaches_the_plan_with_its_reason() -> None:
+def test_a_failure_reaches_the_plan_with_its_reason():
     def refuse(metres: int) -> None:
         raise ActionFailed("limit(3)", "too far")
 
@@ -55,7 +55,7 @@ def test_a_failure_reaches_the_plan_with_its_reason() -> None:
     assert agent.prints == ["go", "action_failed too far limit(3) move(9) 4"]
 
 
-def test_dropping_the_intention_cancels_the_action() -> None:
+def test_dropping_the_intention_cancels_the_action():
     agent = begun("!g. !d. +!g <- move; .print(done). +!d <- .wait(10); .drop_intention(g).")
     agent.run()
     assert agent.acts[0].cancelled
@@ -66,7 +66,7 @@ def test_dropping_the_intention_cancels_the_action() -> None:
     assert agent.prints == []
 
 
-def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it() -> None:
+def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it():
     agent = begun("!g. !d. +!g <- move; .print(done). +!d <- .wait(10); .suspend(g); .wait(10); .resume(g).")
     move = agent.act("move")
     agent.run(seconds=0.015)
@@ -79,7 +79,7 @@ def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it() 
     assert agent.prints == ["done"]
 
 
-def test_an_action_that_ends_while_suspended_counts_after_resume() -> None:
+def test_an_action_that_ends_while_suspended_counts_after_resume():
     agent = begun("!g. +!g <- move; .print(done). +!s <- .suspend(g). +!r <- .resume(g).")
     agent.achieve("s")
     agent.run()
@@ -91,7 +91,7 @@ def test_an_action_that_ends_while_suspended_counts_after_resume() -> None:
     assert agent.prints == ["done"]
 
 
-def test_a_second_completion_of_an_act_is_ignored() -> None:
+def test_a_second_completion_of_an_act_is_ignored():
     agent = begun("!g. +!g <- move; .print(done).")
     for _ in range(2):
         agent.mind.complete(1, Completion(True))
@@ -107,13 +107,13 @@ TURNS = """
 """
 
 
-def test_an_action_that_ends_immediately_takes_one_turn() -> None:
+def test_an_action_that_ends_immediately_takes_one_turn():
     agent = AgentHarness(TURNS, actions={"act": lambda: True})
     agent.run()
     assert agent.prints == ["a1", "b1", "a2", "b2", "b3", "a3", "b4", "b5"]
 
 
-def test_percepts_of_an_action_are_believed_when_the_plan_continues() -> None:
+def test_percepts_of_an_action_are_believed_when_the_plan_continues():
     def look() -> bool:
         agent.perceive("seen(cup)")
         return True
@@ -123,7 +123,7 @@ def test_percepts_of_an_action_are_believed_when_the_plan_continues() -> None:
     assert agent.prints == ["cup"]
 
 
-def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step() -> None:
+def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step():
     program = """
         !a.
         +!a <- get(X, X2); .print(X, X2); get(Y, Y); .print(no).
@@ -139,7 +139,7 @@ def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step() -> None:
     ]
 
 
-def test_an_atomic_plan_keeps_its_turn_over_actions() -> None:
+def test_an_atomic_plan_keeps_its_turn_over_actions():
     agent = AgentHarness(TURNS.replace("+!a", "@a[atomic] +!a"), actions={"act": lambda: True})
     agent.run()
     assert agent.prints == ["a1", "a2", "a3", "b1", "b2", "b3", "b4", "b5"]

@@ -22,7 +22,7 @@ def limited(program: str, limit: int) -> RecordingHost:
     return host
 
 
-def test_a_step_that_exceeds_the_limit_fails_with_the_reason() -> None:
+def test_a_step_that_exceeds_the_limit_fails_with_the_reason():
     host = limited(GROW, 10)
     assert host.printed == [
         "9 belief_limit in line 5",
@@ -31,7 +31,7 @@ def test_a_step_that_exceeds_the_limit_fails_with_the_reason() -> None:
     assert len(believed(host, "grown")) == 8
 
 
-def test_beliefs_that_come_and_go_do_not_use_up_a_large_limit() -> None:
+def test_beliefs_that_come_and_go_do_not_use_up_a_large_limit():
     host = limited(GROW.replace("+grown(N)", "-+now(N); if (N mod 2 == 0) { +grown(N) }"), 3_000)
     assert host.printed == [
         "5996 belief_limit in line 5",
@@ -39,7 +39,7 @@ def test_beliefs_that_come_and_go_do_not_use_up_a_large_limit() -> None:
     ]
 
 
-def test_replaced_and_deleted_beliefs_make_room() -> None:
+def test_replaced_and_deleted_beliefs_make_room():
     program = """
     a(0). b(0).
     !s.
@@ -49,7 +49,7 @@ def test_replaced_and_deleted_beliefs_make_room() -> None:
     assert limited(program, 2).printed == ["full", "belief_limit"]
 
 
-def test_refused_beliefs_from_outside_are_logged_once() -> None:
+def test_refused_beliefs_from_outside_are_logged_once():
     host = mind("+p(X) <- .print(X).", options=Options(belief_limit=3))
     host.run()
     percepts = [Percept("add", structure("p", float(n)), (SOURCE_PERCEPT,)) for n in range(4)]
@@ -72,7 +72,7 @@ def test_refused_beliefs_from_outside_are_logged_once() -> None:
     assert len(believed(host, "p")) == 3
 
 
-def test_the_limit_applies_to_internal_actions_that_add_beliefs() -> None:
+def test_the_limit_applies_to_internal_actions_that_add_beliefs():
     program = """
     a. b.
     !s.
@@ -82,7 +82,7 @@ def test_the_limit_applies_to_internal_actions_that_add_beliefs() -> None:
     assert limited(program, 2).printed == ["belief_limit"]
 
 
-def test_a_rule_counts_as_a_belief() -> None:
+def test_a_rule_counts_as_a_belief():
     program = """
     a :- b.
     !s.

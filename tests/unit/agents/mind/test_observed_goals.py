@@ -18,7 +18,7 @@ CASES = Path(__file__).parents[3] / "conformance"
 BEGUN = ("pursued", "suspended", "resumed")
 
 
-def test_an_observer_is_notified_of_every_change_of_a_goal() -> None:
+def test_an_observer_is_notified_of_every_change_of_a_goal():
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
     observe_goals(
@@ -148,7 +148,7 @@ def pursued(agent, intention):
 @pytest.mark.parametrize(
     "case", sorted(CASES.rglob("*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
 )
-def test_every_goal_ends_once_unless_it_is_still_pursued(case: Path) -> None:
+def test_every_goal_ends_once_unless_it_is_still_pursued(case):
     if "syntax_errors" in case.parts or not case.with_suffix(".expected").exists():
         return
     watched = Watched(case.read_text(), name=case.stem, path=str(case), complete=no_environment)

@@ -19,13 +19,13 @@ def told(*changes: Percept, program: str = "") -> RecordingHost:
     return host
 
 
-def test_a_percept_becomes_a_belief_and_an_event() -> None:
+def test_a_percept_becomes_a_belief_and_an_event():
     host = told(percept("add", 1.0))
     assert host.printed == ["plus(1)"]
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
 
 
-def test_all_plans_of_a_change_see_the_newest_beliefs() -> None:
+def test_all_plans_of_a_change_see_the_newest_beliefs():
     host = mind("-level(X) <- ?level(Y); .print(minus(X, Y)). +level(X) <- .print(plus(X)).")
     host.agent.perceive([percept("add", 1.0)])
     host.run()
@@ -34,25 +34,25 @@ def test_all_plans_of_a_change_see_the_newest_beliefs() -> None:
     assert host.printed == ["plus(1)", "minus(1,2)", "plus(2)"]
 
 
-def test_a_signal_is_an_event_but_not_a_belief() -> None:
+def test_a_signal_is_an_event_but_not_a_belief():
     host = told(percept("signal", 5.0))
     assert host.printed == ["plus(5)"]
     assert believed(host, "level") == []
 
 
-def test_a_literal_perceived_twice_stays_while_one_percept_holds() -> None:
+def test_a_literal_perceived_twice_stays_while_one_percept_holds():
     host = told(percept("add", 1.0, "a"), percept("add", 1.0, "b"), percept("remove", 1.0, "a"))
     assert believed(host, "level") == ["level(1)[artifact_name(b),source(percept)]"]
 
 
-def test_an_own_belief_beside_a_percept_outlives_it() -> None:
+def test_an_own_belief_beside_a_percept_outlives_it():
     host = told(percept("add", 1.0), program="!s. +!s <- +level(1).")
     host.agent.perceive([percept("remove", 1.0)])
     host.run()
     assert believed(host, "level") == ["level(1)[source(self)]"]
 
 
-def test_the_agent_cannot_delete_a_percept_as_its_own() -> None:
+def test_the_agent_cannot_delete_a_percept_as_its_own():
     host = told(percept("add", 1.0), program="+!s <- -level(1).")
     goal: Term = atom("s")
     host.agent.post_goal(goal)
@@ -60,7 +60,7 @@ def test_the_agent_cannot_delete_a_percept_as_its_own() -> None:
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
 
 
-def test_two_properties_of_one_artifact_with_one_value_are_two_reasons() -> None:
+def test_two_properties_of_one_artifact_with_one_value_are_two_reasons():
     twice = percept("add", 1.0)
     host = told(twice, twice, Percept("remove", twice.literal, twice.annotations))
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
@@ -70,7 +70,7 @@ def test_two_properties_of_one_artifact_with_one_value_are_two_reasons() -> None
     assert host.printed == ["plus(1)", "plus(1)", "minus(1)", "minus(1)"]
 
 
-def test_percepts_of_lists_and_structures_come_and_go() -> None:
+def test_percepts_of_lists_and_structures_come_and_go():
     host = mind("+shape(X) <- .print(plus(X)). -shape(X) <- .print(minus(X)).")
     values: list[Term] = [
         make_list([1.0, make_list([2.0])]),
@@ -89,7 +89,7 @@ def test_percepts_of_lists_and_structures_come_and_go() -> None:
     assert believed(host, "shape") == []
 
 
-def test_percepts_without_arguments_come_and_go() -> None:
+def test_percepts_without_arguments_come_and_go():
     host = mind("+dark <- .print(dark). -dark <- .print(light).")
     for kind in ("add", "remove", "remove", "signal"):
         host.agent.perceive([Percept(kind, atom("dark"), annotation_set((SOURCE_PERCEPT,)))])
@@ -98,7 +98,7 @@ def test_percepts_without_arguments_come_and_go() -> None:
     assert believed(host, "dark") == []
 
 
-def test_a_percept_that_the_agent_has_deleted_ends_without_an_event() -> None:
+def test_a_percept_that_the_agent_has_deleted_ends_without_an_event():
     host = told(percept("add", 1.0), program="!s. +!s <- .abolish(level(_)).")
     host.agent.perceive([percept("remove", 1.0)])
     host.run()
@@ -106,7 +106,7 @@ def test_a_percept_that_the_agent_has_deleted_ends_without_an_event() -> None:
     assert believed(host, "level") == []
 
 
-def test_indexes_follow_percepts() -> None:
+def test_indexes_follow_percepts():
     host = mind(
         """
         +!look(X) <- .findall(Y, at(X, Y), L); .print(X, L).

@@ -1,7 +1,5 @@
 """Internal actions that a project writes in Python."""
 
-from pathlib import Path
-
 import pytest
 from extension_lab import run, said, write
 
@@ -10,7 +8,7 @@ from jacaros.testing import run_project
 HEAD = "from collections.abc import Iterator\nfrom jacaros import *\n"
 
 
-def test_a_function_is_called_and_its_value_is_the_last_argument(tmp_path: Path) -> None:
+def test_a_function_is_called_and_its_value_is_the_last_argument(tmp_path):
     python = """
     from jacaros import internal_action
 
@@ -25,35 +23,33 @@ def test_a_function_is_called_and_its_value_is_the_last_argument(tmp_path: Path)
     assert said(tmp_path, program, python) == ["5", "yes", "ia_failed"]
 
 
-def test_the_default_name_is_module_and_function(tmp_path: Path) -> None:
+def test_the_default_name_is_module_and_function(tmp_path):
     python = HEAD + "@internal_action\ndef one(x: Out) -> None:\n    x.set(1)\n\n"
     python += "@internal_action()\ndef two(x: Out) -> None:\n    x.set(2)\n"
     assert said(tmp_path, "!go. +!go <- my.one(X); my.two(Y); .print(X, Y).", python) == ["12"]
 
 
 @pytest.mark.parametrize(("returned", "outcome"), [("None", "yes"), ("True", "yes"), ("False", "ia_failed")])
-def test_a_function_without_value_succeeds_unless_it_returns_false(
-    tmp_path: Path, returned: str, outcome: str
-) -> None:
+def test_a_function_without_value_succeeds_unless_it_returns_false(tmp_path, returned, outcome):
     python = HEAD + f"@internal_action\ndef test(x):\n    return {returned}\n"
     program = "!go. +!go <- my.test(1); .print(yes). -!go[error(E)] <- .print(E)."
     assert said(tmp_path, program, python) == [outcome]
 
 
-def test_a_function_that_declares_a_value_and_has_none_fails(tmp_path: Path) -> None:
+def test_a_function_that_declares_a_value_and_has_none_fails(tmp_path):
     python = HEAD + "@internal_action\ndef find(x: int) -> int | None:\n    return x if x > 3 else None\n"
     program = "!go. +!go <- .findall(Y, .member(X, [2,4,6]) & my.find(X, Y), L); .print(L)."
     assert said(tmp_path, program, python) == ["[4,6]"]
 
 
-def test_an_undeclared_value_is_reported_with_help(tmp_path: Path) -> None:
+def test_an_undeclared_value_is_reported_with_help(tmp_path):
     python = HEAD + "@internal_action\ndef sum(x, y):\n    return x + y\n"
     result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
     assert "write 'def sum(...) -> int'" in result.errors[0]
 
 
-def test_arguments_arrive_as_python_values(tmp_path: Path) -> None:
+def test_arguments_arrive_as_python_values(tmp_path):
     python = HEAD + "@internal_action\ndef show(*values) -> str:\n    return repr(values)\n"
     program = '!go. +!go <- my.show(1, 1.5, "s", a, [1,b], p(1,[x]), true, S); .print(S).'
     assert said(tmp_path, program, python) == [
@@ -61,7 +57,7 @@ def test_arguments_arrive_as_python_values(tmp_path: Path) -> None:
     ]
 
 
-def test_an_unbound_variable_is_a_place_for_a_result(tmp_path: Path) -> None:
+def test_an_unbound_variable_is_a_place_for_a_result(tmp_path):
     python = """
     from jacaros import Structure, internal_action
 
@@ -74,7 +70,7 @@ def test_an_unbound_variable_is_a_place_for_a_result(tmp_path: Path) -> None:
     assert said(tmp_path, "!go. +!go <- my.fill(pair(X, Y)); .print(X, Y).", python) == ["1at(2)"]
 
 
-def test_the_parts_of_a_literal_are_available(tmp_path: Path) -> None:
+def test_the_parts_of_a_literal_are_available(tmp_path):
     python = HEAD + (
         "@internal_action\ndef who(belief: Literal) -> list[str]:\n    return sorted(belief.sources)\n"
     )
@@ -82,7 +78,7 @@ def test_the_parts_of_a_literal_are_available(tmp_path: Path) -> None:
     assert said(tmp_path, program, python) == ['["bob"]']
 
 
-def test_a_generator_gives_its_answers_in_turn(tmp_path: Path) -> None:
+def test_a_generator_gives_its_answers_in_turn(tmp_path):
     python = (
         HEAD
         + """
@@ -110,7 +106,7 @@ def split(n: int, left: Out, right: Out) -> Iterator[None]:
     assert said(tmp_path, program, python) == ["7", "[0,2,4]", "[p(0,2),p(2,0)]", "0", "1", "3"]
 
 
-def test_an_endless_generator_is_asked_only_for_what_is_needed(tmp_path: Path) -> None:
+def test_an_endless_generator_is_asked_only_for_what_is_needed(tmp_path):
     python = (
         HEAD
         + """
@@ -125,7 +121,7 @@ def naturals() -> Iterator[int]:
     assert said(tmp_path, program, python) == ["8"]
 
 
-def test_a_coroutine_suspends_only_its_intention(tmp_path: Path) -> None:
+def test_a_coroutine_suspends_only_its_intention(tmp_path):
     python = (
         HEAD
         + """
@@ -145,7 +141,7 @@ async def fetch(agent: Agent, seconds: float) -> str:
     assert said(tmp_path, program, python) == ["one", "t at 5", "six"]
 
 
-def test_dropping_the_intention_cancels_its_coroutine(tmp_path: Path) -> None:
+def test_dropping_the_intention_cancels_its_coroutine(tmp_path):
     python = (
         HEAD
         + """
@@ -168,7 +164,7 @@ async def long(agent: Agent):
     assert result.seconds < 10
 
 
-def test_the_end_of_a_run_cancels_coroutines(tmp_path: Path) -> None:
+def test_the_end_of_a_run_cancels_coroutines(tmp_path):
     python = (
         HEAD
         + """
@@ -189,7 +185,7 @@ async def long():
     assert (tmp_path / "tidy").exists()
 
 
-def test_a_coroutine_can_wait_for_a_thread(tmp_path: Path) -> None:
+def test_a_coroutine_can_wait_for_a_thread(tmp_path):
     python = (
         HEAD
         + """
@@ -204,7 +200,7 @@ async def work(n: int) -> int:
     assert said(tmp_path, program, python) == ["499500", "later"]
 
 
-def test_a_coroutine_that_fails_fails_its_step(tmp_path: Path) -> None:
+def test_a_coroutine_that_fails_fails_its_step(tmp_path):
     python = (
         HEAD
         + """
@@ -232,7 +228,7 @@ async def odd(n: int) -> int | None:
     ]
 
 
-def test_a_suspended_intention_gets_the_result_when_it_is_resumed(tmp_path: Path) -> None:
+def test_a_suspended_intention_gets_the_result_when_it_is_resumed(tmp_path):
     python = HEAD + (
         "import asyncio\n\n@internal_action\nasync def nap() -> int:\n    await "
         "asyncio.sleep(1)\n    return 1\n"
@@ -244,7 +240,7 @@ def test_a_suspended_intention_gets_the_result_when_it_is_resumed(tmp_path: Path
     assert said(tmp_path, program, python) == ["1at3"]
 
 
-def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
+def test_a_coroutine_cannot_be_a_condition(tmp_path):
     python = HEAD + "@internal_action\nasync def fetch(x: int) -> int:\n    return x\n"
     program = "!go. +!go : my.fetch(1, X) <- .print(X). +!go <- .print(other)."
     result = run(tmp_path, program, python)
@@ -253,7 +249,7 @@ def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
     assert "t.asl:1:13" in result.errors[0]
 
 
-def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path: Path) -> None:
+def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path):
     python = HEAD + "\n@internal_action\ndef bad(x):\n    return 1 / x\n"
     program = """
     !go. !other.
@@ -269,7 +265,7 @@ def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path: 
 
 @pytest.mark.parametrize("word", ["def", "async def"])
 @pytest.mark.parametrize("what", ["sys.exit(3)", "raise asyncio.CancelledError", "raise RecursionError"])
-def test_a_system_exit_does_not_end_the_run(tmp_path: Path, word: str, what: str) -> None:
+def test_a_system_exit_does_not_end_the_run(tmp_path, word, what):
     python = HEAD + f"import asyncio, sys\n\n@internal_action\n{word} quit():\n    {what}\n"
     result = run(tmp_path, "!go. +!go <- my.quit. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
@@ -278,14 +274,14 @@ def test_a_system_exit_does_not_end_the_run(tmp_path: Path, word: str, what: str
     assert result.exit_code == 0
 
 
-def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path: Path) -> None:
+def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path):
     python = HEAD + "@internal_action\ndef bad():\n    raise ValueError('no')\n"
     result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
     assert result.of("t") == ["yes"]
     assert "my.py:5" in result.errors[0]
 
 
-def test_an_argument_of_another_kind_is_wrong(tmp_path: Path) -> None:
+def test_an_argument_of_another_kind_is_wrong(tmp_path):
     python = HEAD + "@internal_action\ndef half(x: float) -> float:\n    return x / 2\n"
     program = '!go. +!go <- my.half(a, X). -!go[error(E), error_msg(M)] <- .print(E, " ", M).'
     assert said(tmp_path, program, python) == [
@@ -293,7 +289,7 @@ def test_an_argument_of_another_kind_is_wrong(tmp_path: Path) -> None:
     ]
 
 
-def test_a_wrong_number_of_arguments_is_wrong(tmp_path: Path) -> None:
+def test_a_wrong_number_of_arguments_is_wrong(tmp_path):
     python = HEAD + "@internal_action\ndef half(x: float, by: float = 2) -> float:\n    return x / by\n"
     program = (
         "// jacaros: ignore-file wrong-arguments\n"
@@ -303,7 +299,7 @@ def test_a_wrong_number_of_arguments_is_wrong(tmp_path: Path) -> None:
     assert said(tmp_path, program, python) == ["4.5 3", "my.half expects 2 to 3 arguments, found 1"]
 
 
-def test_the_calling_agent_is_available(tmp_path: Path) -> None:
+def test_the_calling_agent_is_available(tmp_path):
     python = (
         HEAD
         + """
@@ -326,7 +322,7 @@ def remember(agent: Agent, place: str) -> None:
     assert said(tmp_path, program, python) == ["once kitchen", "1"]
 
 
-def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path: Path) -> None:
+def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path):
     python = """
     from __future__ import annotations
     from typing import TYPE_CHECKING
@@ -352,7 +348,7 @@ def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path: Path) 
     assert said(tmp_path, program, python) == ["hi t", "0", "ok"]
 
 
-def test_a_package_is_searched_file_by_file(tmp_path: Path) -> None:
+def test_a_package_is_searched_file_by_file(tmp_path):
     write(
         tmp_path,
         my____init__="",
@@ -369,7 +365,7 @@ def test_a_package_is_searched_file_by_file(tmp_path: Path) -> None:
     assert said(tmp_path, '!go. +!go <- my.norm(2, X); my.shapes.area(3, Y); .print(X, " ", Y).') == ["6 9"]
 
 
-def test_artifacts_and_internal_actions_share_their_modules(tmp_path: Path) -> None:
+def test_artifacts_and_internal_actions_share_their_modules(tmp_path):
     write(
         tmp_path,
         artifacts="""
@@ -387,7 +383,7 @@ def test_artifacts_and_internal_actions_share_their_modules(tmp_path: Path) -> N
     assert said(tmp_path, program, python) == ["[4,5]"]
 
 
-def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Path) -> None:
+def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path):
     result = run(tmp_path, "!go. +!go <- my.one(X); .print(", "x = 1\nimport nowhere_at_all\n")
     assert result.exit_code == 1
     (told,) = result.errors
@@ -408,7 +404,7 @@ def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Pa
         ),
     ],
 )
-def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python: str, message: str) -> None:
+def test_an_invalid_declaration_is_reported_with_its_line(tmp_path, python, message):
     result = run(tmp_path, "!go. +!go <- my.one.", HEAD + python)
     assert result.exit_code == 1
     assert message in result.errors[0]
@@ -423,7 +419,7 @@ def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python
         ("your.norm(1, X)", "write a function `norm` with @internal_action in your.py beside the project"),
     ],
 )
-def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, help: str) -> None:
+def test_an_unknown_name_is_an_action_and_gets_help(tmp_path, call, help):
     python = HEAD + "@internal_action\ndef norm(x) -> int:\n    return x\n\ndef plain(x):\n    return x\n"
     result = run(tmp_path, f"!go. +!go <- {call}. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["action_failed"]
@@ -432,7 +428,7 @@ def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, h
     assert f"  = help: {help}" in result.errors[0] or help in result.errors[0]
 
 
-def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:
+def test_an_agent_made_later_brings_its_modules(tmp_path):
     write(
         tmp_path,
         late_asl="!go. +!go <- more.say(X); .print(X).",
@@ -443,7 +439,7 @@ def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:
     assert result.errors == []
 
 
-def test_the_modules_of_two_projects_do_not_mix(tmp_path: Path) -> None:
+def test_the_modules_of_two_projects_do_not_mix(tmp_path):
     for number in ("1", "2"):
         folder = tmp_path / number
         folder.mkdir()
@@ -451,7 +447,7 @@ def test_the_modules_of_two_projects_do_not_mix(tmp_path: Path) -> None:
         assert said(folder, "!go. +!go <- my.number(X); .print(X).", python) == [number]
 
 
-def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path: Path) -> None:
+def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path):
     write(
         tmp_path,
         sys_mas2j='MAS sys { agents: bob; aslSourcePath: "src/asl"; }',
@@ -463,7 +459,7 @@ def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path: Path
     assert (result.lines, result.errors) == (["[bob] 1"], [])
 
 
-def test_a_result_that_contains_itself_fails_the_step(tmp_path: Path) -> None:
+def test_a_result_that_contains_itself_fails_the_step(tmp_path):
     python = (
         HEAD
         + """
