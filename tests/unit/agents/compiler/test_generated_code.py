@@ -54,15 +54,12 @@ def test_a_traceback_shows_file_and_line_of_the_agent_program():
     assert ("robot.asl", 4) in places
 
 
-def test_position_and_bindings_of_a_frame_can_be_read():
+def test_frames_can_be_read_and_goal_kinds_are_one_object():
     frame = selected("+!g(X) : Y = X + 1 <- .stop(Y, X).", {".stop": InternalAction(".stop", broken)})
     plan = frame[4]
     assert isinstance(plan, Plan)
     assert {name: frame[slot] for name, slot in plan.slots.items()} == {"X": 3.0, "Y": 4.0}
     assert plan.label is atom("p__0")
-
-
-def test_a_goal_kind_is_one_object():
     assert trigger("+", "!", functor("g", 1)) is trigger("+", "!", functor("g", 1))
     assert trigger("+", "!", functor("g", 1)).on_fail is trigger("-", "!", functor("g", 1))
 

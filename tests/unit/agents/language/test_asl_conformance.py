@@ -29,12 +29,9 @@ def load(path: Path):
     return load_program(str(path), path.read_text(encoding="utf-8"), read)
 
 
-def test_the_conformance_programs_are_there():
+def test_correct_programs_are_there_and_read_without_a_warning():
     assert len(GOOD) > 300
     assert len(REFUSED) == 14
-
-
-def test_every_correct_program_is_read_without_a_warning():
     for path in GOOD:
         _, warnings = load(path)
         assert warnings == [], path

@@ -62,14 +62,11 @@ def test_numbers_print_as_in_the_language(value, text):
     assert format_term(nodes.Number(value)) == text
 
 
-def test_plans_with_all_parts():
+def test_plans_with_all_parts_have_a_text_and_other_values_none():
     text = "@l[atomic] +!g(X)[source(S)] : a(X) & (X > 1) <: done <- b; !c. { +e <- f. }"
     assert format_plan(parse_plan(text.removesuffix(" { +e <- f. }"))) == text.removesuffix(" { +e <- f. }")
     plan = parse_plan("+!g")
     assert format_plan(plan) == "+!g."
     assert format_body(plan.body) == ""
-
-
-def test_other_values_have_no_text():
     with pytest.raises(TypeError):
         format_term(nodes.Node())

@@ -190,12 +190,9 @@ def test_steps_keep_their_blank_lines_and_lines_their_groups():
     assert formatted(text) == "p.\nq.\n\nr.\n+!g\n  <- a;\n\n     b;\n     c.\n"
 
 
-def test_a_wrong_program_is_refused():
+def test_a_wrong_program_is_refused_and_line_ends_of_other_systems_are_read():
     with pytest.raises(AslError, match="without a final"):
         formatted("p\nq.")
-
-
-def test_line_ends_of_other_systems_are_read():
     assert formatted("p. // a\r\nq.\r\n") == "p.  // a\nq.\n"
 
 

@@ -216,7 +216,7 @@ def test_a_context_refuses_an_internal_action_that_is_declared_to_act():
     assert wrong.message == "internal action `.tell` acts and cannot be in a context"
 
 
-def test_one_mistake_gives_one_error():
+def test_one_mistake_gives_one_error_and_parsing_continues():
     for text in (
         "+!a <- foo(.\n+!b <- c.",
         "p(q(1, 2.\nr(3).",
@@ -229,11 +229,14 @@ def test_one_mistake_gives_one_error():
         "+!g <- X = { +!i <- ( }; a.\n+!h.",
     ):
         assert len(places(text)) == 1, text
-
-
-def test_parsing_continues_after_every_error():
     text = "".join(f"+!g{number} <- a(;{' b' * (number % 3)}.\n" for number in range(40))
     assert sorted({line for line, _ in places(text)}) == list(range(1, 41))
+    found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
+    assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
+    (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
+    assert wrong.code == "nested-too-deeply"
+    (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")
+    assert wrong.code == "nested-too-deeply"
 
 
 def test_two_plans_with_one_label_are_an_error_that_names_both():
@@ -241,15 +244,9 @@ def test_two_plans_with_one_label_are_an_error_that_names_both():
     assert error.span is not None
     assert error.span.line == 4
     assert error.message == "two different plans have the label `@one`; the first one is at line 1"
-
-
-def test_two_plans_with_one_label_in_two_files_are_an_error_that_names_both():
     (error,) = errors('@one +!a.\n{ include("x.asl") }', {"x.asl": "\n@one +!b."})
     assert error.place() == "x.asl:2:2: "
     assert error.message.endswith("the first one is at main.asl, line 1")
-
-
-def test_labels_of_subplans_are_apart_from_those_of_the_program():
     load_program("x", "@one +!a. { @one +e. @two +f. } @two +!b.")
     assert len(errors("@one +!a. { @two +e. @two +f. }")) == 1
 
@@ -267,11 +264,6 @@ def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text, plain,
     assert (warning.severity, warning.message) == ("warning", message)
     assert program.plans == load_program("x", old + plain)[0].plans
     assert [diagnostic.message for diagnostic in errors(text)] == [message]
-
-
-def test_warnings_come_with_the_errors_in_the_order_of_the_text():
-    found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
-    assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
 
 
 def test_every_statement_of_a_plan_is_read_although_others_are_wrong():
@@ -306,10 +298,3 @@ Corner(1,2).
         (7, "unclosed-string"),
         (8, "unexpected-token"),
     ]
-
-
-def test_the_length_of_a_sum_is_limited():
-    (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
-    assert wrong.code == "nested-too-deeply"
-    (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")
-    assert wrong.code == "nested-too-deeply"

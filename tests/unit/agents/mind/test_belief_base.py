@@ -97,7 +97,7 @@ def matches(row: object, asked: tuple[object, ...]) -> bool:
     return all(b in (None, a) for a, b in zip(row, asked, strict=True))
 
 
-def test_removing_the_newest_beliefs_leaves_no_gaps():
+def test_tables_lose_their_newest_beliefs_and_rules_without_traces():
     table = Table(functor("p", 2))
     table.find((0,), 1.0)
     for i in range(1000):
@@ -108,6 +108,13 @@ def test_removing_the_newest_beliefs_leaves_no_gaps():
     assert list(table.find((0,), 1.0)) == []
     table.add((1.0, 5.0), BY_SELF)
     assert list(table.find_items((0,), 1.0)) == [((1.0, 5.0), BY_SELF)]
+    table = Table(atom("p"))
+    rule = Entry()
+    table.add((), BY_SELF)
+    table.add(rule, ())
+    assert not table.plain
+    table.remove(rule)
+    assert table.plain
 
 
 def test_a_search_does_not_see_changes_by_its_own_actions():
@@ -124,16 +131,6 @@ def test_a_search_does_not_see_changes_by_its_own_actions():
         found.append(row)
     assert found == [(2.0,), (1.0,), (0.0,)]
     assert [row for row, _ in table.entries()] == [(10.0,), (11.0,), (12.0,)]
-
-
-def test_a_table_is_plain_again_without_its_rule():
-    table = Table(atom("p"))
-    rule = Entry()
-    table.add((), BY_SELF)
-    table.add(rule, ())
-    assert not table.plain
-    table.remove(rule)
-    assert table.plain
 
 
 @pytest.mark.parametrize("belief", ["d(I)", "d(a, I)", "d(I)[b]"])

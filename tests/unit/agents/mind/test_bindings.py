@@ -58,23 +58,17 @@ def test_bindings_made_before_a_goal_outlive_its_failure():
         )[1]
         == "pair(1,3)"
     )
-
-
-def test_variables_bound_in_a_loop_are_free_in_the_next_round_and_after_it():
-    assert printed(
-        """
-        !s.
-        +!s <- P = pair(A, B); for (.member(X, [1,2])) { A = X; .print(P) }; A = 9; B = 8; .print(P).
-        """
-    )[0::2] == ["pair(1,B)", "pair(9,8)"]
-
-
-def test_an_unbound_namespace_takes_every_namespace_in_turn():
+    assert (
+        printed("!g. +!g <- ++b(X); .print(a); .print(c); X = 7; .print(X). +b(Y) <- Y = 3; .print(b(Y)).")[
+            -1
+        ]
+        == "7"
+    )
     lines = printed("!g. a::p(1). b::p(3). p(4). +!g <- for (N::p(X)) { .print(N, X) }.")
     assert sorted(lines) == ["a1", "b3", "default4"]
 
 
-def test_bindings_of_a_loop_end_with_each_round_and_after_it():
+def test_bindings_of_loops_and_failed_bodies_end_with_them():
     assert printed("!g. +!g <- for (.member(Z,[W,[3]])) { .print(Z,W); W = f(b) }.")[1] == "[3]W<no-value>"
     assert printed("!g. p(1). +!g <- for (p(Z)) { Y = Z }; if (p(2)) { Y = 3 }; .print(Y).") == [
         "Y<no-value>"
@@ -86,20 +80,14 @@ def test_bindings_of_a_loop_end_with_each_round_and_after_it():
         "one",
         "Y<no-value>",
     ]
-
-
-def test_a_failing_body_held_by_a_variable_unbinds_shared_variables():
+    assert printed(
+        """
+        !s.
+        +!s <- P = pair(A, B); for (.member(X, [1,2])) { A = X; .print(P) }; A = 9; B = 8; .print(P).
+        """
+    )[0::2] == ["pair(1,B)", "pair(9,8)"]
     assert printed("!g. +!g <- B = {.fail}; B. -!g[error(E)] <- .print(E).") == ["ia_failed"]
     assert printed("!g. s(1). +!g <- B = {for (s(X)) {.print(X)}}; B; .print(X).") == ["1", "X<no-value>"]
-
-
-def test_events_of_another_intention_share_no_variables():
-    assert (
-        printed("!g. +!g <- ++b(X); .print(a); .print(c); X = 7; .print(X). +b(Y) <- Y = 3; .print(b(Y)).")[
-            -1
-        ]
-        == "7"
-    )
 
 
 @pytest.mark.parametrize(
@@ -168,15 +156,7 @@ def test_construction_treats_new_and_unbound_variables_alike(parts):
     assert shown("") == shown("L = [X];")
 
 
-def test_a_term_is_deconstructed_without_unification(monkeypatch):
-    monkeypatch.setattr(query, "unify", None)
-    program = (
-        "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
-    )
-    assert printed(program) == ["q[1,a][][p]"]
-
-
-def test_a_text_that_is_parsed_again_uses_the_present_values():
+def test_terms_and_texts_are_taken_apart_with_their_present_values(monkeypatch):
     assert printed(
         """
         !go. +!go <- !g(1); !g(2).
@@ -187,3 +167,8 @@ def test_a_text_that_is_parsed_again_uses_the_present_values():
              .term2string(S, "1 + 2"); .print(S).
         """
     ) == [*("f(1,a,[1])", "h(1,5)", 'c([1,b],"s")', "3"), *("f(2,a,[1])", "h(2,5)", 'c([1,b],"s")', "3")]
+    monkeypatch.setattr(query, "unify", None)
+    program = (
+        "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
+    )
+    assert printed(program) == ["q[1,a][][p]"]

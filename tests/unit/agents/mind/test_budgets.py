@@ -17,7 +17,7 @@ def limited(program: str, **limits: int) -> RecordingHost:
     return mind(program, options=Options(**limits))
 
 
-def test_a_goal_beyond_the_intention_limit_fails_its_step():
+def test_what_goes_beyond_the_intention_limit_fails_its_step():
     host = limited(
         """
         !spawn(1).
@@ -33,6 +33,16 @@ def test_a_goal_beyond_the_intention_limit_fails_its_step():
         "10 intention_limit in line 3",
         "there are 10 intentions (option intention_limit)",
     ]
+    host = limited(
+        """
+        !g.
+        +!g <- .wait(1) |&| .wait(1) |&| .wait(1).
+        -!g[error(E)] <- .print(E).
+        """,
+        intention_limit=3,
+    )
+    host.run()
+    assert host.printed == ["intention_limit"]
 
 
 def test_an_event_beyond_the_limit_fails_its_step():
@@ -51,19 +61,6 @@ def test_an_event_beyond_the_limit_fails_its_step():
         "event_limit",
         "there are 3 events (option event_limit)",
     ]
-
-
-def test_branches_of_a_fork_count_as_intentions():
-    host = limited(
-        """
-        !g.
-        +!g <- .wait(1) |&| .wait(1) |&| .wait(1).
-        -!g[error(E)] <- .print(E).
-        """,
-        intention_limit=3,
-    )
-    host.run()
-    assert host.printed == ["intention_limit"]
 
 
 def test_refused_events_from_outside_are_logged_occasionally():

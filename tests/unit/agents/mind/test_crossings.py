@@ -108,16 +108,13 @@ def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too():
     ) == ["deadline", "after"]
 
 
-def test_each_message_without_an_effect_takes_a_cycle():
+def test_messages_are_read_one_in_a_cycle_unless_they_are_urgent():
     host = mind("")
     for _ in range(3):
         host.agent.receive(message("sing", "p"))
     host.agent.run(2)
     assert len(host.logged) == 2
     assert len(host.agent.incoming.messages) == 1
-
-
-def test_after_an_urgent_message_others_are_read_one_in_a_cycle_again():
     host = mind("@s[urgency(5)] +bump(_) <- .print(bump). +low(N) <- .print(N).")
     host.agent.receive(message("tell", "bump(1)"))
     host.agent.run(5)

@@ -181,9 +181,12 @@ def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals():
     ]
 
 
-def test_done_ends_a_handler_or_a_belief_plan_and_its_caller_continues():
+def test_done_ends_a_handler_and_a_test_without_value_fails():
     assert printed("!s. +!s <- !g; .print(after). +!g <- .fail. -!g <- .done; .print(no).") == ["after"]
     assert printed("!g. +!g <- +b; .print(x). +b <- .print(b); .done; .print(no).") == ["b", "x"]
+    program = "b(1). !go. +!go <- ?X; .print(X). -!go[error(E)] <- .print(E)."
+    assert printed(program) == ["body_var_without_value"]
+    assert printed("b(1). !go. +!go <- X = b(Y); ?X; .print(Y).") == ["1"]
 
 
 @pytest.mark.whole_stack
@@ -228,9 +231,3 @@ def test_a_context_may_ask_for_the_intention_of_its_event():
 !!new.
 """
     assert sorted(printed(program.replace("!!new", "!new"))) == ["1running", "2", "a new one"]
-
-
-def test_a_test_of_a_variable_without_a_value_fails():
-    program = "b(1). !go. +!go <- ?X; .print(X). -!go[error(E)] <- .print(E)."
-    assert printed(program) == ["body_var_without_value"]
-    assert printed("b(1). !go. +!go <- X = b(Y); ?X; .print(Y).") == ["1"]

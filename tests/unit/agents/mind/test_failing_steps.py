@@ -68,7 +68,7 @@ def test_what_a_program_prints(program, output):
     assert printed(program) == output
 
 
-def test_a_lost_intention_is_reported_with_its_place():
+def test_a_lost_intention_and_a_context_that_cannot_be_evaluated_are_reported():
     host = mind("!g.\n+!g <-\n  ?nothing(1).", name="lost")
     host.run()
     assert host.logged == [
@@ -81,9 +81,6 @@ def test_a_lost_intention_is_reported_with_its_place():
             ),
         )
     ]
-
-
-def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tried():
     host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
     host.run()
     assert host.printed == ["second"]
@@ -105,7 +102,7 @@ def test_an_observer_gets_the_reason_of_a_failure():
     assert not [state for state, _, why in heard if why and state != "failed"]
 
 
-def test_terms_that_are_not_goals_or_bodies_fail_with_the_reason():
+def test_terms_without_value_or_of_another_kind_fail_with_the_reason():
     assert printed(
         """
         !s.
@@ -124,9 +121,6 @@ def test_terms_that_are_not_goals_or_bodies_fail_with_the_reason():
         "u body_var_not_literal",
         "3[k,q,source(self)]",
     ]
-
-
-def test_a_formula_without_value_fails_with_its_reason():
     assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
         "arithmetic_error (X = (1 div 0))"
     ]

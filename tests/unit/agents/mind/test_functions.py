@@ -15,21 +15,19 @@ def printed(program: str) -> list[str]:
     return host.printed
 
 
-def test_a_registered_rule_is_a_function():
+def test_registered_rules_and_internal_actions_are_functions():
     assert printed(SUM + "!g. +!g <- X = my.sum(1, my.sum(2, 3)); .print(X); .print(my.sum(X, X) * 2).") == [
         "6",
         "24",
     ]
-
-
-def test_a_registered_internal_action_is_a_function():
     program = (
         '{ register_function("my.size", 1, ".length") } !g. +!g <- .print(my.size([a, b]) + my.size("abc")).'
     )
     assert printed(program) == ["5"]
+    assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
 
 
-def test_functions_are_evaluated_in_conditions_rules_goals_and_beliefs():
+def test_functions_are_evaluated_wherever_they_are_written():
     program = """
         big(X) :- my.sum(X, 1) > 10.
         !g(9). !g(10).
@@ -38,19 +36,23 @@ def test_functions_are_evaluated_in_conditions_rules_goals_and_beliefs():
         +!show(V) <- .print(V).
     """
     assert printed(SUM + program) == ["small", "11"]
-
-
-def test_texts_and_plans_parsed_at_run_time_may_call_functions():
     program = """
         !g. +!g <- .term2string(T, "f(my.sum(4, 5))"); .print(T);
             .add_plan("+!h(X) : my.sum(X, 1) > 3 <- .print(my.sum(X, 10))."); !h(3);
             .send(self, tellHow, "+!k <- .print(my.sum(1, 1))."); .wait(1); !k.
     """
     assert printed(SUM + program) == ["f(9)", "13", "2"]
-
-
-def test_a_function_waits_for_its_arguments():
-    assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
+    program = """
+        p(1). p(2).
+        !g. +!g <- +q(.count(p(X) & X > 1)); ?q(A); .term2string(B, "f(.count(p(_)))"); .print(A, B).
+    """
+    assert printed(program) == ["1f(2)"]
+    program = """
+        !g.
+        +!g <- .relevant_plans({ +!h(_) }, [P]); .print(found); .intention(_, _, _, current); .print(seen); !h(1).
+        +!h(X) <- .print(my.sum(X, 1)).
+    """
+    assert printed(SUM + program) == ["found", "seen", "2"]
 
 
 @pytest.mark.parametrize(("rule", "why"), [("none", "does not hold"), ("word", "is not a number")])
@@ -71,23 +73,6 @@ def test_an_initial_belief_without_a_value_is_skipped_and_reported():
     host.run()
     assert host.printed == ["32"]
     assert [level for level, _ in host.logged] == ["error", "error"]
-
-
-def test_counts_are_evaluated_inside_terms():
-    program = """
-        p(1). p(2).
-        !g. +!g <- +q(.count(p(X) & X > 1)); ?q(A); .term2string(B, "f(.count(p(_)))"); .print(A, B).
-    """
-    assert printed(program) == ["1f(2)"]
-
-
-def test_a_plan_as_a_term_may_hold_a_function_that_has_no_value_yet():
-    program = """
-        !g.
-        +!g <- .relevant_plans({ +!h(_) }, [P]); .print(found); .intention(_, _, _, current); .print(seen); !h(1).
-        +!h(X) <- .print(my.sum(X, 1)).
-    """
-    assert printed(SUM + program) == ["found", "seen", "2"]
 
 
 def test_agents_in_two_threads_evaluate_their_own_functions():

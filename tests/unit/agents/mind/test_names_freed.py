@@ -92,7 +92,7 @@ def test_event_kinds_that_only_a_plan_for_any_goal_handles_are_freed():
     assert len({id(select) for kind, select in selects.items() if select and kind is not named}) == 1
 
 
-def test_the_filter_of_options_still_works_after_many_names():
+def test_filters_and_tables_survive_many_names():
     names = '.concat("seen_", I, "(1)", S); .term2string(T, S); +T; -T'
     host = mind(f"""
         !go.
@@ -102,10 +102,7 @@ def test_the_filter_of_options_still_works_after_many_names():
     host.run()
     assert host.agent.selections.option_filter is host.agent.beliefs[SELECT_OPTION]
     assert host.printed == ["there"]
-
-
-def test_empty_tables_are_kept_while_they_are_few():
-    """The order of the tables is the order of the answers to a query for anything."""
+    # The order of the tables is the order of the answers to a query for anything.
     host = mind("""
         !go.
         +!go <- +a(1); +b(1); -a(1); !count(5000); +a(2); .findall(X, X[source(self)], L); .print(L).

@@ -25,20 +25,14 @@ def after(program: str, *messages: SpeechAct) -> RecordingHost:
     return host
 
 
-def test_tell_adds_a_belief_with_the_sender_as_source():
+def test_tell_and_untell_change_beliefs_of_their_sender_and_achieve_posts_a_goal():
     assert believed(after("", message("tell", "p(1)[at(2)]")), "p") == ["p(1)[at(2),source(ann)]"]
-
-
-def test_sources_are_nested():
     assert believed(after("", message("tell", "p[source(bob)]")), "p") == ["p[source(ann)[source(bob)]]"]
-
-
-def test_untell_takes_only_the_source_of_the_sender():
     assert believed(after("p.", message("tell", "p"), message("untell", "p")), "p") == ["p[source(self)]"]
-
-
-def test_achieve_posts_a_goal():
     assert after("+!g(X)[source(S)] <- .print(X, S).", message("achieve", "g(1)")).printed == ["1ann"]
+    host = after("+!g <- .wait(100); .print(bad).", message("achieve", "g"))
+    host = after("!g. +!g <- .wait(100); .print(bad).", message("unachieve", "g"))
+    assert host.printed == []
 
 
 @pytest.mark.parametrize("flat", [False, True])
@@ -97,7 +91,7 @@ def test_a_plan_of_the_program_for_messages_comes_first(flat):
     assert after(program, said).printed == ["annachieveg(1)m1"]
 
 
-def test_a_question_waits_for_the_events_before_it():
+def test_questions_wait_for_events_and_atomic_plans_before_them():
     host = mind("v(0). +!set(X) <- -+v(X). +e <- +seen.")
     host.agent.receive(message("signal", "e"))
     host.agent.receive(message("signal", "e"))
@@ -106,9 +100,6 @@ def test_a_question_waits_for_the_events_before_it():
     host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
     host.run()
     assert [text(answer.content) for answer in host.sent] == ["v(1)"]
-
-
-def test_a_question_waits_for_the_end_of_an_atomic_plan():
     host = mind("!work. v(old). @w[atomic] +!work <- -+v(half); .wait(10); -+v(new).")
     host.agent.run(10)
     host.agent.receive(message("askOne", "v(_)"))
@@ -116,9 +107,6 @@ def test_a_question_waits_for_the_end_of_an_atomic_plan():
     assert host.sent == []
     host.run()
     assert [text(answer.content) for answer in host.sent] == ["v(new)"]
-
-
-def test_a_queued_question_that_cannot_be_processed_is_answered_with_false():
     host = mind("+e <- +seen.")
     host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
     host.agent.receive(message("askHow", "5"))
@@ -126,13 +114,7 @@ def test_a_queued_question_that_cannot_be_processed_is_answered_with_false():
     assert [answer.performative for answer in host.sent] == ["untell"]
 
 
-def test_unachieve_drops_the_goal():
-    host = after("+!g <- .wait(100); .print(bad).", message("achieve", "g"))
-    host = after("!g. +!g <- .wait(100); .print(bad).", message("unachieve", "g"))
-    assert host.printed == []
-
-
-def test_a_question_is_answered_from_beliefs_then_by_a_plan_then_with_false():
+def test_a_question_is_answered_and_a_synchronous_one_waits():
     host = after("p(1). +?q(X) <- X = 2. +?r(_) <- .fail.", *(message("askOne", f"{f}(X)") for f in "pqrs"))
     answers = {text(a.content)[0]: (a.performative, text(a.content), a.in_reply_to) for a in host.sent}
     assert answers == {
@@ -141,9 +123,6 @@ def test_a_question_is_answered_from_beliefs_then_by_a_plan_then_with_false():
         "r": ("untell", "r(X)", "m1"),
         "s": ("untell", "s(X)", "m1"),
     }
-
-
-def test_a_synchronous_question_waits_for_its_answer():
     host = mind("!g. +!g <- .send(friend, askOne, p(_), A); .print(A).")
     host.run(seconds=0.1)
     question = host.sent[0]
@@ -199,22 +178,6 @@ def test_a_plan_of_the_program_comes_before_what_a_message_does():
     host = after("+!kqml_received(S, tell, C, _) <- .print(S, C).", message("tell", "p(1)"))
     assert host.printed == ["annp(1)"]
     assert believed(host, "p") == []
-
-
-LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
-
-
-def test_a_late_answer_is_discarded():
-    asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
-    assert after(LATE + asking).printed == ["timeout", "0"]
-
-
-def test_an_answer_without_a_wait_becomes_a_belief():
-    asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
-    assert after(LATE + asking).printed == ["3self"]
-
-
-def test_a_plan_that_answers_a_question_sees_who_asks():
     program = """
 +?limit(X)[source(ann)] <- X = 100.
 +?limit(X)[source(self)] <- X = 0.
@@ -224,7 +187,17 @@ def test_a_plan_that_answers_a_question_sees_who_asks():
     assert [text(sent.content) for sent in host.sent] == ["limit(100)", "limit(100)[urgent]"]
 
 
-def test_requested_plans_are_sent_and_added():
+LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
+
+
+def test_a_late_answer_is_discarded_and_one_without_a_wait_believed():
+    asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
+    assert after(LATE + asking).printed == ["timeout", "0"]
+    asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
+    assert after(LATE + asking).printed == ["3self"]
+
+
+def test_requested_plans_are_sent_and_added_unless_the_agent_is_restricted():
     host = after("+!goto(X) <- .print(going, X). +!goto(a) <- .print(a).", message("askHow", "{+!goto(b)}"))
     [answer] = host.sent
     assert (answer.performative, answer.in_reply_to) == ("tellHow", "m1")
@@ -234,9 +207,6 @@ def test_requested_plans_are_sent_and_added():
     asker.run()
     assert asker.printed == ["going7"]
     assert len(asker.agent.library.plans) == 1
-
-
-def test_a_restricted_agent_does_not_add_requested_plans():
     host = after("+!goto(X) <- .print(X).", message("askHow", "{+!goto(_)}"))
     asker = mind("", options=Options(plans_from_others=False))
     asker.agent.receive(host.sent[0])

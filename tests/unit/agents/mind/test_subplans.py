@@ -54,19 +54,13 @@ def test_sub_plans_are_for_their_plan_only():
     assert "no_relevant" in host.logged[0][1]
 
 
-def test_the_innermost_scope_is_searched_for_handlers_of_the_whole_stack_first():
+def test_handlers_are_searched_from_the_innermost_scope():
     outside = "-!sub <- .print(outside)."
     inside = "+!sub <- .fail. -!g <- .print(inside)."
     assert printed(f"!g. +!g <- !sub. {{ {inside} }} {outside}") == ["inside"]
-
-
-def test_outside_the_innermost_scope_the_bottom_goal_comes_first():
     text = "!s. +!s <- !g. +!g <- !sub. { +!sub <- .fail. } -!g <- .print(middle). -!s <- .print(bottom)."
     assert printed(text) == ["bottom"]
     assert printed(text.replace("-!s <- .print(bottom).", "")) == ["middle"]
-
-
-def test_a_test_without_a_plan_fails_as_a_test_beside_sub_plans():
     text = "!s. +!s <- ?q(X). { +!g. } -!s[error(E)] <- .print(E)."
     assert printed(text) == ["test_goal_failed"]
     assert printed("!s. +!s <- ?q(X); .print(X). { +?q(1). }") == ["1"]

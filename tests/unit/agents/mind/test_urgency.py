@@ -42,30 +42,21 @@ def told(*literals: Term, program: str = TWO_STEPS, options: Options | None = No
 # --- events ---------------------------------------------------------------------------------------------------
 
 
-def test_an_urgent_event_is_handled_before_those_that_came_first():
+def test_an_urgent_event_comes_first_and_equals_in_order():
     assert told(low(1), low(2), bump(1)).printed == [
         *("bump 1", "end of bump 1"),
         *("low 1", "end of low 1", "low 2", "end of low 2"),
     ]
-
-
-def test_without_urgency_the_order_is_that_of_arrival():
     program = TWO_STEPS.replace("[urgency(10)]", "")
     assert told(low(1), low(2), bump(1), program=program).printed == [
         *("low 1", "end of low 1", "low 2", "bump 1", "end of low 2", "end of bump 1")
     ]
-
-
-def test_equals_are_first_come_first_served():
     program = TWO_STEPS + '@other[urgency(10)] +edge(I) <- .print("edge ", I); .print("end of edge ", I).'
     edge = structure("edge", 1.0)
     assert told(low(1), bump(1), edge, bump(2), program=program).printed == [
         *("bump 1", "end of bump 1", "edge 1", "bump 2", "end of edge 1", "end of bump 2"),
         *("low 1", "end of low 1"),
     ]
-
-
-def test_several_degrees_go_from_the_greatest_down():
     program = """
         +a <- .print(a). @b[urgency(1)] +b <- .print(b). @c[urgency(2)] +c <- .print(c). @d[urgency(3)] +d <- .print(d).
     """
@@ -73,13 +64,12 @@ def test_several_degrees_go_from_the_greatest_down():
     assert told(*literals, program=program).printed == ["d", "d", "c", "c", "b", "b", "a", "a"]
 
 
-def test_an_event_is_as_urgent_as_the_most_urgent_of_its_plans_applicable_or_not():
+def test_an_event_is_as_urgent_as_its_most_urgent_plan():
     program = TWO_STEPS + '@never[urgency(20)] +low(I) : I > 100 <- .print("high ", I).'
     assert told(bump(1), low(1), program=program).printed[0] == "low 1"
-
-
-def test_a_plan_for_all_events_makes_them_all_as_urgent():
     program = TWO_STEPS + "@all[urgency(10)] +Any : false <- true."
+    assert told(low(1), bump(1), program=program).printed[0] == "low 1"
+    program = TWO_STEPS.replace("urgency(10)", "urgency(high), urgency(1.5), urgency(-3), urgency")
     assert told(low(1), bump(1), program=program).printed[0] == "low 1"
 
 
@@ -134,7 +124,7 @@ def test_no_event_is_handled_while_a_more_urgent_intention_is_ready():
     assert told(low(1), low(2), bump(1), program=program).printed == ["bump 1", "low 1", "low 2"]
 
 
-def test_a_waiting_urgent_intention_lets_the_others_continue():
+def test_intentions_that_wait_let_others_continue_and_atomic_ones_are_not_interrupted():
     program = """
         !a. !b.
         @a[urgency(1)] +!a <- .print(a1); .wait(10); .print(a2); .print(a3).
@@ -143,9 +133,6 @@ def test_a_waiting_urgent_intention_lets_the_others_continue():
     lines = printed(program)
     assert lines[:2] == ["a1", "b1"]
     assert lines.index("a3") == lines.index("a2") + 1
-
-
-def test_an_atomic_intention_is_not_interrupted():
     program = (
         TWO_STEPS
         + """
@@ -175,7 +162,7 @@ def test_a_deep_stack_knows_its_urgency():
 # --- plans and options ----------------------------------------------------------------------------------------
 
 
-def test_an_urgent_plan_that_is_added_at_run_time_counts_from_the_next_cycle():
+def test_plans_that_become_urgent_count_from_the_next_cycle():
     program = """
         +low(I) <- .print("low ", I); .print("end of low ", I).
         !start.
@@ -188,9 +175,6 @@ def test_an_urgent_plan_that_is_added_at_run_time_counts_from_the_next_cycle():
     assert lines.index("bump(1)") + 1 == lines.index("end(1)")
     assert lines.index("end(1)") < lines.index("started")
     assert [line for line in lines if line.startswith("low")] == ["low 1", "low 2", "low 3"]
-
-
-def test_waiting_events_are_sorted_when_their_plan_becomes_urgent():
     program = """
         +low(I) <- .print("low ", I).
         @old +bump(I) : false.
@@ -202,9 +186,6 @@ def test_waiting_events_are_sorted_when_their_plan_becomes_urgent():
     host.agent.perceive(noticed(low(1), low(2), low(3), bump(1)))
     host.run()
     assert host.printed == ["bump(1)", "low 1", "low 2", "low 3"]
-
-
-def test_without_its_urgent_plan_an_event_is_as_any_other():
     program = TWO_STEPS + '+bump(I) <- .print("bump as well").'
     host = mind(program + "!s. +!s <- .remove_plan(stop).")
     host.run()
@@ -213,14 +194,11 @@ def test_without_its_urgent_plan_an_event_is_as_any_other():
     assert host.printed == ["low 1", "end of low 1", "bump as well"]
 
 
-def test_an_option_sets_the_urgency_of_events_without_labels():
+def test_an_option_sets_the_urgency_of_events_and_takes_precedence():
     program = TWO_STEPS.replace("[urgency(10)]", "")
     options = Options(urgency=(("bump", 3),))
     host = told(low(1), low(2), bump(1), program=program, options=options)
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
-
-
-def test_an_option_takes_precedence_over_a_label():
     options = Options(urgency=(("bump", 0), ("low", 1)))
     assert told(bump(1), low(1), options=options).printed[0] == "low 1"
 
@@ -236,11 +214,6 @@ def test_sub_plans_count_for_the_urgency_of_events():
     host.agent.perceive(noticed(low(1), bump(1)))
     host.run(seconds=0.0)
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
-
-
-def test_an_invalid_urgency_has_no_effect():
-    program = TWO_STEPS.replace("urgency(10)", "urgency(high), urgency(1.5), urgency(-3), urgency")
-    assert told(low(1), bump(1), program=program).printed[0] == "low 1"
 
 
 def test_an_agent_without_urgent_plans_is_fair():
@@ -283,29 +256,6 @@ def test_a_stream_of_percepts_does_not_keep_an_urgent_goal_waiting():
         host.agent.perceive(noticed(*map(low, range(turn * 100, turn * 100 + 100))))
         host.agent.run(1)
     assert host.printed == ["stopped"]
-
-
-def test_messages_before_an_urgent_one_are_read_with_it_in_their_order():
-    host = mind(TWO_STEPS.replace('.print("end of low ", I)', "true"))
-    for number in range(1, 101):
-        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
-    host.agent.receive(SpeechAct("tell", "friend", "tester", bump(1), "m101"))
-    host.agent.receive(SpeechAct("tell", "friend", "tester", low(101), "m102"))
-    host.agent.run(2)
-    assert host.printed == ["bump 1", "end of bump 1"]
-    assert len(host.agent.incoming.messages) == 0
-    host.run()
-    assert host.printed[2:] == [f"low {number}" for number in range(1, 102)]
-
-
-def test_an_urgent_goal_of_a_message_goes_first_too():
-    program = '@halt[urgency(2)] +!halt <- .print(halted). +low(I) <- .print("low ", I); true.'
-    host = mind(program)
-    for number in range(1, 4):
-        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
-    host.agent.receive(SpeechAct("achieve", "friend", "tester", atom("halt"), "m9"))
-    host.run()
-    assert host.printed == ["halted", "low 1", "low 2", "low 3"]
 
 
 def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch):
@@ -397,35 +347,46 @@ def busy(program: str = BUSY) -> RecordingHost:
     return host
 
 
-def test_an_urgent_percept_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions():
+def test_urgent_percepts_messages_and_waits_go_first_beside_a_hundred_busy_intentions():
     host = busy()
     host.agent.perceive(noticed(bump(1)))
     host.agent.run(2)
     assert host.printed == ["halt 1"]
-
-
-def test_an_urgent_message_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions():
     host = busy(BUSY + "@ask[urgency(5)] +!stop <- .print(stopped).")
     host.agent.receive(SpeechAct("achieve", "bob", "tester", atom("stop"), "m1"))
     host.agent.run(1)
     assert host.printed == ["stopped"]
-
-
-def test_an_urgent_question_does_not_wait_for_the_events_before_it():
-    host = mind("+low(I) <- .print(low, I). @q[urgency(5)] +?state(X) <- .print(asked); X = ok.")
-    host.agent.perceive(noticed(*(low(number) for number in range(5))))
-    host.agent.receive(SpeechAct("askOne", "bob", "tester", structure("state", Var()), "m1"))
-    host.run()
-    assert host.printed[0] == "asked"
-
-
-def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends():
     host = busy(BUSY + "@w[urgency(5)] +go <- .wait(10); .print(first); .wait(10); .print(second).")
     host.agent.perceive(noticed(atom("go")))
     for expected in ([], ["first"], ["first", "second"]):
         host.agent.run(5)
         assert host.printed == expected
         host.ring_next(host.time + 1000)
+
+
+def test_urgent_questions_and_goals_of_messages_go_first():
+    host = mind("+low(I) <- .print(low, I). @q[urgency(5)] +?state(X) <- .print(asked); X = ok.")
+    host.agent.perceive(noticed(*(low(number) for number in range(5))))
+    host.agent.receive(SpeechAct("askOne", "bob", "tester", structure("state", Var()), "m1"))
+    host.run()
+    assert host.printed[0] == "asked"
+    program = '@halt[urgency(2)] +!halt <- .print(halted). +low(I) <- .print("low ", I); true.'
+    host = mind(program)
+    for number in range(1, 4):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
+    host.agent.receive(SpeechAct("achieve", "friend", "tester", atom("halt"), "m9"))
+    host.run()
+    assert host.printed == ["halted", "low 1", "low 2", "low 3"]
+    host = mind(TWO_STEPS.replace('.print("end of low ", I)', "true"))
+    for number in range(1, 101):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
+    host.agent.receive(SpeechAct("tell", "friend", "tester", bump(1), "m101"))
+    host.agent.receive(SpeechAct("tell", "friend", "tester", low(101), "m102"))
+    host.agent.run(2)
+    assert host.printed == ["bump 1", "end of bump 1"]
+    assert len(host.agent.incoming.messages) == 0
+    host.run()
+    assert host.printed[2:] == [f"low {number}" for number in range(1, 102)]
 
 
 def test_the_first_goes_first_while_nothing_is_urgent():

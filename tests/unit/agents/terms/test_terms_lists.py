@@ -88,30 +88,31 @@ def test_cons_tuples_that_end_in_a_list_unify_and_compare_as_the_list_does():
         assert resolve(form).__class__ is List
 
 
-def test_elements_with_annotations_unify_as_subsets_in_ground_lists():
+def test_lists_unify_by_subsets_and_open_tails():
     plain = resolve(make_list([atom("p")]))
     annotated = resolve(make_list([Annotated(atom("p"), (atom("a"),))]))
     assert unify(plain, annotated, Trail())
     assert not unify(annotated, plain, Trail())
     assert not is_key(annotated)
-
-
-def test_an_open_list_takes_the_rest_of_a_closed_one():
     tail = Var("T")
     assert unify((CONS, 0.0, (CONS, 1.0, tail)), numbers(4), Trail())
     assert text(tail) == "[2,3]"
 
 
-def test_a_long_list_is_a_key_and_one_nested_too_deeply_is_not():
+def test_a_long_list_is_a_key_and_survives_pickling():
     assert is_key(numbers(100_000))
     nested: Term = make_list([1.0])
     for _ in range(400):
         nested = make_list([nested])
     assert not is_key(resolve(nested))
     assert equal(nested, resolve(nested))
+    made = numbers(3)
+    hash(made)
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert pickle.loads(pickle.dumps(made)).hashed is None
 
 
-def test_ground_elements_are_not_checked_again():
+def test_ground_elements_are_not_checked_again_nor_found_variables():
     known = resolve(make_list([structure("f", float(i)) for i in range(50)]))
     known.stack[3] = Var("Unseen")  # what looks at it would find a variable
     longer = resolve((CONS, structure("g", 1.0), known))
@@ -120,9 +121,6 @@ def test_ground_elements_are_not_checked_again():
     assert is_ground(longer)
     assert is_key(longer)
     assert rename(longer) is longer
-
-
-def test_a_variable_in_a_list_is_found_until_it_has_a_value():
     variable = Var("X")
     open_one = resolve(make_list([1.0, variable, 2.0]))
     assert free_variables(open_one) == [variable]
@@ -132,36 +130,23 @@ def test_a_variable_in_a_list_is_found_until_it_has_a_value():
     assert text(open_one) == "[1,5,2]"
     variable.ref = None
     assert free_variables(open_one) == [variable]
-
-
-def test_arithmetic_in_a_list_is_evaluated_when_its_variables_have_values():
     variable = Var("X")
     made = resolve(make_list([(BINARY["+"].functor, variable, 1.0), 3.0]))
     variable.ref = 1.0
     assert list(list_items(resolve(made))) == [2.0, 3.0]
 
 
-def test_a_short_tail_does_not_keep_a_long_list_in_memory():
+def test_a_short_list_does_not_keep_longer_ones_in_memory():
     tail: Term = numbers(10_000)
     while list_length(tail) > 40:
         tail = tail.rest() if tail.__class__ is List else tail[2]
     assert len(resolve(tail).stack) < 1_000
-
-
-def test_a_short_list_does_not_keep_longer_ones_in_memory():
     short = numbers(3)
     grown = short
     for i in range(10_000):
         grown = resolve((CONS, float(i), grown))
     assert grown.size == 10_003
     assert len(short.stack) < 100
-
-
-def test_a_list_is_the_same_after_pickling():
-    made = numbers(3)
-    hash(made)
-    assert pickle.loads(pickle.dumps(made)) == made
-    assert pickle.loads(pickle.dumps(made)).hashed is None
 
 
 @given(st.lists(elements, max_size=12))

@@ -123,28 +123,16 @@ def test_terms_are_written_as_jason_does(term, written):
     assert text(term) == written
 
 
-def test_opaque_objects_are_written_by_number():
-    reference = Reference(object())
-    assert text(reference) == f"cobj_{reference.number}"
-
-
-def test_print_shows_strings_bare_only_at_the_top():
+def test_print_shows_top_level_strings_and_variables_in_its_own_way():
     assert display(String("x")) == "x"
     assert display(make_list([String("x")])) == '["x"]'
-
-
-def test_print_marks_variables_without_value_only_at_the_top():
     assert display(Var("X")) == "X<no-value>"
     assert display(Var("_")) == "_<no-value>"
     assert display(Annotated(Var("X"), (atom("a"),))) == "X[a]<no-value>"
     assert display(structure("f", Var("X"))) == "f(X)"
-
-
-def test_text_applies_bindings_and_evaluates():
+    reference = Reference(object())
+    assert text(reference) == f"cobj_{reference.number}"
     variable = Var("X")
     unify(variable, 2.0, Trail())
     assert text(structure("f", variable, (BINARY["+"].functor, variable, 1.0))) == "f(2,3)"
-
-
-def test_long_lists_are_written_whole():
     assert text(make_list([1.0] * 5000)).count("1") == 5000

@@ -23,7 +23,7 @@ def test_only_an_unbound_variable_can_become_a_new_collection(mind, kind):
 # sets
 
 
-def test_a_set_holds_each_element_once_and_is_read_in_order(mind):
+def test_a_set_holds_each_element_once_in_order_and_its_copy_is_independent(mind):
     collection = created(mind, "set")
     for item in ("b", "a", "b"):
         assert mind.succeeds(".set.add", collection, item)
@@ -32,6 +32,11 @@ def test_a_set_holds_each_element_once_and_is_read_in_order(mind):
     assert mind.succeeds(".set.remove", collection, "b")
     assert mind.succeeds(".set.remove", collection, "z")
     assert text(collection) == "{a}"
+    first, copy = created(mind, "set"), Var("D")
+    mind.succeeds(".set.add", first, 1)
+    assert mind.succeeds(".set.copy", first, copy)
+    assert mind.succeeds(".set.clear", first)
+    assert (text(first), text(copy)) == ("{}", "{1}")
 
 
 @pytest.mark.parametrize("action", [".set.add_all", ".set.union"])
@@ -44,7 +49,7 @@ def test_a_set_takes_all_elements_of_lists_sets_and_queues(mind, action):
     assert text(collection) == "{b,c,q,z}"
 
 
-def test_intersection_and_difference_change_the_first_set(mind):
+def test_set_operations_change_the_first_set_and_equal_sets_unify(mind):
     first = created(mind, "set")
     mind.succeeds(".set.add_all", first, [1, 2, 3])
     assert mind.succeeds(".set.intersection", first, [2, 3, 9])
@@ -53,17 +58,6 @@ def test_intersection_and_difference_change_the_first_set(mind):
     assert text(first) == "{3}"
     assert mind.succeeds(".set.difference", first, first)
     assert text(first) == "{}"
-
-
-def test_a_copied_set_is_independent(mind):
-    first, copy = created(mind, "set"), Var("D")
-    mind.succeeds(".set.add", first, 1)
-    assert mind.succeeds(".set.copy", first, copy)
-    assert mind.succeeds(".set.clear", first)
-    assert (text(first), text(copy)) == ("{}", "{1}")
-
-
-def test_sets_with_the_same_elements_unify(mind):
     first, second = created(mind, "set"), created(mind, "set")
     mind.succeeds(".set.add_all", first, [1, 2])
     mind.succeeds(".set.add_all", second, [2, 1])
@@ -75,7 +69,7 @@ def test_sets_with_the_same_elements_unify(mind):
 # maps
 
 
-def test_a_map_keeps_one_value_for_each_key(mind):
+def test_a_map_keeps_one_value_for_each_key_and_has_defaults(mind):
     collection = created(mind, "map")
     for key, value in (("b", 1), ("a", 2), ("b", [3])):
         assert mind.succeeds(".map.put", collection, key, value)
@@ -83,14 +77,11 @@ def test_a_map_keeps_one_value_for_each_key(mind):
     assert mind.result(".map.get", collection, "b") == "[3]"
     assert not mind.succeeds(".map.get", collection, "b", 1)
     assert not mind.succeeds(".map.get", collection, "z", Var("V"))
-
-
-def test_a_map_gives_a_default_for_a_missing_key(mind):
     collection, value = created(mind, "map"), Var("V")
     assert mind.instances(".map.get", collection, "z", value, "none", of=value) == ["none"]
 
 
-def test_keys_and_values_come_in_the_order_of_the_keys(mind):
+def test_keys_and_values_come_in_order_and_are_removed_together(mind):
     collection, item = created(mind, "map"), Var("X")
     for key, value in (("b", 1), ("a", 2), ("c", 1)):
         mind.succeeds(".map.put", collection, key, value)
@@ -98,9 +89,6 @@ def test_keys_and_values_come_in_the_order_of_the_keys(mind):
     assert mind.instances(".map.value", collection, item, of=item) == ["2", "1", "1"]
     assert mind.succeeds(".map.key", collection, "b")
     assert not mind.succeeds(".map.value", collection, 9)
-
-
-def test_a_key_is_removed_with_its_value(mind):
     collection = created(mind, "map")
     mind.succeeds(".map.put", collection, "a", 1)
     mind.succeeds(".map.put", collection, "b", 2)
@@ -128,23 +116,17 @@ def test_a_queue_gives_its_elements_in_the_order_they_came(mind):
     assert mind.result(".queue.head", collection) == "c"
     assert mind.result(".queue.to_list", collection) == "[c,a,b]"
     assert [mind.result(".queue.remove", collection) for _ in range(3)] == ["c", "a", "b"]
-
-
-def test_an_empty_queue_has_no_next_element(mind):
     collection = created(mind, "queue")
     assert not mind.succeeds(".queue.head", collection, Var("X"))
     assert not mind.succeeds(".queue.remove", collection, Var("X"))
 
 
-def test_a_priority_queue_gives_its_smallest_element_first(mind):
+def test_a_priority_queue_gives_its_smallest_element_first_and_its_copy_is_independent(mind):
     collection = created(mind, "queue", "priority")
     mind.succeeds(".queue.add_all", collection, [("t", 5, "e"), ("t", 1, "a"), ("t", 3, "c")])
     assert text(collection) == "[t(1,a),t(3,c),t(5,e)]"
     assert mind.result(".queue.head", collection) == "t(1,a)"
     assert [mind.result(".queue.remove", collection) for _ in range(3)] == ["t(1,a)", "t(3,c)", "t(5,e)"]
-
-
-def test_a_copied_queue_is_independent(mind):
     first, copy = created(mind, "queue", "priority"), Var("D")
     mind.succeeds(".queue.add_all", first, [2, 1])
     assert mind.succeeds(".queue.copy", first, copy)

@@ -61,35 +61,21 @@ def test_empty_fails_for_other_terms(mind, collection):
 # .member
 
 
-def test_member_gives_each_element_in_turn(mind):
+def test_member_gives_the_elements_that_unify_in_turn(mind):
     item = Var("X")
     assert mind.instances(".member", item, ["c", "a", "b", "a"], of=item) == ["c", "a", "b", "a"]
     assert mind.instances(".member", item, [], of=item) == []
-
-
-def test_member_looks_for_elements_that_unify(mind):
-    item = Var("X")
     collection = [("b", 1), ("c", 2), ("b", 3), ("b", 4, 5)]
     assert mind.instances(".member", ("b", item), collection, of=item) == ["1", "3"]
-
-
-def test_member_undoes_the_bindings_of_a_failed_attempt(mind):
-    item = Var("X")
     assert mind.instances(".member", ("p", item, "z"), [("p", 1, "a"), ("p", 2, "z")], of=item) == ["2"]
 
 
-def test_member_requires_the_annotations_of_the_pattern(mind):
+def test_member_requires_annotations_and_reads_every_kind_of_collection(mind):
     assert mind.succeeds(".member", "p", [annotated("p", "a")])
     assert not mind.succeeds(".member", annotated("p", "a"), ["p"])
-
-
-def test_member_reads_sets_in_order_and_queues_as_they_are(mind):
     item = Var("X")
     assert mind.instances(".member", item, set_of("b", "a"), of=item) == ["a", "b"]
     assert mind.instances(".member", item, queue("b", "a", "b"), of=item) == ["b", "a", "b"]
-
-
-def test_a_ground_member_of_a_set_or_queue_is_found_once(mind):
     assert mind.instances(".member", "b", set_of("b"), of="yes") == ["yes"]
     assert mind.instances(".member", "b", queue("b", "b"), of="yes") == ["yes"]
     assert not mind.succeeds(".member", "z", set_of("b"))
@@ -105,25 +91,16 @@ def test_member_needs_a_collection(mind, collection):
 # .nth
 
 
-def test_nth_counts_from_zero(mind):
+def test_nth_counts_from_zero_and_gives_all_positions_of_an_element(mind):
     assert mind.result(".nth", 0, ["a", "b", "c"]) == "a"
     assert mind.result(".nth", 2.9, ["a", "b", "c"]) == "c"
     assert not mind.succeeds(".nth", 0, ["a"], "b")
-
-
-def test_nth_gives_all_positions_of_an_element(mind):
     index, item = Var("I"), Var("X")
     assert mind.instances(".nth", index, ["x", "y", "x"], "x", of=index) == ["0", "2"]
     assert mind.instances(".nth", index, ["x", "y"], item, of=["i", index, item]) == ["[i,0,x]", "[i,1,y]"]
     assert mind.instances(".nth", index, ["x"], "z", of=index) == []
-
-
-def test_nth_with_the_same_variable_twice(mind):
     both = Var("X")
     assert mind.instances(".nth", both, ["a", 1, 5], both, of=both) == ["1"]
-
-
-def test_nth_takes_strings_by_characters(mind):
     assert mind.result(".nth", 1, String("aéb")) == '"é"'
 
 
@@ -142,26 +119,20 @@ def test_nth_needs_a_number_and_a_list(mind, arguments):
 # .concat
 
 
-def test_concat_joins_lists(mind):
+def test_concat_joins_lists_and_keeps_the_open_tail_of_the_last(mind):
     assert mind.result(".concat", ["a"], [], ["b", "c"], ["d"]) == "[a,b,c,d]"
     assert mind.succeeds(".concat", ["a"], ["b"], ["a", "b"])
     assert not mind.succeeds(".concat", ["a"], ["b"], ["b", "a"])
-
-
-def test_concat_keeps_the_open_tail_of_the_last_list(mind):
     assert mind.result(".concat", ["a"], make_list([atom("b")], Var("T"))) == "[a,b|T]"
     with pytest.raises(ActionError, match="open tail"):
         mind.succeeds(".concat", make_list([atom("b")], Var("T")), ["a"], Var("R"))
 
 
-def test_concat_joins_strings_with_any_terms(mind):
+def test_concat_joins_strings_with_any_terms_and_takes_the_quotes_off_atoms(mind):
     assert mind.result(".concat", String("a b"), 1, "a", ("f", String("s"))) == '"a b1af("s")"'
     assert mind.result(".concat", "x", ["a"]) == '"x[a]"'
     assert mind.succeeds(".concat", String("a"), String("b"), "ab")
     assert not mind.succeeds(".concat", String("a"), String("b"), String("a"))
-
-
-def test_concat_takes_the_quotes_off_atoms(mind):
     assert mind.result(".concat", "'x y'", "z", ("f", "'q'")) == "\"x yzf('q')\""
 
 
@@ -199,24 +170,18 @@ def test_delete_removes_elements(mind, arguments, rest):
     assert mind.result(".delete", *arguments) == rest
 
 
-def test_delete_binds_nothing_in_its_pattern(mind):
+def test_delete_binds_nothing_and_fails_for_another_result(mind):
     pattern = Var("X")
     assert mind.result(".delete", ("f", pattern), [("f", 1), ("f", 2)]) == "[f(2)]"
     assert text(pattern) == "X"
-
-
-def test_delete_fails_for_another_result(mind):
     assert not mind.succeeds(".delete", "a", ["a", "b"], [])
 
 
-def test_delete_needs_a_list(mind):
+def test_delete_needs_a_list_and_a_valid_regular_expression(mind):
     with pytest.raises(WrongArguments):
         mind.succeeds(".delete", "a", "b", Var("R"))
     with pytest.raises(WrongArguments):
         mind.succeeds(".delete", 1, "b", Var("R"))
-
-
-def test_delete_refuses_a_wrong_regular_expression(mind):
     with pytest.raises(ActionError, match="invalid regular expression"):
         mind.succeeds(".delete", String("("), String("b"), Var("R"))
 
@@ -291,15 +256,12 @@ def test_max_and_min_need_a_list(mind, action):
 # .range
 
 
-def test_range_counts_up_and_down_with_both_ends(mind):
+def test_range_counts_with_both_ends_and_tests_a_number(mind):
     item = Var("X")
     assert mind.instances(".range", item, 1, 4, of=item) == ["1", "2", "3", "4"]
     assert mind.instances(".range", item, 1, 6, 2, of=item) == ["1", "3", "5"]
     assert mind.instances(".range", item, 3, 1, -1, of=item) == ["3", "2", "1"]
     assert mind.instances(".range", item, 3, 1, of=item) == []
-
-
-def test_range_tests_a_number(mind):
     assert mind.instances(".range", 3, 1, 5, of="in") == ["in"]
     assert not mind.succeeds(".range", 6, 1, 5)
     assert mind.succeeds(".range", 2, 1, 5, 2)
@@ -323,14 +285,8 @@ def test_sets_made_of_lists_are_sorted_and_hold_each_element_once(mind):
     assert mind.result(".difference", ["a", "b", "a", "c"], ["f", "a", "c"]) == "[b]"
     assert mind.result(".difference", [], ["a"]) == "[]"
     assert not mind.succeeds(".union", ["a"], ["b"], ["a"])
-
-
-def test_elements_of_sets_differ_when_their_annotations_do(mind):
     assert mind.result(".union", [annotated("p", "a")], ["p"]) == "[p,p[a]]"
     assert mind.result(".intersection", [annotated("p", "a")], ["p"]) == "[]"
-
-
-def test_sets_of_long_lists_need_no_recursion(mind):
     long = list(range(5000))
     assert mind.result(".union", [long], [list(long)]) == text(term([long]))
     assert mind.result(".difference", [long], [list(long)]) == "[]"
@@ -346,14 +302,11 @@ def test_sets_made_of_lists_need_lists(mind, action, arguments):
 # .sublist .prefix .suffix
 
 
-def test_sublist_gives_all_contiguous_parts(mind):
+def test_sublist_gives_all_contiguous_parts_and_finds_one(mind):
     part = Var("S")
     expected = ["[a,b,c]", "[a,b]", "[a]", "[b,c]", "[b]", "[c]", "[]"]
     assert mind.instances(".sublist", part, ["a", "b", "c"], of=part) == expected
     assert mind.instances(".sublist", part, [], of=part) == ["[]"]
-
-
-def test_sublist_finds_a_part_wherever_it_is(mind):
     item = Var("X")
     assert mind.instances(".sublist", ["a", item], ["a", 1, "a", 2], of=item) == ["1", "2"]
     assert mind.instances(".sublist", [], ["a"], of="yes") == ["yes"]
@@ -362,7 +315,7 @@ def test_sublist_finds_a_part_wherever_it_is(mind):
     assert mind.instances(".sublist", make_list([atom("b")], rest), ["a", "b", "c"], of=rest) == ["[c]", "[]"]
 
 
-def test_prefix_and_suffix_give_longer_parts_first(mind):
+def test_prefix_and_suffix_of_lists_and_strings_give_longer_parts_first(mind):
     part = Var("P")
     assert mind.instances(".prefix", part, ["a", "b"], of=part) == ["[a,b]", "[a]", "[]"]
     assert mind.instances(".suffix", part, ["a", "b"], of=part) == ["[a,b]", "[b]", "[]"]
@@ -370,10 +323,6 @@ def test_prefix_and_suffix_give_longer_parts_first(mind):
     assert not mind.succeeds(".prefix", ["b"], ["a", "b"])
     assert mind.succeeds(".suffix", ["b"], ["a", "b"])
     assert not mind.succeeds(".suffix", ["a"], ["a", "b"])
-
-
-def test_prefix_and_suffix_take_strings(mind):
-    part = Var("P")
     assert mind.instances(".prefix", part, String("ab"), of=part) == ['"ab"', '"a"', '""']
     assert mind.instances(".suffix", part, String("ab"), of=part) == ['"ab"', '"b"', '""']
     assert mind.succeeds(".prefix", String("ab"), String("abc"))

@@ -84,13 +84,10 @@ def test_a_failed_message_leaves_the_intention_at_its_step():
     assert host.printed == [".send(ghost,tell,p)"]
 
 
-def test_messages_are_numbered():
+def test_messages_are_numbered_and_answers_name_their_question():
     host = sent(".send(friend, tell, p); F = friend; .send(F, tell, q); .send(friend, askOne, r, A, 10)")
     assert [message.id for message in host.sent] == ["mid1_tester", "mid2_tester", "mid3_tester"]
     assert [message.flat for message in host.sent] == [True, True, True]
-
-
-def test_an_answer_names_its_question():
     host = sent(".send(friend, tell, p(3), mid5_friend)")
     assert host.sent[0].in_reply_to == "mid5_friend"
 

@@ -8,14 +8,17 @@ from jacaros.agents.terms.values import String, Var, structure
 # .substring
 
 
-def test_substring_tests_for_a_part(mind):
+def test_substring_tests_for_a_part_and_a_given_place(mind):
     assert mind.succeeds(".substring", String("b"), String("abc"))
     assert not mind.succeeds(".substring", String("x"), String("abc"))
     assert mind.succeeds(".substring", ("a", 10), ("b", "t1", ("a", 10)))
     assert mind.succeeds(".substring", String(""), String(""))
+    assert mind.succeeds(".substring", String("a"), String("bab"), 1)
+    assert not mind.succeeds(".substring", String("a"), String("bab"), 0)
+    assert mind.succeeds(".substring", String("an"), String("banana"), 3, 4)
 
 
-def test_substring_gives_the_place_of_each_occurrence(mind):
+def test_substring_gives_the_place_of_each_occurrence_and_cuts_out_a_part(mind):
     first, last = Var("I"), Var("J")
     assert mind.instances(".substring", String("a"), String("abbacca"), first, of=first) == ["0", "3", "6"]
     assert mind.instances(".substring", ("a", 10), ("b", "t1", ("a", 10)), first, of=first) == ["5"]
@@ -25,15 +28,6 @@ def test_substring_gives_the_place_of_each_occurrence(mind):
     assert mind.instances(".substring", String("aa"), String("aaa"), first, of=first) == ["0", "1"]
     assert mind.instances(".substring", String("x"), String("abc"), first, of=first) == []
     assert mind.instances(".substring", String(""), String("ab"), first, of=first) == ["0", "1"]
-
-
-def test_substring_tests_a_given_place(mind):
-    assert mind.succeeds(".substring", String("a"), String("bab"), 1)
-    assert not mind.succeeds(".substring", String("a"), String("bab"), 0)
-    assert mind.succeeds(".substring", String("an"), String("banana"), 3, 4)
-
-
-def test_substring_cuts_out_a_part(mind):
     part = Var("X")
     assert mind.instances(".substring", part, String("hello world"), 6, of=part) == ['"world"']
     assert mind.instances(".substring", part, String("hello world"), 0, 5, of=part) == ['"hello"']
@@ -56,17 +50,14 @@ def test_replace_changes_every_match(mind):
     assert mind.result(".replace", String("a1b22"), String("[0-9]+"), String("#")) == '"a#b#"'
     assert mind.result(".replace", ("f", "x"), String("x"), String("y")) == '"f(y)"'
     assert not mind.succeeds(".replace", String("a"), String("a"), String("b"), String("a"))
+    with pytest.raises(ActionError, match=r"\.replace"):
+        mind.succeeds(".replace", String("a"), String("["), String("b"), Var("R"))
 
 
 @pytest.mark.parametrize("arguments", [(String("a"), "a", String("b")), (String("a"), String("a"), 1)])
 def test_replace_needs_strings(mind, arguments):
     with pytest.raises(WrongArguments):
         mind.succeeds(".replace", *arguments, Var("R"))
-
-
-def test_replace_fails_for_a_wrong_expression(mind):
-    with pytest.raises(ActionError, match=r"\.replace"):
-        mind.succeeds(".replace", String("a"), String("["), String("b"), Var("R"))
 
 
 @pytest.mark.parametrize(
@@ -101,14 +92,11 @@ def test_cases_of_letters(mind):
     assert not mind.succeeds(".lower_case", String("A"), String("A"))
 
 
-def test_term2string_writes_terms(mind):
+def test_term2string_writes_and_reads_terms(mind):
     assert mind.result(".term2string", ("b", [1, String("s")])) == '"b([1,"s"])"'
     assert mind.result(".term2string", String("s")) == '""s""'
     assert mind.succeeds(".term2string", "b", String("b"))
     assert not mind.succeeds(".term2string", "b", String("c"))
-
-
-def test_term2string_reads_terms(mind):
     mind.readable = {"f(X)": structure("f", 5.0), "10": 10.0, "b": structure("b")}
     read = Var("T")
     assert mind.instances(".term2string", read, String("10"), of=read) == ["10"]
@@ -117,15 +105,9 @@ def test_term2string_reads_terms(mind):
     other = Var("U")
     assert mind.succeeds(".term2string", other, "b")
     assert text(other) == "b"
-
-
-def test_text_that_is_not_a_term_becomes_an_atom(mind):
     read = Var("T")
     assert mind.succeeds(".term2string", read, String("not a ( term"))
     assert mind.succeeds(".atom", read)
     assert text(read) == "not a ( term"
-
-
-def test_term2string_needs_a_string_to_compare_with(mind):
     with pytest.raises(ActionError):
         mind.succeeds(".term2string", "b", "b")

@@ -65,11 +65,8 @@ def test_each_type_has_its_test(mind, value, types, kind):
     assert mind.succeeds(".type", value, kind) is holds
 
 
-def test_an_unknown_type_is_the_type_of_nothing(mind):
+def test_the_empty_list_is_not_an_atom_and_unknown_types_have_no_members(mind):
     assert not mind.succeeds(".type", 1, "integer")
-
-
-def test_the_empty_list_is_not_an_atom(mind):
     assert not mind.succeeds(".atom", [])
     assert not mind.succeeds(".literal", [])
 
