@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from random import Random
+from textwrap import dedent
 from typing import Any
 
 import pytest
@@ -216,7 +217,7 @@ def programs(cases: str) -> pytest.MarkDecorator:
     for case in re.split(r"^(?=[^\s=])", cases.lstrip("\n"), flags=re.MULTILINE)[1:]:
         name, rest = re.split(r"\s=>", case, maxsplit=1)
         output, program = rest.split("\n", 1)
-        found.append(pytest.param(program, output.strip().split(" | ") if output else [], id=name))
+        found.append(pytest.param(dedent(program), output.strip().split(" | ") if output else [], id=name))
     return pytest.mark.parametrize(("program", "output"), found)
 
 

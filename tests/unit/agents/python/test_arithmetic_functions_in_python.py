@@ -6,8 +6,6 @@ from jacaros.agents.terms import operators
 from jacaros.testing import AgentHarness
 
 SQ = """
-from jacaros import arithmetic_function
-
 @arithmetic_function("my.sq")
 def sq(x):
     return x * x
