@@ -1,13 +1,12 @@
 """Operations on behalf of an agent: outputs, failures, order of news, dropping and suspending."""
 
-from body_lab import Robot, action, among_artifacts, detail_of, message_of, reason_of
+from body_lab import action, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.agents.terms.values import Var, functor
-from jacaros.runtime.clock import VirtualClock
 
 
 @among_artifacts
-async def test_outputs_are_given_to_the_variables(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_outputs_are_given_to_the_variables(one, two, clock):
     one.make("c", "Counter", 4)
     count = Var("N")
     completion = one.do("read", count)
@@ -15,9 +14,7 @@ async def test_outputs_are_given_to_the_variables(one: Robot, two: Robot, clock:
 
 
 @among_artifacts
-async def test_the_mind_perceives_the_changes_before_the_end_of_the_action(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_the_mind_perceives_the_changes_before_the_end_of_the_action(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     one.log.clear()
     one.do("inc")
@@ -25,9 +22,7 @@ async def test_the_mind_perceives_the_changes_before_the_end_of_the_action(
 
 
 @among_artifacts
-async def test_a_failed_operation_gives_message_and_reason(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_failed_operation_gives_message_and_reason(one, two, clock):
     one.make("c", "Counter")
     failure = one.do("refuse")
     assert message_of(failure) == "no"
@@ -36,9 +31,7 @@ async def test_a_failed_operation_gives_message_and_reason(
 
 
 @among_artifacts
-async def test_an_unknown_operation_is_reported_with_similar_ones(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_unknown_operation_is_reported_with_similar_ones(one, two, clock):
     one.make("motion", "Counter")
     failure = one.do("driv", 1)
     assert message_of(failure) == (
@@ -53,9 +46,7 @@ async def test_an_unknown_operation_is_reported_with_similar_ones(
 
 
 @among_artifacts
-async def test_a_waiting_operation_ends_when_its_guard_becomes_true(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_waiting_operation_ends_when_its_guard_becomes_true(one, two, clock):
     one.make("c", "Counter")
     take = one.begin(action("take"))
     assert one.body.pending == (take,)
@@ -66,9 +57,7 @@ async def test_a_waiting_operation_ends_when_its_guard_becomes_true(
 
 
 @among_artifacts
-async def test_a_dropped_action_is_neither_reported_nor_executed(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_dropped_action_is_neither_reported_nor_executed(one, two, clock):
     one.make("c", "Counter")
     take = one.begin(action("take"))
     one.body.cancel_act(take)
@@ -80,9 +69,7 @@ async def test_a_dropped_action_is_neither_reported_nor_executed(
 
 
 @among_artifacts
-async def test_a_suspended_action_pauses_a_pausable_operation(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_suspended_action_pauses_a_pausable_operation(one, two, clock):
     one.make("c", "Counter")
     drive = one.begin(action("drive", 3))
     await clock.sleep(1.5)
@@ -95,9 +82,7 @@ async def test_a_suspended_action_pauses_a_pausable_operation(
 
 
 @among_artifacts
-async def test_a_disposed_artifact_fails_the_actions_that_wait_for_it(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_disposed_artifact_fails_the_actions_that_wait_for_it(one, two, clock):
     c = one.make("c", "Counter")
     take = one.begin(action("take"))
     two.do("disposeArtifact", c)
@@ -105,7 +90,7 @@ async def test_a_disposed_artifact_fails_the_actions_that_wait_for_it(
 
 
 @among_artifacts
-async def test_a_closed_body_gives_everything_up(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_closed_body_gives_everything_up(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     take = one.begin(action("take"))
     told = len(one.log)

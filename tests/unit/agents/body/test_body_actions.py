@@ -2,11 +2,10 @@
 
 import re
 
-from body_lab import Robot, action, among_artifacts, detail_of, message_of, reason_of
+from body_lab import action, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import Reference, Var, atom, list_items
-from jacaros.runtime.clock import VirtualClock
 
 
 def without_ids(reason: str | None) -> str:
@@ -16,9 +15,7 @@ def without_ids(reason: str | None) -> str:
 
 
 @among_artifacts
-async def test_an_artifact_is_made_with_or_without_parameters_and_id(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_artifact_is_made_with_or_without_parameters_and_id(one, two, clock):
     assert one.do("makeArtifact", "a", "Counter").success
     assert one.do("makeArtifact", atom("b"), atom("'Counter'"), [7]).success
     made = one.ask("makeArtifact", "c", "Counter", [])
@@ -29,7 +26,7 @@ async def test_an_artifact_is_made_with_or_without_parameters_and_id(
 
 
 @among_artifacts
-async def test_a_failed_creation_gives_the_reason(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_failed_creation_gives_the_reason(one, two, clock):
     one.make("c", "Counter")
     assert reason_of(one.do("makeArtifact", "c", "Counter")) == (
         'makeArtifactFailure("artifact_already_present","c")'
@@ -49,7 +46,7 @@ async def test_a_failed_creation_gives_the_reason(one: Robot, two: Robot, clock:
 
 
 @among_artifacts
-async def test_artifacts_are_found_by_type_and_listed(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_artifacts_are_found_by_type_and_listed(one, two, clock):
     made = one.make("c", "Counter")
     assert one.ask("lookupArtifactByType", "Counter") is made
     assert reason_of(one.do("lookupArtifactByType", "Lamp", Var())) == 'artifact_not_available("Lamp")'
@@ -59,9 +56,7 @@ async def test_artifacts_are_found_by_type_and_listed(one: Robot, two: Robot, cl
 
 
 @among_artifacts
-async def test_a_missing_artifact_is_reported_with_a_spelling_suggestion(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_missing_artifact_is_reported_with_a_spelling_suggestion(one, two, clock):
     one.make("motion", "Counter")
     failure = one.do("lookupArtifact", "moton", Var())
     assert "did you mean `motion`?" in message_of(failure)
@@ -69,9 +64,7 @@ async def test_a_missing_artifact_is_reported_with_a_spelling_suggestion(
 
 
 @among_artifacts
-async def test_an_output_that_is_bound_is_a_wrong_argument(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_output_that_is_bound_is_a_wrong_argument(one, two, clock):
     c = one.make("c", "Counter")
     assert (
         without_ids(reason_of(one.do("lookupArtifact", "c", c)))
@@ -83,9 +76,7 @@ async def test_an_output_that_is_bound_is_a_wrong_argument(
 
 
 @among_artifacts
-async def test_focusing_shows_the_properties_before_the_action_ends(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_focusing_shows_the_properties_before_the_action_ends(one, two, clock):
     c = one.make("c", "Counter", 3)
     one.log.clear()
     assert one.do("focus", c).success
@@ -99,7 +90,7 @@ async def test_focusing_shows_the_properties_before_the_action_ends(
 
 
 @among_artifacts
-async def test_an_artifact_is_focused_by_its_id_only(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_artifact_is_focused_by_its_id_only(one, two, clock):
     c = one.make("c", "Counter")
     for name in ("focus", "stopFocus"):
         for wrong in (atom("c"), "c", 7, Var("X")):
@@ -113,9 +104,7 @@ async def test_an_artifact_is_focused_by_its_id_only(one: Robot, two: Robot, clo
 
 
 @among_artifacts
-async def test_the_end_of_the_focus_takes_the_beliefs_away(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_the_end_of_the_focus_takes_the_beliefs_away(one, two, clock):
     c = one.make("c", "Counter")
     assert one.do("stopFocus", c).success
     one.do("focus", c)
@@ -128,9 +117,7 @@ async def test_the_end_of_the_focus_takes_the_beliefs_away(
 
 
 @among_artifacts
-async def test_a_disposed_artifact_leaves_no_beliefs_in_any_agent(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_disposed_artifact_leaves_no_beliefs_in_any_agent(one, two, clock):
     c = one.make("c", "Counter")
     one.do("focus", c)
     two.do("focus", c)
@@ -143,9 +130,7 @@ async def test_a_disposed_artifact_leaves_no_beliefs_in_any_agent(
 
 
 @among_artifacts
-async def test_focus_when_available_waits_for_the_artifact(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_focus_when_available_waits_for_the_artifact(one, two, clock):
     waiting = one.begin(action("focusWhenAvailable", "c"))
     assert waiting not in one.completions
     assert one.activity.pending == 1
@@ -158,7 +143,7 @@ async def test_focus_when_available_waits_for_the_artifact(
 
 
 @among_artifacts
-async def test_waiting_for_an_artifact_can_be_cancelled(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_waiting_for_an_artifact_can_be_cancelled(one, two, clock):
     waiting = one.begin(action("focusWhenAvailable", "c"))
     one.body.suspend_act(waiting)
     one.body.resume_act(waiting)
@@ -170,7 +155,7 @@ async def test_waiting_for_an_artifact_can_be_cancelled(one: Robot, two: Robot, 
 
 
 @among_artifacts
-async def test_linked_artifacts_work_together(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_linked_artifacts_work_together(one, two, clock):
     switch, lamp = one.make("s", "Switch"), one.make("l", "Lamp")
     one.do("focus", lamp)
     assert reason_of(one.do("linkArtifacts", switch, "in", lamp)) == 'unknown_port("in")'
@@ -182,7 +167,7 @@ async def test_linked_artifacts_work_together(one: Robot, two: Robot, clock: Vir
 
 
 @among_artifacts
-async def test_workspaces_are_created_joined_and_quit(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_workspaces_are_created_joined_and_quit(one, two, clock):
     one.make("c", "Counter", 1)
     assert one.do("createWorkspace", "lab").success
     assert reason_of(one.do("createWorkspace", "lab")) == 'workspace_already_present("/main/lab")'
@@ -210,7 +195,7 @@ async def test_workspaces_are_created_joined_and_quit(one: Robot, two: Robot, cl
 
 
 @among_artifacts
-async def test_each_intention_has_a_current_workspace(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_each_intention_has_a_current_workspace(one, two, clock):
     one.make("c", "Counter", 1)
     one.do("createWorkspace", "lab")
     one.do("joinWorkspace", "lab", intention=1)
@@ -222,9 +207,7 @@ async def test_each_intention_has_a_current_workspace(one: Robot, two: Robot, cl
 
 
 @among_artifacts
-async def test_a_path_names_an_artifact_of_another_workspace(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_path_names_an_artifact_of_another_workspace(one, two, clock):
     one.do("createWorkspace", "lab")
     made = one.make("lab/c", "Counter", 5)
     assert one.ask("lookupArtifact", "/main/lab/c") is made
@@ -233,16 +216,14 @@ async def test_a_path_names_an_artifact_of_another_workspace(
 
 
 @among_artifacts
-async def test_an_agent_can_print_through_the_console(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_agent_can_print_through_the_console(one, two, clock):
     assert one.do("println", "X: ", 3, atom("a"), Var("Y")).success
     assert one.do("print", "x").success
     assert one.lines == ["X: 3aY<no-value>", "x"]
 
 
 @among_artifacts
-async def test_an_agent_enters_its_home_with_the_first_action(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_agent_enters_its_home_with_the_first_action(one, two, clock):
     assert one.log == []
     one.do("println")
     assert one.log[0].endswith('main,"/main")')
@@ -251,7 +232,7 @@ async def test_an_agent_enters_its_home_with_the_first_action(
 
 
 @among_artifacts
-async def test_a_project_can_let_agents_join_and_focus(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_project_can_let_agents_join_and_focus(one, two, clock):
     one.do("createWorkspace", "lab")
     made = one.make("lab/c", "Counter", 5)
     presence = two.body
@@ -264,9 +245,7 @@ async def test_a_project_can_let_agents_join_and_focus(one: Robot, two: Robot, c
 
 
 @among_artifacts
-async def test_an_agent_that_has_ended_waits_for_no_artifact(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_agent_that_has_ended_waits_for_no_artifact(one, two, clock):
     presence = two.body
     presence.enter()
     told: list[object] = []

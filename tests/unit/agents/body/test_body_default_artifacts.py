@@ -6,7 +6,6 @@ from body_lab import Robot, action, among_artifacts, detail_of, message_of, reas
 
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import NIL, Term, Var, atom, list_items, structure
-from jacaros.runtime.clock import VirtualClock
 
 
 def seen(robot: Robot, name: str) -> list[str]:
@@ -29,7 +28,7 @@ def annotations(robot: Robot, name: str) -> list[str]:
 
 
 @among_artifacts
-async def test_the_workspace_shows_what_is_in_it(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_the_workspace_shows_what_is_in_it(one, two, clock):
     workspace = one.ask("lookupArtifact", "workspace")
     one.do("focus", workspace)
     default = ["blackboard", "console", "manrepo", "system", "workspace"]
@@ -52,9 +51,7 @@ async def test_the_workspace_shows_what_is_in_it(one: Robot, two: Robot, clock: 
 
 
 @among_artifacts
-async def test_what_an_agent_focuses_is_a_property_of_its_body(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_what_an_agent_focuses_is_a_property_of_its_body(one, two, clock):
     c, d = one.make("c", "Counter"), one.make("d", "Counter")
     one.do("focus", c)
     assert annotations(one, "focusing") == [
@@ -76,9 +73,7 @@ async def test_what_an_agent_focuses_is_a_property_of_its_body(
 
 
 @among_artifacts
-async def test_an_agent_sees_its_own_body_and_session_once(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_agent_sees_its_own_body_and_session_once(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     before = len(one.percepts)
     for name in ("body_one", "session_one"):
@@ -87,9 +82,7 @@ async def test_an_agent_sees_its_own_body_and_session_once(
 
 
 @among_artifacts
-async def test_where_an_agent_is_is_a_property_of_its_session(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_where_an_agent_is_is_a_property_of_its_session(one, two, clock):
     one.do("createWorkspace", "lab")
     two.do("focus", two.ask("lookupArtifact", "session_one"))
     lab = one.ask("joinWorkspace", "lab")
@@ -108,9 +101,7 @@ async def test_where_an_agent_is_is_a_property_of_its_session(
 
 
 @among_artifacts
-async def test_actions_may_be_directed_to_the_default_artifacts(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_actions_may_be_directed_to_the_default_artifacts(one, two, clock):
     one.do("createWorkspace", "lab")
     one.do("joinWorkspace", "lab")
     one.do("joinWorkspace", "/main")
@@ -132,7 +123,7 @@ async def test_actions_may_be_directed_to_the_default_artifacts(
 
 
 @among_artifacts
-async def test_a_body_obeys_its_owner_only(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_body_obeys_its_owner_only(one, two, clock):
     c = one.make("c", "Counter")
     two.do("println")
     body = one.ask("lookupArtifact", "body_two")
@@ -145,15 +136,13 @@ async def test_a_body_obeys_its_owner_only(one: Robot, two: Robot, clock: Virtua
 
 
 @among_artifacts
-async def test_an_own_body_does_only_what_a_body_does(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_own_body_does_only_what_a_body_does(one, two, clock):
     body = one.ask("lookupArtifact", "body_one")
     assert reason_of(one.do("joinWorkspace", "/main", artifact_id=body)).startswith("unknown_operation(")
 
 
 @among_artifacts
-async def test_make_artifact_obeys_the_workspace_that_it_is_directed_to(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_make_artifact_obeys_the_workspace_that_it_is_directed_to(one, two, clock):
     one.do("createWorkspace", "lab")
     lab = one.ask("joinWorkspace", "lab")
     one.do("joinWorkspace", "/main")
@@ -164,7 +153,7 @@ async def test_make_artifact_obeys_the_workspace_that_it_is_directed_to(
 
 
 @among_artifacts
-async def test_workspaces_are_found_through_links(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_workspaces_are_found_through_links(one, two, clock):
     for path in ("a", "a/deep", "b"):
         assert one.do("createWorkspace", path).success
     assert one.do("linkWorkspaces", "/main/b", "../main/a", "near").success
@@ -187,7 +176,7 @@ async def test_workspaces_are_found_through_links(one: Robot, two: Robot, clock:
 
 
 @among_artifacts
-async def test_what_needs_other_processes_says_so(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_what_needs_other_processes_says_so(one, two, clock):
     for name, *arguments in (
         ("createWorkspace", "w", "http://lab.example"),
         ("createWorkspaceWithTopology", "w", "grid"),
@@ -203,7 +192,7 @@ async def test_what_needs_other_processes_says_so(one: Robot, two: Robot, clock:
 
 
 @among_artifacts
-async def test_quitting_ends_everything_in_a_workspace(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_quitting_ends_everything_in_a_workspace(one, two, clock):
     one.do("createWorkspace", "lab")
     lab = one.ask("joinWorkspace", "lab")
     inside = one.make("c", "Counter")
@@ -222,9 +211,7 @@ async def test_quitting_ends_everything_in_a_workspace(one: Robot, two: Robot, c
 
 
 @among_artifacts
-async def test_an_agent_that_quit_the_environment_can_join_again(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_agent_that_quit_the_environment_can_join_again(one, two, clock):
     one.do("focus", one.make("c", "Counter"))
     one.do("createWorkspace", "lab")
     one.do("joinWorkspace", "lab")
@@ -245,7 +232,7 @@ async def test_an_agent_that_quit_the_environment_can_join_again(
 
 
 @among_artifacts
-async def test_a_pattern_lets_pass_what_fits_it(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_pattern_lets_pass_what_fits_it(one, two, clock):
     c = one.make("c", "Counter")
     assert one.do("focus", c, structure("count", 2.0)).success
     assert two.do("focus", c, term_list(atom("tick"))).success
@@ -263,7 +250,7 @@ def term_list(*items: Term) -> list[Term]:
 
 
 @among_artifacts
-async def test_a_pattern_with_a_variable_fits_any_value(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_pattern_with_a_variable_fits_any_value(one, two, clock):
     c = one.make("c", "Counter", 5)
     assert one.do("focus", c, structure("count", Var())).success
     one.do("inc")
@@ -274,7 +261,7 @@ async def test_a_pattern_with_a_variable_fits_any_value(one: Robot, two: Robot, 
 
 
 @among_artifacts
-async def test_an_invalid_filter_is_a_wrong_argument(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_invalid_filter_is_a_wrong_argument(one, two, clock):
     c = one.make("c", "Counter")
     for wrong in (3, "count", NIL, [3]):
         failure = one.do("focus", c, wrong)
@@ -284,7 +271,7 @@ async def test_an_invalid_filter_is_a_wrong_argument(one: Robot, two: Robot, clo
 
 
 @among_artifacts
-async def test_actions_that_wait_can_be_given_a_time(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_actions_that_wait_can_be_given_a_time(one, two, clock):
     one.make("c", "Counter")
     waiting = one.begin(action("focusWhenAvailable", "late", timeout=500))
     taking = one.begin(action("take", timeout=200))
@@ -302,7 +289,7 @@ async def test_actions_that_wait_can_be_given_a_time(one: Robot, two: Robot, clo
 
 
 @among_artifacts
-async def test_an_invalid_time_is_refused(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_invalid_time_is_refused(one, two, clock):
     for wrong in (atom("soon"), -1, Var("X")):
         failure = one.do("println", timeout=wrong)
         assert "timeout: expected a number of milliseconds" in message_of(failure)
@@ -310,7 +297,7 @@ async def test_an_invalid_time_is_refused(one: Robot, two: Robot, clock: Virtual
 
 
 @among_artifacts
-async def test_two_agents_cannot_make_the_same_artifact(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_two_agents_cannot_make_the_same_artifact(one, two, clock):
     one.do("println"), two.do("println")
     assert one.do("makeArtifact", "c", "Counter").success
     for name in ("c", "workspace", "body_one"):
@@ -320,16 +307,14 @@ async def test_two_agents_cannot_make_the_same_artifact(one: Robot, two: Robot, 
 
 
 @among_artifacts
-async def test_a_manual_can_be_read(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_a_manual_can_be_read(one, two, clock):
     assert "inc(by" in str(one.ask("getManualContent", "Counter"))
     unknown = one.do("getManualContent", "Countr", Var())
     assert reason_of(unknown) == 'makeArtifactFailure("unknown_artifact_template","Countr")'
 
 
 @among_artifacts
-async def test_the_artifacts_of_a_body_that_is_closed_are_gone(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_the_artifacts_of_a_body_that_is_closed_are_gone(one, two, clock):
     one.do("println")
     body = two.ask("lookupArtifact", "body_one")
     two.do("focus", body)

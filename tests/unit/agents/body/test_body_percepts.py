@@ -25,7 +25,7 @@ def lines(observation: Observation, namespace: str | None = None) -> list[str]:
     return [f"{p.kind} {text(p.literal)}" for p in writer().percepts(observation, namespace)]
 
 
-def test_signals_come_first_then_changes_additions_and_removals() -> None:
+def test_signals_come_first_then_changes_additions_and_removals():
     observation = Observation(
         LAMP,
         signals=(Signal("tick", (1,)), Signal("tock", ())),
@@ -38,7 +38,7 @@ def test_signals_come_first_then_changes_additions_and_removals() -> None:
     ]  # fmt: skip
 
 
-def test_the_annotations_name_the_source_of_a_percept() -> None:
+def test_annotations_name_the_source_in_order_and_those_of_the_property():
     signal, added = writer().percepts(Observation(LAMP, (Signal("tick", ()),), added=(observable("on"),)))
     names = [a[0].name for a in added.annotations]
     assert names == ["artifact_id", "artifact_name", "percept_type", "source", "workspace"]
@@ -49,46 +49,37 @@ def test_the_annotations_name_the_source_of_a_percept() -> None:
     assert by_name["percept_type"] == (atom("obs_prop"),)
     assert by_name["workspace"] == ("/main/lab", Reference(MAIN))
     assert structure("percept_type", atom("obs_ev")) in signal.annotations
-
-
-def test_the_reference_to_an_artifact_is_always_the_same() -> None:
-    write = writer()
-    first, second = [
-        write.percepts(Observation(LAMP, added=(observable("on", i),)))[0].annotations for i in (1, 2)
-    ]
-    assert first is second
-
-
-def test_annotations_of_the_property_are_added() -> None:
     marked = observable("on", annotations=(Structure("unit", (Atom("volt"),)), Atom("a")))
     (percept,) = writer().percepts(Observation(LAMP, added=(marked,)))
     assert atom("a") in percept.annotations
     assert structure("unit", atom("volt")) in percept.annotations
     assert percept.annotations == annotation_set(percept.annotations)
-
-
-def test_percepts_go_to_the_namespace_of_the_focus() -> None:
-    assert lines(Observation(LAMP, added=(observable("on", 1),)), "lab") == ["add lab::on(1)"]
-
-
-def test_a_missing_value_is_the_atom_null() -> None:
-    assert lines(Observation(LAMP, added=(observable("pose", None, [1, None]),))) == [
-        "add pose(null,[1,null])"
-    ]
-
-
-def test_a_percept_carries_the_cause_of_its_observation() -> None:
-    why = Cause(1, 0, "sample", "odom")
-    assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
-
-
-def test_the_annotations_are_in_the_order_in_which_they_are_kept() -> None:
     signal_of = Observation(LAMP, (Signal("click", ()),), added=(observable("on"),))
     for percept in writer().percepts(signal_of):
         assert percept.annotations == annotation_set(percept.annotations)
 
 
-def test_percepts_about_the_agent_are_like_properties_of_an_artifact() -> None:
+def test_a_percept_has_one_reference_and_its_cause():
+    write = writer()
+    first, second = [
+        write.percepts(Observation(LAMP, added=(observable("on", i),)))[0].annotations for i in (1, 2)
+    ]
+    assert first is second
+    why = Cause(1, 0, "sample", "odom")
+    assert writer().percepts(Observation(LAMP, added=(observable("on"),), cause=why))[0].cause is why
+
+
+def test_missing_large_and_namespaced_values():
+    assert lines(Observation(LAMP, added=(observable("on", 1),)), "lab") == ["add lab::on(1)"]
+    assert lines(Observation(LAMP, added=(observable("pose", None, [1, None]),))) == [
+        "add pose(null,[1,null])"
+    ]
+    assert lines(Observation(LAMP, added=(observable("n", 10**400, -(10**400)),))) == [
+        "add n(Infinity,-Infinity)"
+    ]
+
+
+def test_percepts_about_the_agent_are_like_properties_of_an_artifact():
     session = ArtifactId("session_bob", "AgentSessionArtifact", "/main", 9, None)
     percept = writer().own("add", session, "joinedWsp", Reference(MAIN), atom("main"))
     assert [text(a).partition("(")[0] for a in percept.annotations] == [
@@ -101,7 +92,7 @@ def test_percepts_about_the_agent_are_like_properties_of_an_artifact() -> None:
     assert "artifact_name(session_bob)" in [text(a) for a in percept.annotations]
 
 
-def test_what_is_written_of_a_property_is_the_same_for_all_and_at_its_end() -> None:
+def test_what_is_written_of_a_property_is_the_same_for_all_and_at_its_end():
     one, two, write = observable("power", 1, "mains"), observable("power", 2.5, Atom("off")), writer()
     change = Observation(LAMP, changed=((one, two),))
     first = write.percepts(change)
@@ -114,9 +105,3 @@ def test_what_is_written_of_a_property_is_the_same_for_all_and_at_its_end() -> N
         "lamps::power(2.5,off)",
     ]
     assert [text(p.literal) for p in write.percepts(change)] == ['power(1,"mains")', "power(2.5,off)"]
-
-
-def test_numbers_too_large_are_infinite() -> None:
-    assert lines(Observation(LAMP, added=(observable("n", 10**400, -(10**400)),))) == [
-        "add n(Infinity,-Infinity)"
-    ]

@@ -3,7 +3,6 @@
 from body_lab import Robot, among_artifacts, detail_of, message_of, reason_of
 
 from jacaros.agents.terms.values import Reference, Var, atom
-from jacaros.runtime.clock import VirtualClock
 
 
 def count(robot: Robot, **directions: object) -> object:
@@ -11,9 +10,7 @@ def count(robot: Robot, **directions: object) -> object:
 
 
 @among_artifacts
-async def test_own_artifacts_come_first_the_oldest_of_them(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_own_artifacts_come_first_the_oldest_of_them(one, two, clock):
     two.make("theirs", "Counter", 0)
     first, second = one.make("first", "Counter", 1), one.make("second", "Counter", 2)
     one.do("focus", second)
@@ -23,7 +20,7 @@ async def test_own_artifacts_come_first_the_oldest_of_them(
 
 
 @among_artifacts
-async def test_focused_artifacts_come_before_any_other(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_focused_artifacts_come_before_any_other(one, two, clock):
     one.make("a", "Counter", 1)
     b, c = one.make("b", "Counter", 2), one.make("c", "Counter", 3)
     assert count(two) == 1.0
@@ -33,7 +30,7 @@ async def test_focused_artifacts_come_before_any_other(one: Robot, two: Robot, c
 
 
 @among_artifacts
-async def test_an_annotation_directs_the_action(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_an_annotation_directs_the_action(one, two, clock):
     one.make("a", "Counter", 1)
     b = one.make("b", "Counter", 2)
     assert count(one, artifact_id=b) == count(one, aid=b) == 2.0
@@ -44,9 +41,7 @@ async def test_an_annotation_directs_the_action(one: Robot, two: Robot, clock: V
 
 
 @among_artifacts
-async def test_a_directed_action_without_target_fails_with_a_reason(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_directed_action_without_target_fails_with_a_reason(one, two, clock):
     a = one.make("motor", "Counter", 1)
     assert "did you mean `motor`?" in message_of(one.do("read", Var(), artifact_name="moter"))
     failure = one.do("raed", Var(), artifact_id=a)
@@ -67,9 +62,7 @@ async def test_a_directed_action_without_target_fails_with_a_reason(
 
 
 @among_artifacts
-async def test_the_current_workspace_comes_before_home_and_others(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_the_current_workspace_comes_before_home_and_others(one, two, clock):
     for number, name in enumerate(("lab", "attic"), start=2):
         one.do("createWorkspace", f"/main/{name}")
         one.do("joinWorkspace", f"/main/{name}")
@@ -84,9 +77,7 @@ async def test_the_current_workspace_comes_before_home_and_others(
 
 
 @among_artifacts
-async def test_a_namespace_means_the_artifacts_focused_in_it(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_a_namespace_means_the_artifacts_focused_in_it(one, two, clock):
     one.make("a", "Counter", 1)
     b = one.make("b", "Counter", 2)
     assert one.do("ns::focus", b).success
@@ -102,8 +93,8 @@ async def test_a_namespace_means_the_artifacts_focused_in_it(
 
 @among_artifacts
 async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_for_its_number_of_arguments(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+    one, two, clock
+):
     one.make("left", "Lamp")
     right = one.make("right", "Counter")
     one.make("total", "Total")
@@ -115,16 +106,14 @@ async def test_an_action_for_the_artifacts_of_a_namespace_does_not_go_elsewhere_
 
 
 @among_artifacts
-async def test_the_id_of_an_artifact_takes_precedence_over_other_annotations(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_the_id_of_an_artifact_takes_precedence_over_other_annotations(one, two, clock):
     one.make("a", "Counter", 1)
     b = one.make("b", "Counter", 2)
     assert count(one, artifact_id=b, artifact_name="a", wsp="nowhere") == 2.0
 
 
 @among_artifacts
-async def test_the_name_of_an_artifact_may_be_a_path(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_the_name_of_an_artifact_may_be_a_path(one, two, clock):
     one.make("a", "Counter", 1)
     one.do("createWorkspace", "lab")
     one.do("joinWorkspace", "lab")
@@ -134,9 +123,7 @@ async def test_the_name_of_an_artifact_may_be_a_path(one: Robot, two: Robot, clo
 
 
 @among_artifacts
-async def test_an_exact_number_of_arguments_wins_over_any_number(
-    one: Robot, two: Robot, clock: VirtualClock
-) -> None:
+async def test_an_exact_number_of_arguments_wins_over_any_number(one, two, clock):
     one.make("t", "Total")
     one.make("c", "Counter", 1)
     assert one.do("inc", 5).success
@@ -144,5 +131,5 @@ async def test_an_exact_number_of_arguments_wins_over_any_number(
 
 
 @among_artifacts
-async def test_ids_of_other_things_are_refused(one: Robot, two: Robot, clock: VirtualClock) -> None:
+async def test_ids_of_other_things_are_refused(one, two, clock):
     assert "expected an artifact" in message_of(one.do("read", Var(), artifact_id=Reference(object())))

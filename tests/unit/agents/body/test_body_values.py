@@ -34,35 +34,29 @@ def term(value: object) -> object:
 @pytest.mark.parametrize(
     ("number", "expected"), [(3.0, 3), (-4.0, -4), (0.5, 0.5), (3e9, 3_000_000_000), (1e20, 10**20)]
 )
-def test_a_whole_number_arrives_as_an_integer(number: float, expected: float) -> None:
+def test_a_whole_number_arrives_as_an_integer(number, expected):
     value = to_value(number)
     assert value == expected
     assert type(value) is type(expected)
 
 
-def test_numbers_come_back_as_doubles() -> None:
+def test_numbers_come_back_as_doubles():
     for value in (3, 3.0, -1, 10**20, 0.1):
         assert type(term(value)) is float
         assert term(value) == value
     assert term(10**400) == math.inf
     assert term(-(10**400)) == -math.inf
-
-
-def test_numbers_without_a_whole_value_stay_as_they_are() -> None:
     assert to_value(math.inf) == math.inf
     assert math.isnan(to_value(math.nan))
 
 
-def test_truth_values_are_the_atoms_true_and_false() -> None:
+def test_truth_values_strings_and_atoms_stay_apart():
     assert to_value(TRUE) is True
     assert to_value(FALSE) is False
     assert term(True) is TRUE
     assert term(False) is FALSE
     assert term(Atom("true")) is TRUE
     assert term(numpy.bool_(False)) is FALSE
-
-
-def test_strings_and_atoms_stay_apart() -> None:
     assert type(to_value(String("kitchen"))) is str
     assert to_value(atom("kitchen")) == Atom("kitchen")
     assert type(to_value(atom("kitchen"))) is Atom
@@ -70,38 +64,31 @@ def test_strings_and_atoms_stay_apart() -> None:
     assert term(Atom("kitchen")) is atom("kitchen")
 
 
-def test_an_atom_that_is_not_a_plain_word_is_quoted() -> None:
+def test_atoms_that_are_not_plain_words_are_quoted_and_prefixed():
     assert term(Atom("Living room")) is atom("'Living room'")
     assert to_value(atom("'Living room'")) == "Living room"
     assert atom_of("Odom") is atom("'Odom'")
     assert atom_of("odom_1") is atom("odom_1")
     assert atom_of("not") is atom("'not'")
-
-
-def test_negation_and_namespace_are_written_in_front_of_the_functor() -> None:
     negated = (functor("p", 1, True, "lab"), 1.0)
     assert to_value(negated) == Structure("lab::~p", (1,))
     assert term(Structure("lab::~p", (1,))) == negated
 
 
-def test_structures_and_lists_are_converted_inside() -> None:
+def test_structures_and_long_lists_are_converted_inside():
     nested = structure("at", 1.0, make_list([String("a"), atom("b"), NIL]))
     value = to_value(nested)
     assert value == Structure("at", (1, ["a", Atom("b"), []]))
     assert term(value) == nested
-
-
-def test_a_long_list_does_not_recurse() -> None:
     items = to_value(make_list([float(i) for i in range(20_000)]))
     assert items == list(range(20_000))
     assert sum(list_items(term(items))) == sum(range(20_000))
-
-
-def test_annotations_are_dropped() -> None:
     assert to_value(Annotated(atom("a"), (atom("b"),))) == Atom("a")
+    relation = (functor("<", 2, kind=3), 1.0, 2.0)
+    assert to_value(relation) == "(1 < 2)"
 
 
-def test_an_unbound_variable_becomes_an_output() -> None:
+def test_an_unbound_variable_becomes_an_output_and_none_a_variable():
     outputs: list[tuple[Var, Out]] = []
     x, y, bound = Var("X"), Var("Y"), Var("Z")
     bound.ref = 3.0
@@ -110,9 +97,19 @@ def test_an_unbound_variable_becomes_an_output() -> None:
     assert values[0] is outputs[0][1]
     assert values[1] == 3
     assert values[2] == [outputs[1][1]]
+    assert term(None).__class__ is Var
+    out = Out()
+    assert term(out).__class__ is Var
+    out.set("x")
+    assert term(out) == String("x")
 
 
-def test_one_artifact_has_one_reference() -> None:
+def test_other_objects_are_opaque_references():
+    thing = object()
+    reference = term(thing)
+    assert isinstance(reference, Reference)
+    assert to_value(reference) is thing
+    assert reference == term(thing)
     references = References()
     artifact = ArtifactId("c", "Counter", "/main", 1, None)
     reference = to_term(artifact, references)
@@ -122,15 +119,7 @@ def test_one_artifact_has_one_reference() -> None:
     assert to_term(artifact, references) == reference
 
 
-def test_other_objects_are_opaque() -> None:
-    thing = object()
-    reference = term(thing)
-    assert isinstance(reference, Reference)
-    assert to_value(reference) is thing
-    assert reference == term(thing)
-
-
-def test_numpy_values_and_dataclasses_are_turned_into_terms() -> None:
+def test_numpy_values_and_dataclasses_are_turned_into_terms():
     @dataclasses.dataclass
     class Pose:
         x: float
@@ -141,26 +130,10 @@ def test_numpy_values_and_dataclasses_are_turned_into_terms() -> None:
     assert text(term(Pose(1.5, "hall"))) == 'pose(1.5,"hall")'
 
 
-def test_a_map_becomes_a_dictionary_and_back() -> None:
+def test_maps_and_sets_become_dictionaries_and_sorted_lists():
     value = to_value(MapValue({atom("a"): 1.0, make_list([2.0]): String("b")}))
     assert value == {Atom("a"): 1, (2,): "b"}
     back = term(value)
     assert isinstance(back, MapValue)
     assert back.items == {atom("a"): 1.0, make_list([2.0]): String("b")}
-
-
-def test_a_set_becomes_a_sorted_list() -> None:
     assert to_value(SetValue({2.0: None, 1.0: None})) == [1, 2]
-
-
-def test_formulae_and_plans_are_carried_as_text() -> None:
-    relation = (functor("<", 2, kind=3), 1.0, 2.0)
-    assert to_value(relation) == "(1 < 2)"
-
-
-def test_none_is_a_fresh_variable_and_an_output_is_its_value() -> None:
-    assert term(None).__class__ is Var
-    out = Out()
-    assert term(out).__class__ is Var
-    out.set("x")
-    assert term(out) == String("x")

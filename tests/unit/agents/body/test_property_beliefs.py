@@ -77,9 +77,7 @@ def lines(tmp_path: Path) -> Lines:
     [("list(range(1000))", "list(range(2000))"), ("[[]]*400", "{'a': 1}"), ("{'a': [1]}", "{'a': [2]}")],
 )
 @pytest.mark.parametrize("namespace", ["", "ns::"])
-def test_long_lists_and_maps_come_and_go_as_other_values_do(
-    lines: Lines, namespace: str, first: str, second: str
-) -> None:
+def test_long_lists_and_maps_come_and_go_as_other_values_do(lines, namespace, first, second):
     program = f"""
         !go.
         +!go
@@ -92,7 +90,7 @@ def test_long_lists_and_maps_come_and_go_as_other_values_do(
     assert lines(main=program) == [f"[main] {n}" for n in (1, 1, 1, 0)]
 
 
-def test_a_list_of_a_million_numbers_can_be_perceived(lines: Lines) -> None:
+def test_a_list_of_a_million_numbers_can_be_perceived(lines):
     program = """
         !go.
         +!go <- makeArtifact("b", "Box", ["list(range(300000))"], Id); focus(Id);
@@ -101,7 +99,7 @@ def test_a_list_of_a_million_numbers_can_be_perceived(lines: Lines) -> None:
     assert lines(main=program) == ["[main] 300000", "[main] 0"]
 
 
-def test_every_agent_has_its_own_copy_of_a_map(lines: Lines) -> None:
+def test_every_agent_has_its_own_copy_of_a_map(lines):
     one = """
         !go.
         +!go <- makeArtifact("b", "Box", ["{'a': 1}"], Id); focus(Id); .send(two, achieve, look(Id)); .wait(10);
@@ -111,7 +109,7 @@ def test_every_agent_has_its_own_copy_of_a_map(lines: Lines) -> None:
     assert lines(one=one, two=two) == ['[one] {"a"->1,"b"->2}', '[two] {"a"->1}']
 
 
-def test_a_reference_survives_beliefs_and_messages_whatever_the_object_does(lines: Lines) -> None:
+def test_a_reference_survives_beliefs_and_messages_whatever_the_object_does(lines):
     one = """
         !go.
         +!go <- makeArtifact("b", "Box", ["rude"], Id); focus(Id);
@@ -126,7 +124,7 @@ def test_a_reference_survives_beliefs_and_messages_whatever_the_object_does(line
     ]  # fmt: skip
 
 
-def test_a_property_is_taken_away_by_a_pattern_but_not_by_its_literal(lines: Lines) -> None:
+def test_a_property_is_taken_away_by_a_pattern_but_not_by_its_literal(lines):
     program = """
         !go.
         +!go <- makeArtifact("b", "Box", ["1"], Id); focus(Id);
@@ -141,7 +139,7 @@ def test_a_property_is_taken_away_by_a_pattern_but_not_by_its_literal(lines: Lin
     assert lines(main=program) == [f"[main] {x}" for x in ("[1]", "[1]", "[1]", "[]", "[2]", "[]")]
 
 
-def test_beliefs_go_before_the_belief_that_the_artifact_is_focused(lines: Lines) -> None:
+def test_beliefs_go_before_the_belief_that_the_artifact_is_focused(lines):
     program = """
         !go.
         +!go <- makeArtifact("b", "Box", ["1"], Id); focus(Id); .wait(10); stopFocus(Id); .wait(10); .stopMAS.
@@ -164,7 +162,7 @@ TWO_BOXES = """
 """
 
 
-def test_two_artifacts_with_equal_values_are_two_beliefs_with_their_own_annotations(lines: Lines) -> None:
+def test_two_artifacts_with_equal_values_are_two_beliefs_with_their_own_annotations(lines):
     program = """
 of(Box) :- shown(1)[artifact_name(Box)].
 +!go : .count(shown(_), 2) & .findall(B, shown(1)[artifact_name(B)], Bs) & .findall(B, of(B), Same)
@@ -177,7 +175,7 @@ of(Box) :- shown(1)[artifact_name(Box)].
     assert lines(one=TWO_BOXES + program) == ["[one] [right,left]", "[one] [right,left]", "[one] [2,2]"]
 
 
-def test_a_belief_in_one_of_two_equal_properties_goes_alone(lines: Lines) -> None:
+def test_a_belief_in_one_of_two_equal_properties_goes_alone(lines):
     program = """
 +!go
   <- show("2")[artifact_name(left)];
@@ -197,7 +195,7 @@ def test_a_belief_in_one_of_two_equal_properties_goes_alone(lines: Lines) -> Non
     ]
 
 
-def test_a_clone_believes_in_two_equal_properties(lines: Lines) -> None:
+def test_a_clone_believes_in_two_equal_properties(lines):
     program = """
 +!go <- .clone(two); .send(two, achieve, tell).
 +!tell : .count(shown(1), N) <- .print(N).
@@ -205,7 +203,7 @@ def test_a_clone_believes_in_two_equal_properties(lines: Lines) -> None:
     assert lines(one=TWO_BOXES + program) == ["[two] 2"]
 
 
-def test_the_name_of_a_caller_is_the_atom_that_agents_know(lines: Lines) -> None:
+def test_the_name_of_a_caller_is_the_atom_that_agents_know(lines):
     program = """
 !go.
 +!go <- makeArtifact("b", "Box", ["0"], Id); focus(Id); claim.

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recording_host import mind, printed
+from recording_host import printed, programs
 
 BELIEFS = """
 p(1)[a(1), b(2), source(bob)].
@@ -28,7 +28,7 @@ ANSWER = "t(X, Y, S, R, T)"
 
 @pytest.mark.parametrize("rules", ["", RULES], ids=["facts", "rules"])
 @pytest.mark.parametrize("pattern", PATTERNS)
-def test_the_same_answers_as_a_formula_that_is_known_only_at_run_time(pattern: str, rules: str) -> None:
+def test_the_same_answers_as_a_formula_that_is_known_only_at_run_time(pattern, rules):
     program = f"""{BELIEFS}{rules}
     !start.
     +!start <-
@@ -41,59 +41,44 @@ def test_the_same_answers_as_a_formula_that_is_known_only_at_run_time(pattern: s
     assert written == known
 
 
-def test_a_variable_that_has_a_value_narrows_the_search() -> None:
+def test_a_variable_that_has_a_value_narrows_the_search():
     assert printed(
         BELIEFS
         + "!start. +!start : p(X)[a(2)] & p(X)[a(Y)] & Y < 2 & p(2)[source(S)] & S \\== bob <- .print(X, Y, S)."
     ) == ["31carl"]
 
 
-def test_bindings_are_undone_between_two_matches() -> None:
-    assert printed(
-        "m[source(bob), source(carl)]. !g(Z). +!g(Z) : m[source(Z)] & Z == carl <- .print(Z). +!g(Z) <- .print(none)."
-    ) == ["carl"]
-
-
-def test_only_the_first_match_counts_in_a_trigger() -> None:
-    """One unifier for each plan: when its context fails, the next plan has its turn."""
-    program = """
+PROGRAMS = """
+bindings are undone between two matches => carl
+    m[source(bob), source(carl)]. !g(Z). +!g(Z) : m[source(Z)] & Z == carl <- .print(Z). +!g(Z) <- .print(none).
+only the first match counts in a trigger => secondbob
+    // One unifier for each plan: when its context fails, the next plan has its turn.
     !start.
     +!start <- +p(1)[source(bob), source(carl)].
     +p(X)[source(S)] : S == carl <- .print(first, S).
     +p(X)[source(S)] <- .print(second, S).
-    """
-    assert printed(program) == ["secondbob"]
-
-
-def test_several_annotations_of_a_trigger_are_found_together() -> None:
-    program = """
+several annotations of a trigger are found together => both2 | 1self | plain
     !start.
     +!start <- +p(1)[a(1), a(2), b(2)]; !g[x(1)]; !g[y].
     +p(X)[b(B), a(B)] <- .print(both, B).
     +!g[x(A), source(S)] <- .print(A, S).
     +!g[source(self)] <- .print(plain).
-    """
-    assert printed(program) == ["both2", "1self", "plain"]
-
-
-def test_the_reason_of_a_failure_is_an_annotation_of_its_event() -> None:
-    program = "!g. +!g <- .fail(why(7)). -!g[why(X), error(_)] <- .print(X)."
-    assert printed(program) == ["7"]
-
-
-def test_annotations_of_new_beliefs_are_sorted_as_those_of_formulae() -> None:
-    program = """
+the reason of a failure is an annotation of its event => 7
+    !g. +!g <- .fail(why(7)). -!g[why(X), error(_)] <- .print(X).
+annotations of new beliefs are sorted as those of formulae
+=> [a(2),source(bob),z] | [a,b,source(self)] | [a(1),a(2),source(self)] | [a(3),c,source,source(self)]
     !start(2).
     +!start(N) <-
       +p[z, a(N), source(bob)]; +p(1)[c, source, a(N + 1)]; +p(2)[a(N), a(1)]; +p(3)[b, a];
       for (p[|T]) { .print(T) }; for (p(_)[|T]) { .print(T) }.
-    """
-    assert printed(program) == [
-        "[a(2),source(bob),z]",
-        "[a,b,source(self)]",
-        "[a(1),a(2),source(self)]",
-        "[a(3),c,source,source(self)]",
-    ]
+beliefs may change while a loop goes through those with an annotation => 1 | 2 | 3
+    p(1)[a(1)]. p(2)[a(2)]. p(3)[a(3)]. !s. +!s <- for (p(X)[a(Y)]) { -p(X); +p(X + 10)[a(Y)]; .print(X) }.
+"""
+
+
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
 NAMES = st.sampled_from(["a(1)", "a(2)", "b(1)", "b(c)", "k", "source(bob)", "source(carl)", "a(f(1))"])
@@ -105,9 +90,7 @@ ASKED = st.sampled_from(["a(Y)", "b(Y)", "k", "source(Y)", "a(1)", "b(Z)", "a(f(
     st.lists(st.lists(NAMES, min_size=1, max_size=4), min_size=1, max_size=3),
     st.lists(ASKED, min_size=1, max_size=3, unique=True),
 )
-def test_whatever_is_asked_the_answers_are_those_of_the_general_search(
-    beliefs: list[list[str]], asked: list[str]
-) -> None:
+def test_whatever_is_asked_the_answers_are_those_of_the_general_search(beliefs, asked):
     facts = " ".join(f"p({i})[{', '.join(annotations)}]." for i, annotations in enumerate(beliefs))
     question = f"p(X)[{', '.join(asked)}]"
     program = f"""{facts}
@@ -118,11 +101,3 @@ def test_whatever_is_asked_the_answers_are_those_of_the_general_search(
     """
     written, known = printed(program)
     assert written == known
-
-
-def test_beliefs_may_change_while_a_loop_goes_through_those_with_an_annotation() -> None:
-    host = mind(
-        "p(1)[a(1)]. p(2)[a(2)]. p(3)[a(3)]. !s. +!s <- for (p(X)[a(Y)]) { -p(X); +p(X + 10)[a(Y)]; .print(X) }."
-    )
-    host.run()
-    assert host.printed == ["1", "2", "3"]

@@ -43,7 +43,7 @@ def selected(program: str, actions: dict[str, InternalAction] | None = None) -> 
     return frame
 
 
-def test_a_traceback_shows_file_and_line_of_the_agent_program() -> None:
+def test_a_traceback_shows_file_and_line_of_the_agent_program():
     actions = {".bad": InternalAction(".bad", broken)}
     frame = selected("\n\n+!g(X) <-\n  .bad(X).", actions)
     step = frame[0]
@@ -54,15 +54,12 @@ def test_a_traceback_shows_file_and_line_of_the_agent_program() -> None:
     assert ("robot.asl", 4) in places
 
 
-def test_position_and_bindings_of_a_frame_can_be_read() -> None:
+def test_frames_can_be_read_and_goal_kinds_are_one_object():
     frame = selected("+!g(X) : Y = X + 1 <- .stop(Y, X).", {".stop": InternalAction(".stop", broken)})
     plan = frame[4]
     assert isinstance(plan, Plan)
     assert {name: frame[slot] for name, slot in plan.slots.items()} == {"X": 3.0, "Y": 4.0}
     assert plan.label is atom("p__0")
-
-
-def test_a_goal_kind_is_one_object() -> None:
     assert trigger("+", "!", functor("g", 1)) is trigger("+", "!", functor("g", 1))
     assert trigger("+", "!", functor("g", 1)).on_fail is trigger("-", "!", functor("g", 1))
 
@@ -95,7 +92,7 @@ def run_with(folder: Path, begin: Callable[[], None], end: Callable[[], None]) -
     return str(file)
 
 
-def test_a_profiler_sees_the_lines_of_the_agent_program(tmp_path: Path) -> None:
+def test_a_profiler_sees_the_lines_of_the_agent_program(tmp_path):
     profile = cProfile.Profile()
     file = run_with(tmp_path, profile.enable, profile.disable)
     calls = {
@@ -109,7 +106,7 @@ def test_a_profiler_sees_the_lines_of_the_agent_program(tmp_path: Path) -> None:
     assert not any(line >= 10 for line, _ in calls)
 
 
-def test_coverage_sees_the_lines_that_have_run(tmp_path: Path) -> None:
+def test_coverage_sees_the_lines_that_have_run(tmp_path):
     """By trace functions, as coverage tools do."""
     seen: set[tuple[str, int]] = set()
 
@@ -126,7 +123,7 @@ def test_coverage_sees_the_lines_that_have_run(tmp_path: Path) -> None:
     assert not lines & {10, 11}
 
 
-def test_steps_of_an_included_plan_carry_their_own_file(tmp_path: Path) -> None:
+def test_steps_of_an_included_plan_carry_their_own_file(tmp_path):
     (tmp_path / "first.asl").write_text(
         '{ include("second.asl") }\n\n+!g(X) : X > 5 <- .print(X).\n', encoding="utf-8"
     )
@@ -140,10 +137,7 @@ def test_steps_of_an_included_plan_carry_their_own_file(tmp_path: Path) -> None:
     tree, _ = load_program("first.asl", text, include)
     plans = [Plan(node, label_of(node, i)) for i, node in enumerate(tree.plans)]
     kind = trigger("+", "!", functor("g", 1))
-    actions = {
-        ".bad": InternalAction(".bad", broken),
-        ".print": InternalAction(".print", broken),
-    }
+    actions = {".bad": InternalAction(".bad", broken), ".print": InternalAction(".print", broken)}
     select = executed(write_select(kind, plans, actions))
     places = []
     for argument in (1.0, 6.0):

@@ -46,17 +46,13 @@ GOALS = {
 
 @pytest.mark.parametrize("limit", [1, 6, 1000])
 @pytest.mark.parametrize("goal", GOALS)
-def test_the_first_applicable_plan_is_the_same_with_and_without_a_table(
-    goal: str, limit: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_applicable_plan_is_the_same_with_and_without_a_table(goal, limit, monkeypatch):
     monkeypatch.setattr(compiler, "_WORTH_A_TABLE", limit)
     assert printed(f"!start. +!start <- !{goal}. {PLANS}") == [GOALS[goal]]
 
 
 @pytest.mark.parametrize("limit", [1, 1000])
-def test_an_argument_without_value_takes_that_of_the_first_plan(
-    limit: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_argument_without_value_takes_that_of_the_first_plan(limit, monkeypatch):
     monkeypatch.setattr(compiler, "_WORTH_A_TABLE", limit)
     program = f"!start. +!start <- !do(Z, 1); .print(Z); W = Y + 1; Y = 0; !do(W, 2). {PLANS}"
     assert printed(program) == ["b1", "b", "number2"]

@@ -5,7 +5,7 @@ import re
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recording_host import mind, printed
+from recording_host import mind, printed, programs
 
 from jacaros.agents.mind.state.budget import Options
 from jacaros.testing import run_project
@@ -54,7 +54,7 @@ QUESTIONS = [
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_the_same_answers_as_a_formula_that_is_known_only_at_run_time(question: str) -> None:
+def test_the_same_answers_as_a_formula_that_is_known_only_at_run_time(question):
     program = f"""{PROGRAM}
     !start.
     +!start <-
@@ -76,7 +76,7 @@ def unnamed(answers: str) -> str:
 
 
 @pytest.mark.parametrize("question", [q for q in QUESTIONS if "not" not in q and "&" not in q])
-def test_the_same_answers_to_a_context_whose_variables_have_no_value_yet(question: str) -> None:
+def test_the_same_answers_to_a_context_whose_variables_have_no_value_yet(question):
     """Known to the plan, unbound in the event: what is found is bound in place, and taken back for the next answer."""
     program = f"""{PROGRAM}
     !start.
@@ -123,9 +123,7 @@ CHANGE = st.sampled_from(
         ["p(A, B)", "p(1, B)", "p(A, 1)", "p(1, 1)", "p(A, A)", "p(A, B) & p(B, A)", "not p(3, 1)"]
     ),
 )
-def test_facts_and_rules_answer_in_their_order_whatever_comes_and_goes(
-    clauses: list[str], changes: list[str], question: str
-) -> None:
+def test_facts_and_rules_answer_in_their_order_whatever_comes_and_goes(clauses, changes, question):
     steps = "".join(f"{change}; !ask; " for change in changes)
     program = f"""
     q(1, 2). q(2, 0). q(0, 1).
@@ -143,30 +141,57 @@ def test_facts_and_rules_answer_in_their_order_whatever_comes_and_goes(
         assert unnamed(written) == unnamed(known)
 
 
-def test_a_search_continues_beyond_the_depth_of_nested_generators() -> None:
-    """A chain of 350 edges: the answers come in order, those that lie deep among them."""
-    program = """
+PROGRAMS = """
+a search continues beyond the depth of nested generators => 350 | same | 301 11
+    // A chain of 350 edges: the answers come in order, those that lie deep among them.
     path(X, Y) :- edge(X, Y).
     path(X, Y) :- edge(X, Z) & path(Z, Y).
     !s.
     +!s <- for (.range(I, 1, 350)) { +edge(I, I + 1) }; .findall(Y, path(1, Y), L); .length(L, N); .print(N);
       .range(M, 2, 351); .findall(Z, .range(Z, 2, 351), L); .print(same); !one.
     +!one : path(1, Y) & Y > 300 & not path(Y, 299) & .count(path(340, _), C) <- .print(Y, " ", C).
-    """
-    assert printed(program) == ["350", "same", "301 11"]
-
-
-def test_rules_that_call_each_other_through_not_and_findall_go_deep() -> None:
-    program = """
+rules that call each other through not and findall go deep => 1830
     lost(N) :- N > 0 & not lost(N - 1).
     total(0, 0).
     total(N, S) :- N > 0 & .findall(T, total(N - 1, T), [T1]) & S = T1 + N.
     !s. +!s : not lost(2000) & lost(2001) & total(60, S) <- .print(S).
-    """
-    assert printed(program) == ["1830"]
+beliefs that an action changes in a rule are read as they were
+=> [1,2,3] | [13,12,11,1,2,3] | [13,12,11,1,2,3] | 0 | [7]
+    p(1, a). p(2, a). p(3, a). q(1).
+    gone(X) :- p(X, a) & .abolish(p(_, _)).
+    new(X) :- p(X, a) & .asserta(p(X + 10, a)).
+    !s.
+    +!s <-
+      .findall(X, new(X), L); .print(L); .findall(X, p(X, a), K); .print(K);
+      .findall(X, gone(X), M); .print(M); .count(p(_, _), N); .print(N);
+      +p(7, a); .findall(X, p(X, _), O); .print(O).
+beliefs may change while a loop asks a rule => 1 | 2 | [12,11,3]
+    p(1). p(2). p(3).
+    r(X) :- p(X) & X < 3.
+    !s. +!s <- for (r(X)) { -p(X); +p(X + 10); .print(X) }; .findall(Y, p(Y), L); .print(L).
+rules that come and go at run time
+=> [1,2] | [3,1,2] | [4,3,1,2] | [5,4,3,1,2] | [5,4,3,1,2,6] | [4,1,2,6] | [4,1,2,6,7]
+    p(1). p(X) :- X = 2.
+    !s.
+    +!s <-
+      !show; +p(3); !show; .asserta({p(X) :- X = 4}); !show; +p(5); !show; .assertz({p(X) :- X = 6}); !show;
+      .abolish(p(3)); -p(5); !show; +>p(7); !show.
+    +!show <- .findall(X, p(X), L); .print(L).
+a question from outside counts the rules of each list it collects => [2]
+    // Known only at run time, so driven with a list for a stack; what it collects is nested again.
+    z(1). z(2).
+    w(Y) :- z(Y).
+    v(N) :- .findall(Y, w(Y), L) & .length(L, N).
+    !s. +!s <- F = v(N); .findall(N, F, L); .print(L).
+"""
 
 
-def test_open_rules_are_limited_though_they_are_not_deep() -> None:
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
+
+
+def test_open_rules_are_limited_though_they_are_not_deep():
     program = """
     !s.
     tree(0).
@@ -180,7 +205,7 @@ def test_open_rules_are_limited_though_they_are_not_deep() -> None:
     assert host.printed == ["nine", "too_deep", message]
 
 
-def test_searches_that_are_left_early_leave_nothing_open() -> None:
+def test_searches_that_are_left_early_leave_nothing_open():
     program = """
     small(X) :- X < 5000.
     fine(X) :- .range(X, 1, 3000) & not not small(X) & not big(X).
@@ -192,50 +217,7 @@ def test_searches_that_are_left_early_leave_nothing_open() -> None:
     assert host.printed == ["2990", "2990"]
 
 
-def test_beliefs_that_an_action_changes_in_a_rule_are_read_as_they_were() -> None:
-    program = """
-    p(1, a). p(2, a). p(3, a). q(1).
-    gone(X) :- p(X, a) & .abolish(p(_, _)).
-    new(X) :- p(X, a) & .asserta(p(X + 10, a)).
-    !s.
-    +!s <-
-      .findall(X, new(X), L); .print(L); .findall(X, p(X, a), K); .print(K);
-      .findall(X, gone(X), M); .print(M); .count(p(_, _), N); .print(N);
-      +p(7, a); .findall(X, p(X, _), O); .print(O).
-    """
-    assert printed(program) == ["[1,2,3]", "[13,12,11,1,2,3]", "[13,12,11,1,2,3]", "0", "[7]"]
-
-
-def test_beliefs_may_change_while_a_loop_asks_a_rule() -> None:
-    program = """
-    p(1). p(2). p(3).
-    r(X) :- p(X) & X < 3.
-    !s. +!s <- for (r(X)) { -p(X); +p(X + 10); .print(X) }; .findall(Y, p(Y), L); .print(L).
-    """
-    assert printed(program) == ["1", "2", "[12,11,3]"]
-
-
-def test_rules_that_come_and_go_at_run_time() -> None:
-    program = """
-    p(1). p(X) :- X = 2.
-    !s.
-    +!s <-
-      !show; +p(3); !show; .asserta({p(X) :- X = 4}); !show; +p(5); !show; .assertz({p(X) :- X = 6}); !show;
-      .abolish(p(3)); -p(5); !show; +>p(7); !show.
-    +!show <- .findall(X, p(X), L); .print(L).
-    """
-    assert printed(program) == [
-        "[1,2]",
-        "[3,1,2]",
-        "[4,3,1,2]",
-        "[5,4,3,1,2]",
-        "[5,4,3,1,2,6]",
-        "[4,1,2,6]",
-        "[4,1,2,6,7]",
-    ]
-
-
-def test_rules_that_keep_coming_are_compiled_only_when_they_are_asked_often() -> None:
+def test_rules_that_keep_coming_are_compiled_only_when_they_are_asked_often():
     program = """
     !s.
     +!s <- for (.range(I, 1, 200)) { .asserta({p(X) :- X = I}); ?p(I) }; .count(p(_), N); .print(N); !ask(3000).
@@ -249,18 +231,7 @@ def test_rules_that_keep_coming_are_compiled_only_when_they_are_asked_often() ->
     assert table.searches[1].__code__.co_filename != table.searches[0].__code__.co_filename
 
 
-def test_a_question_from_outside_counts_the_rules_of_each_list_it_collects() -> None:
-    """Known only at run time, so driven with a list for a stack; what it collects is nested again."""
-    program = """
-    z(1). z(2).
-    w(Y) :- z(Y).
-    v(N) :- .findall(Y, w(Y), L) & .length(L, N).
-    !s. +!s <- F = v(N); .findall(N, F, L); .print(L).
-    """
-    assert printed(program) == ["[2]"]
-
-
-def test_errors_in_a_rule_are_those_of_the_question() -> None:
+def test_errors_in_a_rule_are_those_of_the_question():
     program = """
     bad(X) :- X > 1 div 0.
     !s. +!s : bad(2) <- .print(never). +!s <- .print(next); ?bad(3). -!s[error(E)] <- .print(E).
@@ -271,7 +242,7 @@ def test_errors_in_a_rule_are_those_of_the_question() -> None:
     assert any("division by zero" in text for _, text in host.logged)
 
 
-def test_the_functions_of_rules_are_made_once_for_all_agents_of_a_program(tmp_path: object) -> None:
+def test_the_functions_of_rules_are_made_once_for_all_agents_of_a_program(tmp_path):
     from pathlib import Path
 
     folder = Path(str(tmp_path))
@@ -288,7 +259,7 @@ def test_the_functions_of_rules_are_made_once_for_all_agents_of_a_program(tmp_pa
     assert len({id(function) for t in tables for function in t.searches.values()}) == 1
 
 
-def test_a_traceback_out_of_a_rule_shows_the_line_of_the_rule() -> None:
+def test_a_traceback_out_of_a_rule_shows_the_line_of_the_rule():
     host = mind("q(1).\n\np(X) :-\n  q(X).\n!s.\n+!s : p(1) <- .print(yes).")
     host.run()
     table = next(t for f, t in host.agent.beliefs.items() if f.name == "p")

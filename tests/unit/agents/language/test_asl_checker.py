@@ -37,17 +37,10 @@ def messages(text: str) -> list[str]:
     return [warning.message for warning in warnings(text)]
 
 
-def test_a_good_program_has_no_warning():
-    assert messages("!g. +!g : p(X) <- .print(X); !h(X). +!h(X). -!h(Y) <- .print(Y). p(1).") == []
-
-
-def test_an_unknown_internal_action_is_reported_with_a_suggestion():
+def test_an_unknown_internal_action_is_reported_wherever_it_is():
     (warning,) = warnings("+!g <- .prnt(a).")
     assert warning.message == "unknown internal action `.prnt`"
     assert warning.help == "did you mean `.print`?"
-
-
-def test_internal_actions_are_checked_in_rules_terms_and_conditions():
     assert (
         len(
             messages(
@@ -56,11 +49,10 @@ def test_internal_actions_are_checked_in_rules_terms_and_conditions():
         )
         == 5
     )
-
-
-def test_an_atom_with_a_dot_is_not_an_internal_action():
     assert messages("p(my.Type). +!g <- .print(my.own).") == []
     assert messages("+!g <- my.own(1).") == ["unknown internal action `my.own`"]
+    (warning,) = warnings("+!g <- my.act(1).")
+    assert warning.help == "write my.act"
 
 
 def test_a_goal_without_a_plan_is_reported_once_with_a_suggestion():
@@ -69,93 +61,52 @@ def test_a_goal_without_a_plan_is_reported_once_with_a_suggestion():
         ("no plan for `!paterol/0`", "did you mean `!patrol`?"),
         ("no plan for `!go/2`", "did you mean `!go/1`?"),
     ]
-
-
-def test_tests_need_no_plans_for_the_goals_that_all_tests_have():
-    assert messages("@t[test] +!t <- !assert_true(p); !fake_action(go, done); !assert_tru(q).") == [
-        "no plan for `!assert_tru/1`"
-    ]
-    assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for `!assert_true/1`"]
-
-
-def test_goals_in_another_namespace_are_other_goals():
     (warning,) = warnings("!m::g. +!g.")
     assert (warning.message, warning.help) == ("no plan for `!m::g/0`", "did you mean `!g`?")
-
-
-def test_a_goal_of_a_local_namespace_is_shown_as_written_and_not_proposed_elsewhere():
     local = "{ begin namespace(own, local) } +!show. !own::shw. { end }"
     inside, outside = warnings(f"{local} !m::show.")
     assert (inside.message, inside.help) == ("no plan for `!own::shw/0`", "did you mean `!own::show`?")
     assert (outside.message, outside.help) == ("no plan for `!m::show/0`", "write a plan for it: `+!m::show`")
 
 
-def test_a_handler_or_a_plan_inside_a_plan_counts_as_a_plan():
+def test_every_kind_of_plan_silences_the_check_of_goals():
     assert messages("!g. -!g.") == []
     assert messages("+!g <- !h. { +!h. }") == []
     assert messages("!g. +!h <- +{ +!g }.") == []
-
-
-def test_plans_for_all_goals_and_added_plans_silence_the_check_of_goals():
     assert messages("!g. +!X <- !X.") == []
     assert messages('!g. +!h <- .add_plan("+!g").') == []
     assert messages("+!h <- !N::g(N).") == []
+    assert messages("@t[test] +!t <- !assert_true(p); !fake_action(go, done); !assert_tru(q).") == [
+        "no plan for `!assert_tru/1`"
+    ]
+    assert messages("+!t <- !assert_true(p).  !t.") == ["no plan for `!assert_true/1`"]
 
 
-def test_a_variable_that_occurs_once_may_be_a_slip():
+def test_a_variable_that_occurs_once_in_a_text_may_be_a_slip():
     (warning,) = warnings("+!go(Room) <- move(Rom).")
     assert warning.message == "variable `Rom` occurs only once in this plan"
     assert warning.help == "did you mean `Room`? Otherwise write `_Rom`"
     assert messages("r(X) :- q(Y).") == ["variable `Y` occurs only once in this rule"]
-
-
-def test_variables_of_triggers_unnamed_ones_and_those_in_texts_are_left_alone():
     assert messages("+!go(Room)[source(S)] <- move(_Rom, _).") == []
     assert messages('+!g <- p(X); .puts("#{X}").') == []
     assert messages("+!g(X) <- .print(X). { +e(X). +f(Y) <- .print(Y). }") == []
-
-
-def test_patterns_give_no_warnings():
     for pattern in ("dg(at(_))", "ebdg(at(_))", "smc(at(_),f(_))", "omc(at(_),f(_),m(_))", "bc(at(_))"):
         text = f"!at(1). {{ begin {pattern} }} +!at(X) <- go(X). {{ end }}"
         assert [m for m in messages(text) if "internal action" not in m] == []
-
-
-def test_warnings_come_in_the_order_of_the_text():
     assert [w.span.line for w in warnings("+!a <- .x.\n+!b <- p(X).\n+!c <- !d.") if w.span] == [1, 2, 3]
-
-
-def test_the_help_for_an_unknown_action_comes_from_the_caller():
-    (warning,) = warnings("+!g <- my.act(1).")
-    assert warning.help == "write my.act"
+    assert messages("!g. +!g : p(X) <- .print(X); !h(X). +!h(X). -!h(Y) <- .print(Y). p(1).") == []
 
 
 @pytest.mark.parametrize(
     ("text", "message", "help"),
     [
-        (
-            "+!g <- .findall(a, b).",
-            "internal action `.findall` expects 3 arguments, found 2",
-            None,
-        ),
-        (
-            "+!g <- .add_plan.",
-            "internal action `.add_plan` expects 1 to 3 arguments, found none",
-            None,
-        ),
-        (
-            "+!g <- .length(L, N, L, N).",
-            "internal action `.length` expects 2 arguments, found 4",
-            None,
-        ),
-        (
-            "+!g(X) : math.sin(X, X) <- a.",
-            "function `math.sin` expects 1 argument, found 2",
-            None,
-        ),
+        ("+!g <- .findall(a, b).", "internal action `.findall` expects 3 arguments, found 2", None),
+        ("+!g <- .add_plan.", "internal action `.add_plan` expects 1 to 3 arguments, found none", None),
+        ("+!g <- .length(L, N, L, N).", "internal action `.length` expects 2 arguments, found 4", None),
+        ("+!g(X) : math.sin(X, X) <- a.", "function `math.sin` expects 1 argument, found 2", None),
     ],
 )
-def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
+def test_wrong_numbers_of_arguments(text, message, help):
     (found,) = [each for each in warnings(text) if each.code == "wrong-arguments"]
     assert (found.message, found.help) == (message, help)
 
@@ -170,15 +121,20 @@ def test_wrong_numbers_of_arguments(text: str, message: str, help: str):
         "+!g <- while (.fail) { a }.",
     ],
 )
-def test_actions_that_act_are_not_conditions(text: str):
+def test_actions_that_act_are_not_conditions(text):
     assert codes(text) == ["acting-condition"]
 
 
-def test_misspelt_performatives_are_reported():
+def test_misspelt_performatives_and_annotations_are_reported():
     assert codes("+!g <- .send(bob, tel, p); .send(bob, tell, p); .send(bob, propose, p).") == [
         "unknown-performative"
     ]
     assert warnings("+!g <- .send(bob, askone, p).")[0].help == "did you mean `askOne`?"
+    assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
+    wrong = ["urgency", "urgency(high)", "urgency(1.5)", "urgency(-1)", "urgency(_)", "urgency(1, 2)"]
+    assert [codes(f"@a[{each}] +b.") for each in wrong] == [["wrong-urgency"]] * len(wrong)
+    assert codes("@a[urgency(0)] +b. @c[urgency(10), atomic] +d. @e[urgency(2 * 3)] +f.") == []
+    assert codes("@a[urgensy(3)] +b.") == ["misspelt-annotation"]
 
 
 @pytest.mark.parametrize(
@@ -191,7 +147,7 @@ def test_misspelt_performatives_are_reported():
         "+!h <- a. { +e <- a. +e <- b. }",
     ],
 )
-def test_a_plan_after_one_for_the_same_events_is_unreachable(text: str):
+def test_a_plan_after_one_for_the_same_events_is_unreachable(text):
     assert codes(text) == ["plan-never-selected"]
 
 
@@ -210,7 +166,7 @@ def test_a_plan_after_one_for_the_same_events_is_unreachable(text: str):
         "+!X <- a(X). +!g <- b.",
     ],
 )
-def test_plans_that_may_be_selected(text: str):
+def test_plans_that_may_be_selected(text):
     assert "plan-never-selected" not in codes(text)
 
 
@@ -228,7 +184,7 @@ def test_plans_that_may_be_selected(text: str):
         "p(X) & X < 3 & X > 5",
     ],
 )
-def test_conditions_that_contradict_themselves(context: str):
+def test_conditions_that_contradict_themselves(context):
     assert "context-never-true" in codes(f"+!g : {context} <- a.")
 
 
@@ -245,7 +201,7 @@ def test_conditions_that_contradict_themselves(context: str):
         "not false",
     ],
 )
-def test_conditions_that_may_hold(context: str):
+def test_conditions_that_may_hold(context):
     assert "context-never-true" not in codes(f"+!g : {context} <- a.")
 
 
@@ -256,61 +212,38 @@ def test_handlers_that_all_have_conditions_are_worth_a_note():
     assert codes("+!g <- a. -!g : p <- a. -!G <- b(G).") == []
 
 
-def test_comparisons_with_variables_without_a_value():
+def test_comparing_an_atom_or_a_variable_without_a_value_is_reported():
     assert codes("+!g <- X == 3; a(X).") == ["comparison-without-value"]
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
-
-
-def test_comparing_an_atom_with_a_number_is_reported() -> None:
     assert codes("+!g : x > 3 <- a.") == ["ordered-atom"]
     assert codes("+!g : p(X) <- if (2*X <= limit) { a }.") == ["ordered-atom"]
     assert codes("+!g : p(X) & X > a & x == 3 <- a.") == []
     assert codes("+!g(X) <- X == 3. +!h <- ?p(X); X == 3. +!i <- .findall(X, p(X) & X == 2, _).") == []
     assert codes("+!g <- F = (X == 2); X = 1; ?F.") == []
-
-
-def test_a_variable_cannot_get_another_value():
     assert codes("+!g(X) <- X = X + 1; a(X).") == ["changed-variable"]
     assert codes("+!g(X) <- Y = X + 1; a(Y).") == []
 
 
-def test_capitalised_names_in_initial_beliefs_and_goals_are_reported():
+def test_capitalised_names_and_constants_of_python_are_reported():
     text = "place(Kitchen, 2). same(X, X). any(_, _Y). !go(Hall). +!go(_) : place(_, _) & same(1, 1) & any(1, 2)."
     assert [(each.span.column, each.code) for each in warnings(text) if each.span] == [
         (7, "singleton-variable"),
         (text.index("Hall") + 1, "singleton-variable"),
     ]
     assert "`kitchen`? If any value is meant, write `_Kitchen`" in warnings(text)[0].help
-
-
-def test_true_and_none_of_python_are_variables():
     (found,) = warnings("+!g <- a(True).")
     assert (found.code, found.help) == ("capital-constant", "write `true` in lower case")
 
 
-def test_misspelt_annotations_of_labels_are_reported():
-    assert codes("@a[atomc] +!g. @b[atomic, priority(2), tests] +!h.") == ["misspelt-annotation"]
-
-
-def test_an_urgency_is_a_non_negative_integer():
-    wrong = ["urgency", "urgency(high)", "urgency(1.5)", "urgency(-1)", "urgency(_)", "urgency(1, 2)"]
-    assert [codes(f"@a[{each}] +b.") for each in wrong] == [["wrong-urgency"]] * len(wrong)
-    assert codes("@a[urgency(0)] +b. @c[urgency(10), atomic] +d. @e[urgency(2 * 3)] +f.") == []
-    assert codes("@a[urgensy(3)] +b.") == ["misspelt-annotation"]
-
-
-def test_clauses_with_errors_are_skipped():
+def test_errors_are_skipped_and_a_run_leaves_out_matters_of_style():
     text = "+!a <- b(; .prnt(x); c(Y).\n+!d <- .prnt(Z).\n!missing."
     file = SourceFile("main.asl", text)
-    program, diagnostics = read_program(file)
-    found = check(program, KNOWN, [each for each in diagnostics if each.severity == "error"])
+    tree, diagnostics = read_program(file)
+    found = check(tree, KNOWN, [each for each in diagnostics if each.severity == "error"])
     assert [(each.span.line, each.code) for each in found if each.span] == [
         (2, "unknown-internal-action"),
         (2, "singleton-variable"),
     ]
-
-
-def test_a_run_leaves_out_matters_of_style():
     text = "+!g <- .prnt(X). -!g : p <- a. +!h <- b(True)."
     assert [each.code for each in check_for_run(program(text), KNOWN)] == ["unknown-internal-action"]
 
@@ -327,17 +260,14 @@ def test_a_run_leaves_out_matters_of_style():
         ('+!g <- a(X, "// jacaros: ignore singleton-variable").', ["X"]),
     ],
 )
-def test_comments_switch_warnings_off(text: str, left: list[str]):
+def test_comments_switch_warnings_off(text, left):
     found = [each.message.split("`")[1] for each in wanted(warnings(text))]
     assert found == left
 
 
-def test_errors_cannot_be_switched_off():
+def test_only_known_warnings_can_be_switched_off():
     diagnostics = list(wanted(errors("// jacaros: ignore-file missing-body\n+!g <- .")))
     assert [each.code for each in diagnostics] == ["missing-body"]
-
-
-def test_unknown_codes_are_reported():
     (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
     assert (found.code, found.message) == ("unknown-code", "unknown code `singletons`")
 
@@ -354,7 +284,7 @@ def test_unknown_codes_are_reported():
         ("", "a", True),
     ],
 )
-def test_slips_are_recognised(written: str, meant: str, like: bool):
+def test_slips_are_recognised(written, meant, like):
     assert is_slip_of(written, meant) is like
 
 
@@ -383,12 +313,9 @@ def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
     assert (found.code, found.help) == ("wrong-supervision", help_)
 
 
-def test_valid_annotations_that_act_are_not_reported():
+def test_labels_are_looked_at_and_valid_annotations_that_act_are_not_reported():
     assert codes("!g(1)[every(1000)]. +!g(T) <- !g(3)[within(T), retry(3, 0.5), hard_deadline(T * 2)].") == []
     assert codes("@p[while(ok & not b(3)), within(10), cleanup(g)] +!g.") == []
-
-
-def test_conditions_and_clean_up_goals_of_labels_are_looked_at():
     assert codes("@p[while(a & not a)] +!g.") == ["context-never-true"]
     assert codes("@p[while(a), cleanup(park)] +!g.") == ["unknown-goal"]
     assert codes("@p[while(at(Room))] +!g(Room).") == []
@@ -406,7 +333,7 @@ def test_conditions_and_clean_up_goals_of_labels_are_looked_at():
         ),
     ],
 )
-def test_a_value_that_was_probably_meant_otherwise_is_noted(step: str, message: str, help: str) -> None:
+def test_a_value_that_was_probably_meant_otherwise_is_noted(step, message, help):
     [note] = warnings(f"+!g <- {step}.")
     assert (note.severity, note.message, note.help) == ("note", message, help)
     assert check_for_run(program(f"+!g <- {step}."), KNOWN) == []
@@ -415,5 +342,5 @@ def test_a_value_that_was_probably_meant_otherwise_is_noted(step: str, message: 
 @pytest.mark.parametrize(
     "step", [".wait(10)", ".wait(0)", ".wait(done)", '.print("at home")', "go('at home')"]
 )
-def test_other_values_are_not_noted(step: str) -> None:
+def test_other_values_are_not_noted(step):
     assert warnings(f"+!g <- {step}.") == []

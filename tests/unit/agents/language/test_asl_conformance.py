@@ -29,12 +29,9 @@ def load(path: Path):
     return load_program(str(path), path.read_text(encoding="utf-8"), read)
 
 
-def test_the_conformance_programs_are_there():
+def test_correct_programs_are_there_and_read_without_a_warning():
     assert len(GOOD) > 300
     assert len(REFUSED) == 14
-
-
-def test_every_correct_program_is_read_without_a_warning():
     for path in GOOD:
         _, warnings = load(path)
         assert warnings == [], path
@@ -58,7 +55,7 @@ def without_numbers(text: str) -> str:
 
 
 @pytest.mark.parametrize("expected", REFUSED, ids=lambda path: path.stem)
-def test_a_wrong_program_is_refused_at_its_line(expected: Path):
+def test_a_wrong_program_is_refused_at_its_line(expected):
     program = expected.with_suffix(".asl")
     if not program.exists():
         program = expected.with_suffix("") / program.name

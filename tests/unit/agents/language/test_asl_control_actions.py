@@ -24,12 +24,12 @@ def step(text: str) -> object:
         (".fork(or, { a }, { b }, { c })", "a ||| b ||| c"),
     ],
 )
-def test_they_mean_the_statements(action: str, statement: str) -> None:
+def test_they_mean_the_statements(action, statement):
     assert step(action) == step(statement)
 
 
 @pytest.mark.parametrize(
     "action", [".foreach(p)", ".foreach(p, q)", ".fork(xor, { a }, { b })", ".fork(and, { a })"]
 )
-def test_other_forms_are_plain_internal_actions(action: str) -> None:
+def test_other_forms_are_plain_internal_actions(action):
     assert isinstance(step(action), nodes.Constraint)

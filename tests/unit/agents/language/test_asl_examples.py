@@ -21,12 +21,12 @@ def name_of(module: ModuleType) -> str:
 
 
 @pytest.mark.parametrize("module", MODULES, ids=name_of)
-def test_the_examples_of_a_module_run(module: ModuleType):
+def test_the_examples_of_a_module_run(module):
     assert doctest.testmod(module).failed == 0
 
 
 @pytest.mark.parametrize("module", MODULES, ids=name_of)
-def test_a_module_with_a_public_function_begins_with_an_example(module: ModuleType):
+def test_a_module_with_a_public_function_begins_with_an_example(module):
     functions = [
         name
         for name, value in inspect.getmembers(module, inspect.isfunction)

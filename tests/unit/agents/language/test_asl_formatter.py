@@ -37,12 +37,12 @@ TERMS = [
 
 
 @pytest.mark.parametrize("text", TERMS)
-def test_terms_are_written_as_they_print(text: str):
+def test_terms_are_written_as_they_print(text):
     assert format_term(parse_term(text)) == text
 
 
 @pytest.mark.parametrize("text", TERMS)
-def test_terms_read_back_as_the_same_tree(text: str):
+def test_terms_read_back_as_the_same_tree(text):
     term = parse_term(text)
     assert parse_term(format_term(term)) == term
 
@@ -58,18 +58,15 @@ def test_terms_read_back_as_the_same_tree(text: str):
         (0.1 + 0.2, "0.30000000000000004"),
     ],
 )
-def test_numbers_print_as_in_the_language(value: float, text: str):
+def test_numbers_print_as_in_the_language(value, text):
     assert format_term(nodes.Number(value)) == text
 
 
-def test_plans_with_all_parts():
+def test_plans_with_all_parts_have_a_text_and_other_values_none():
     text = "@l[atomic] +!g(X)[source(S)] : a(X) & (X > 1) <: done <- b; !c. { +e <- f. }"
     assert format_plan(parse_plan(text.removesuffix(" { +e <- f. }"))) == text.removesuffix(" { +e <- f. }")
     plan = parse_plan("+!g")
     assert format_plan(plan) == "+!g."
     assert format_body(plan.body) == ""
-
-
-def test_other_values_have_no_text():
     with pytest.raises(TypeError):
         format_term(nodes.Node())

@@ -137,20 +137,20 @@ def diagnostics_of(text: str) -> Sequence[Diagnostic]:
 
 @fuzzed
 @given(st.lists(st.sampled_from(PIECES), max_size=60))
-def test_random_tokens_give_diagnostics(pieces: list[str]):
+def test_random_tokens_give_diagnostics(pieces):
     check_diagnostics(" ".join(pieces))
     check_diagnostics("".join(pieces))
 
 
 @fuzzed
 @given(st.text(max_size=80))
-def test_random_text_gives_diagnostics(text: str):
+def test_random_text_gives_diagnostics(text):
     check_diagnostics(text)
 
 
 @fuzzed
 @given(st.data())
-def test_changed_programs_give_diagnostics(data: st.DataObject):
+def test_changed_programs_give_diagnostics(data):
     text = data.draw(st.sampled_from(PROGRAMS))
     for _ in range(data.draw(st.integers(1, 4))):
         at = data.draw(st.integers(0, max(len(text) - 1, 0)))
@@ -162,7 +162,7 @@ def test_changed_programs_give_diagnostics(data: st.DataObject):
 
 @fuzzed
 @given(st.lists(st.sampled_from(PIECES), max_size=12))
-def test_terms_and_plans_at_run_time_give_diagnostics(pieces: list[str]):
+def test_terms_and_plans_at_run_time_give_diagnostics(pieces):
     text = " ".join(pieces)
     try:
         term = parse_term(text)

@@ -24,13 +24,13 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("number", range(1, 181))
-def test_a_text_is_a_program_or_there_are_diagnostics(number: int) -> None:
+def test_a_text_is_a_program_or_there_are_diagnostics(number):
     how, text = fuzz.text_of(2026, number)
     outcome = fuzz.examine(text)
     assert outcome == "program" or how != "made"
 
 
-def test_a_text_belongs_to_its_seed_and_number() -> None:
+def test_a_text_belongs_to_its_seed_and_number():
     assert fuzz.text_of(3, 14) == fuzz.text_of(3, 14)
     assert fuzz.text_of(3, 14) != fuzz.text_of(3, 15)
 
@@ -43,7 +43,7 @@ def numbered(program: Program) -> str:
 
 
 @pytest.mark.parametrize("number", range(60))
-def test_formatted_programs_read_back_as_the_same_tree(number: int) -> None:
+def test_formatted_programs_read_back_as_the_same_tree(number):
     grammar = Grammar(Random(number), 3)
     text = "".join(
         grammar.random.choice((grammar.belief, grammar.rule, grammar.goal, grammar.plan))() for _ in range(6)

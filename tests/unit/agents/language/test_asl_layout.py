@@ -177,7 +177,7 @@ def test_sub_plans_are_indented():
         ("", ""),
     ],
 )
-def test_comments_stay(before: str, after: str | None):
+def test_comments_stay(before, after):
     result = formatted(before)
     assert comments_of(result) == comments_of(before)
     assert formatted(result) == result
@@ -190,12 +190,9 @@ def test_steps_keep_their_blank_lines_and_lines_their_groups():
     assert formatted(text) == "p.\nq.\n\nr.\n+!g\n  <- a;\n\n     b;\n     c.\n"
 
 
-def test_a_wrong_program_is_refused():
+def test_a_wrong_program_is_refused_and_line_ends_of_other_systems_are_read():
     with pytest.raises(AslError, match="without a final"):
         formatted("p\nq.")
-
-
-def test_line_ends_of_other_systems_are_read():
     assert formatted("p. // a\r\nq.\r\n") == "p.  // a\nq.\n"
 
 
@@ -211,7 +208,7 @@ SMALL = [path.read_text(encoding="utf-8") for path in PROGRAMS if path.stat().st
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
 )
 @given(st.data())
-def test_comments_between_any_tokens_stay(data: st.DataObject):
+def test_comments_between_any_tokens_stay(data):
     text = data.draw(st.sampled_from(SMALL))
     lines = text.split("\n")
     for token in reversed(tokenize(SourceFile("x", text), lambda _: None)[:-2]):

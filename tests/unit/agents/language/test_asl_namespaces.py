@@ -12,16 +12,13 @@ def block(clauses: str) -> str:
     return f"{{ begin namespace(m) }} {clauses} {{ end }}"
 
 
-def test_beliefs_goals_and_rules_of_a_block_get_its_namespace():
+def test_a_block_gives_its_namespace_to_beliefs_goals_rules_and_plans():
     read = program(block("p(a). r(X) :- p(X) & not q(X) & X > 1. !g(b)."))
     assert belief_texts(block("p(a). r(X) :- p(X) & not q(X) & X > 1.")) == [
         "m::p(a)",
         "m::r(X) :- (m::p(X) & (not (m::q(X)) & (X > 1)))",
     ]
     assert read.goals == (nodes.Literal("g", (nodes.Literal("b"),), namespace="m"),)
-
-
-def test_plans_of_a_block_get_its_namespace_but_not_their_arguments():
     (plan,) = plan_texts(
         block(
             """@l +!g(a)[source(self)] : c(d)
@@ -33,30 +30,22 @@ def test_plans_of_a_block_get_its_namespace_but_not_their_arguments():
     assert body == "!m::h(e); ?m::i(j); +m::k(l); act(m); if (m::n) { -m::o }; .findall(X,p(X),L)."
 
 
-def test_operands_of_relations_stay_in_the_default_namespace():
+def test_some_names_stay_in_the_default_namespace():
     assert plan_texts(block("+b : p(X) = q(X) & m::c = Y <- Z = d.")) == [
         "+m::b : (p(X) = q(X)) & (m::c = Y) <- (Z = d)."
     ]
-
-
-def test_the_default_namespace_is_reached_by_name():
     assert plan_texts(block("+!g : default::a & ::b & this_ns::c <- !other::d.")) == [
         "+!m::g : a & (m::b & m::c) <- !other::d."
     ]
+    assert belief_texts(block("percept. source(x).")) == ["percept", "source(x)"]
 
 
-def test_this_ns_as_an_argument_is_the_name_of_the_namespace():
+def test_this_ns_is_the_name_of_the_namespace():
     assert belief_texts(block("at(this_ns, [this_ns|T], f(this_ns))[in(this_ns)].") + "at(this_ns).") == [
         "m::at(m,[m|T],f(m))[in(m)]",
         "at(default)",
     ]
-
-
-def test_this_ns_as_an_operand_stays_an_atom():
     assert plan_texts(block("+!g <- X = this_ns.")) == ["+!m::g <- (X = this_ns)."]
-
-
-def test_this_ns_is_the_namespace_that_a_file_is_included_into():
     files = {"part.asl": "at(this_ns)."}
     read = program('{ include("part.asl", m) } { include("part.asl", this_ns) }', files)
     assert [str(shape(belief)) for belief in read.beliefs] == [
@@ -64,7 +53,7 @@ def test_this_ns_is_the_namespace_that_a_file_is_included_into():
     ]
 
 
-def test_local_namespaces_of_a_file_are_not_those_of_files_it_includes():
+def test_local_namespaces_cannot_be_named_from_outside():
     files = {"part.asl": "private::a."}
     read = program(
         '{ namespace(private, local) } { include("part.asl") } { include("part.asl", private) } private::b.',
@@ -73,23 +62,6 @@ def test_local_namespaces_of_a_file_are_not_those_of_files_it_includes():
     namespaces = [belief.namespace for belief in read.beliefs if isinstance(belief, nodes.Literal)]
     assert namespaces[:2] == ["private", "private"]
     assert namespaces[2] != "private"
-
-
-def test_keywords_stay_in_the_default_namespace():
-    assert belief_texts(block("percept. source(x).")) == ["percept", "source(x)"]
-
-
-@pytest.mark.parametrize("kind", ["", ", local", ", global"])
-def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(kind: str) -> None:
-    assert belief_texts(f"{{ namespace(n{kind}) }} b. c.") == ["b", "c"]
-
-
-def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
-    text = "{ begin namespace(m) } a. { begin namespace(n) } b. { end } c. { end } d."
-    assert belief_texts(text) == ["m::a", "n::b", "m::c", "d"]
-
-
-def test_a_local_namespace_cannot_be_named_from_outside():
     files = {"part.asl": "{ namespace(private, local) } private::a. +!g : private::a <- b."}
     read = program('{ include("part.asl") } private::c.', files)
     inside, outside = read.beliefs
@@ -99,7 +71,17 @@ def test_a_local_namespace_cannot_be_named_from_outside():
     assert read.plans[0].context == inside
 
 
-def test_an_include_can_move_a_file_to_a_namespace():
+@pytest.mark.parametrize("kind", ["", ", local", ", global"])
+def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(kind):
+    assert belief_texts(f"{{ namespace(n{kind}) }} b. c.") == ["b", "c"]
+
+
+def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
+    text = "{ begin namespace(m) } a. { begin namespace(n) } b. { end } c. { end } d."
+    assert belief_texts(text) == ["m::a", "n::b", "m::c", "d"]
+
+
+def test_an_include_stands_at_its_place_in_a_namespace():
     files = {"part.asl": "a. !g."}
     read = program('{ include("part.asl", m) } { include("part.asl", X) }', files)
     assert isinstance(read.beliefs[0], nodes.Literal)
@@ -108,16 +90,10 @@ def test_an_include_can_move_a_file_to_a_namespace():
     assert first.namespace == "m"
     assert isinstance(second.namespace, str)
     assert second.namespace not in ("m", "X")
-
-
-def test_an_include_stands_at_its_place():
     files = {"part.asl": "b. !h."}
     read = program('a. !g. { include("part.asl") } c. !i.', files)
     assert [goal.functor for goal in read.goals] == ["g", "h", "i"]
     assert belief_texts('a. { include("part.asl") } c.', files) == ["a", "b", "c"]
-
-
-def test_an_included_file_is_read_with_the_name_of_the_including_one():
     asked = []
 
     def read(path: str, including: str) -> tuple[str, str]:
@@ -128,13 +104,10 @@ def test_an_included_file_is_read_with_the_name_of_the_including_one():
     assert asked == [("one.asl", "main.asl"), ("two.asl", "lib/one.asl")]
 
 
-def test_the_library_of_workspaces_has_a_counterpart():
+def test_libraries_have_counterparts_or_give_a_warning():
     read, warnings = load_program("main.asl", '{ include("$jacamo/templates/common-cartago.asl") } p.')
     assert [getattr(each, "head", each).functor for each in read.beliefs] == ["joined", "focused", "p"]
     assert warnings == []
-
-
-def test_libraries_for_organisations_give_nothing_and_one_warning():
     read, warnings = load_program(
         "main.asl",
         """{ include("$jacamoJar/templates/common-moise.asl") }
@@ -144,40 +117,25 @@ def test_libraries_for_organisations_give_nothing_and_one_warning():
     (warning,) = warnings
     assert warning.render().startswith("main.asl:1:1: warning: nothing of `$jacamoJar/templates")
     assert "common-moise.asl" in warning.message
-
-
-def test_what_is_built_in_needs_no_library():
     _, warnings = load_program("main.asl", '{ include("$jason/asl/kqmlPlans.asl") }')
     assert warnings == []
-
-
-def test_an_unknown_library_file_gives_a_warning():
     _, warnings = load_program("main.asl", '{ include("$jacamo/templates/mine.asl") }')
     assert [warning.message for warning in warnings] == [
         "unknown library `$jacamo/templates/mine.asl`: nothing is included"
     ]
 
 
-def test_missing_and_circular_includes_are_errors_at_the_directive():
+def test_includes_are_limited_and_not_circular():
     assert places('p.\n{ include("no.asl") }') == [(2, "included file not found: `no.asl`")]
     files = {"one.asl": 'p.\n{ include("one.asl") }'}
     assert places('{ include("one.asl") }', files) == [(2, "file `one.asl` includes itself")]
-
-
-def test_a_long_chain_of_includes_is_not_a_cycle():
     files = {f"{number}.asl": f'{{ include("{number + 1}.asl") }}' for number in range(60)}
     (wrong,) = places('{ include("0.asl") }', files)
     assert wrong[1] == "file `40.asl` is included more than 40 levels deep"
-
-
-def test_the_number_of_includes_is_limited():
     files = {f"{number}.asl": f'{{ include("{number + 1}.asl") }}' * 2 for number in range(30)}
     files["30.asl"] = "p."
     told = {message for _, message in places('{ include("0.asl") }', files)}
     assert told == {"program includes more than 10000 files"}
-
-
-def test_errors_of_included_files_name_their_file():
     files = {"one.asl": "p(1.\n"}
     (error,) = errors('q.\nr.\n{ include("one.asl") }', files)
     assert error.place() == "one.asl:1:4: "
@@ -210,5 +168,5 @@ def test_a_rule_can_be_registered_as_a_function():
         "begin",
     ],
 )
-def test_wrong_directives_are_refused(directive: str):
+def test_wrong_directives_are_refused(directive):
     assert len(places(f"{{ {directive} }}")) == 1

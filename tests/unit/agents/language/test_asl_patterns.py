@@ -16,11 +16,12 @@ RETRY = "-!at(_1) <- !at(_1)."
 LAST = "+!at(_1) <- !at(_1)."
 
 
-def test_a_declarative_goal():
+def test_declarative_and_backtracking_goals():
     assert expanded("dg(at(_))") == [BELIEVED, TESTED, SUCCEEDS]
+    assert expanded("bdg(at(_))") == [BELIEVED, TESTED, SUCCEEDS, RETRY]
 
 
-def test_only_plans_for_the_goal_are_changed():
+def test_only_plans_for_the_goal_are_changed_in_one_variable():
     assert expanded("dg(at(_))", "+!at(X,Y) <- b. +!other <- b. -!at(X) <- b.")[1:-1] == [
         "+!at(X,Y) <- b.",
         "+!other <- b.",
@@ -31,17 +32,10 @@ def test_only_plans_for_the_goal_are_changed():
         "+!at(Y) <- b; ?at(Y).",
         "-!P <- b.",
     ]
-
-
-def test_the_argument_is_one_variable_in_all_places():
     plan = program("{ begin dg(at(_)) } { end }").plans[0]
     assert isinstance(plan.trigger.literal, nodes.Literal)
     assert plan.trigger.literal == plan.context
     assert all(isinstance(a, nodes.Variable) and not a.unnamed for a in plan.trigger.literal.arguments)
-
-
-def test_a_backtracking_goal_is_tried_again():
-    assert expanded("bdg(at(_))") == [BELIEVED, TESTED, SUCCEEDS, RETRY]
 
 
 def test_an_exclusive_goal_tries_each_plan_once():
@@ -54,12 +48,9 @@ def test_an_exclusive_goal_tries_each_plan_once():
     assert plans[-1] == RETRY
 
 
-def test_blind_commitment():
+def test_commitments_end_with_success_failure_or_motivation():
     assert expanded("bc(at(_))") == [BELIEVED, TESTED, SUCCEEDS, RETRY, LAST]
     assert expanded("bc(at(_),dg)") == [BELIEVED, TESTED, SUCCEEDS, LAST]
-
-
-def test_single_minded_commitment_passes_the_failure_on_to_the_caller():
     assert expanded("smc(at(_), broken)") == [
         BELIEVED,
         TESTED,
@@ -69,9 +60,6 @@ def test_single_minded_commitment_passes_the_failure_on_to_the_caller():
         '-!at(_1) <- .fail(error(impossible),error_msg("the goal is believed to be impossible")).',
         "+broken <- .fail_goal(at(_1)).",
     ]
-
-
-def test_relativised_and_open_minded_commitment_end_with_the_motivation():
     ended = "-wanted <- .succeed_goal(at(_1))."
     assert expanded("rc(at(_), wanted)") == [BELIEVED, TESTED, SUCCEEDS, RETRY, LAST, ended]
     plans = expanded("omc(at(_), broken, wanted)")
@@ -102,17 +90,14 @@ def test_sequenced_goals_take_text_and_terms():
     )
 
 
-def test_patterns_respect_the_namespace_of_their_block():
+def test_patterns_respect_namespaces_and_can_be_nested():
     text = "{ begin namespace(m) } { begin dg(g) } +!g <- a. { end } { end }"
     assert plan_texts(text) == ["+!m::g : m::g.", "+!m::g <- a; ?m::g.", "+m::g <- .succeed_goal(m::g)."]
-
-
-def test_patterns_can_be_nested():
     plans = expanded('sga("+order", "true", home)', "{ begin bdg(home) } +!home <- go. { end }")
     assert plans[:4] == expanded("bdg(home)", "+!home <- go.")
 
 
-def test_wrong_patterns_are_refused_at_their_line():
+def test_wrong_patterns_and_derived_events_are_refused():
     def messages(pattern: str) -> list[tuple[int, str]]:
         return places(f"a.\n{{ begin {pattern} }}\n+!g <- a.\n{{ end }}")
 
@@ -124,8 +109,5 @@ def test_wrong_patterns_are_refused_at_their_line():
     assert messages('sga("order", "true", g)')[0][1].startswith("`order` is not a trigger: ")
     assert messages('sga("+order", "a &", g)')[0][1].startswith("`a &` is not a condition: ")
     assert messages("foo(g)") == [(2, "unknown directive `foo` with a block")]
-
-
-def test_a_derived_event_in_a_program_is_refused():
     program = "go.\n{ derive(low, hysteresis(battery(X), on_below(20), off_above(30))) }"
     assert places(program) == [(2, "programs do not declare derived events")]

@@ -14,14 +14,11 @@ def steps(text: str) -> tuple[nodes.Step, ...]:
     return body.steps
 
 
-def test_a_program_mixes_clauses_in_any_order():
+def test_a_program_mixes_clauses_of_all_parts():
     read = program("+!g. p(1). !g. r(X) :- p(X). ~q[a]. !h(2)[x].")
     assert [type(belief).__name__ for belief in read.beliefs] == ["Literal", "Rule", "Literal"]
     assert [goal.functor for goal in read.goals] == ["g", "h"]
     assert len(read.plans) == 1
-
-
-def test_all_parts_of_a_plan():
     plan = program("@l[atomic,prio(2)] +!g(X)[source(S)] : a & b <: c <- d; !e.").plans[0]
     assert isinstance(plan.label, nodes.Literal)
     assert plan.label.functor == "l"
@@ -29,15 +26,9 @@ def test_all_parts_of_a_plan():
     assert plan.goal_condition == nodes.Literal("c")
     assert isinstance(plan.body, nodes.Body)
     assert len(plan.body.steps) == 2
-
-
-def test_a_plan_may_lack_everything_but_its_trigger():
     plan = program("+b.").plans[0]
     assert (plan.label, plan.context, plan.goal_condition) == (None, None, None)
     assert plan.body == nodes.Body()
-
-
-def test_a_label_of_annotations_alone_gets_a_name():
     first, second = program("@[atomic] +!a <- b. @[atomic] +!c <- d.").plans
     assert isinstance(first.label, nodes.Literal)
     assert isinstance(second.label, nodes.Literal)
@@ -84,48 +75,36 @@ def test_plans_and_rules_are_added_and_removed():
     assert isinstance(rule.operand, nodes.RuleTerm)
 
 
-def test_control_statements_need_no_semicolon_behind_them():
+def test_control_statements_need_no_semicolon_and_long_chains_are_read():
     read = steps("if (a) { b; } elif (c) { d } else { e } while (f) { g } for (h(X)) { i } j;")
     assert [type(step).__name__ for step in read] == ["If", "While", "For", "ExternalAction"]
     first = read[0]
     assert isinstance(first, nodes.If)
     assert first.otherwise is not None
     assert isinstance(first.otherwise.steps[0], nodes.If)
-
-
-def test_a_long_chain_of_elif_is_read():
     text = "if (a) { b } " + "elif (c) { d } " * 50 + "else { e }"
     assert len(steps(text)) == 1
 
 
-def test_forks_bind_and_before_or_and_are_flat():
+def test_forks_and_groups_are_flat():
     (step,) = steps("!a |&| !b |&| !c ||| !d")
     assert isinstance(step, nodes.Fork)
     assert (step.operator, len(step.branches)) == ("or", 2)
     (inner,) = step.branches[0].steps
     assert isinstance(inner, nodes.Fork)
     assert (inner.operator, len(inner.branches)) == ("and", 3)
-
-
-def test_groups_are_spliced_and_may_be_branches():
     assert len(steps("(a; b); c")) == 3
     (step,) = steps("(a; b) |&| (c; d)")
     assert isinstance(step, nodes.Fork)
     assert [len(branch.steps) for branch in step.branches] == [2, 2]
-
-
-def test_round_brackets_may_also_hold_a_formula():
     first, second = steps("(X + 1) * 2 > 3; (X) = Y")
     assert isinstance(first, nodes.Constraint)
     assert isinstance(second, nodes.Constraint)
 
 
-def test_true_is_not_a_step():
+def test_what_is_not_a_step_and_what_is_one():
     assert steps("true") == ()
     assert len(steps("true; a; true")) == 1
-
-
-def test_a_variable_alone_is_a_step_but_not_a_body_outside_plan_terms():
     (step,) = steps("P")
     assert step == nodes.ExternalAction(nodes.Variable("P"))
 
@@ -145,12 +124,9 @@ def test_a_bare_condition_is_an_action_with_a_warning():
     ]
 
 
-def test_a_function_name_alone_is_an_internal_action():
+def test_functions_alone_and_in_conditions():
     (step,) = steps(".length(L)")
     assert step == nodes.Constraint(nodes.InternalAction(".length", (nodes.Variable("L"),)))
-
-
-def test_functions_in_conditions():
     context = program("+!g : .length(L) == 2 <- a.").plans[0].context
     assert isinstance(context, nodes.Relation)
     assert isinstance(context.left, nodes.FunctionCall)
@@ -166,24 +142,18 @@ def test_subplans_follow_or_replace_the_final_dot():
         assert len(plan.subplans) == 2
 
 
-def test_comments_are_allowed_everywhere():
+def test_comments_and_line_ends_of_any_system_are_read():
     assert belief_texts('/* a\n b */ p(/* x */ 1). // q.\n// r.\ns("// no comment").') == [
         "p(1)",
         's("// no comment")',
     ]
-
-
-def test_line_ends_of_any_system():
     assert belief_texts("p.\r\nq.\r\n") == ["p", "q"]
     assert errors("p.\r\nq(\r\n")[0].render().splitlines()[1] == "  2 | q("
 
 
-def test_the_same_plan_twice_is_one():
+def test_plans_at_run_time_and_the_same_plan_twice():
     text = "@l +!g(_) : a <- b."
     assert len(plan_texts('{ include("x.asl") } { include("y.asl") }', {"x.asl": text, "y.asl": text})) == 1
-
-
-def test_plans_at_run_time():
     assert parse_plan("+!g <- a.") == parse_plan("+!g <- a")
     assert len(parse_plans("+!g(1) <- a. +!g(2) <- b")) == 2
     assert len(parse_plans("+!g <- a({ b })")) == 1
@@ -191,6 +161,6 @@ def test_plans_at_run_time():
 
 
 @pytest.mark.parametrize("text", ["p.", "!g.", "+!g <- ", "+!g. p", "{ +!g }"])
-def test_only_plans_are_plans(text: str):
+def test_only_plans_are_plans(text):
     with pytest.raises(AslError):
         parse_plans(text)

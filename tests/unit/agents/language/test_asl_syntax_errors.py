@@ -90,12 +90,7 @@ def test_carets_are_below_the_error_even_after_tabs():
 @pytest.mark.parametrize(
     ("text", "line", "message", "help"),
     [
-        (
-            "+!g\n<- X = else.",
-            2,
-            "reserved word `else` used as a name",
-            "quote it as an atom",
-        ),
+        ("+!g\n<- X = else.", 2, "reserved word `else` used as a name", "quote it as an atom"),
         (
             "\ngröße(3).",
             2,
@@ -144,20 +139,10 @@ def test_carets_are_below_the_error_even_after_tabs():
         ("+!g <- a <- b.", 1, "second `<-` in a plan", "if this is a new plan"),
         ("+!g <- +!h.", 1, "expected a step, found the trigger `+!`", "post a goal with `!g`"),
         ("+!g <- if (a) { b } else if (c) { d }.", 1, "write `elif` for `else if`", "elif (condition)"),
-        (
-            "+!g <- if (a) { b }; else { c }.",
-            1,
-            "`else` without `if`",
-            "remove the `;`",
-        ),
+        ("+!g <- if (a) { b }; else { c }.", 1, "`else` without `if`", "remove the `;`"),
         ("+!g <- while x { b }.", 1, "expected `(` and the condition of `while`, found `x`", None),
         ("+!g <- a; ; b.", 1, "empty step between two `;`", None),
-        (
-            "+!g <- for (X in [1]) { p }.",
-            1,
-            "unknown keyword `in`",
-            "find elements of a list with `.member`",
-        ),
+        ("+!g <- for (X in [1]) { p }.", 1, "unknown keyword `in`", "find elements of a list with `.member`"),
         (
             "+!g <- if x > 3 { p }.",
             1,
@@ -180,12 +165,7 @@ def test_carets_are_below_the_error_even_after_tabs():
             "write values between strings",
         ),
         ("def go(): pass", 1, "Python keyword `def` in an agent program", "this is an agent program"),
-        (
-            "+!g <- X = foo + 1.",
-            1,
-            "operand of `+` is not a number",
-            "ask for the value first",
-        ),
+        ("+!g <- X = foo + 1.", 1, "operand of `+` is not a number", "ask for the value first"),
         (
             '+!g <- X = "a" + "b".',
             1,
@@ -214,7 +194,7 @@ def test_carets_are_below_the_error_even_after_tabs():
         ("p[a|b].", 1, "expected a variable as the tail of annotations", "write `p(X)"),
     ],
 )
-def test_common_mistakes(text: str, line: int, message: str, help: str | None):
+def test_common_mistakes(text, line, message, help):
     first = errors(text)[0]
     assert first.span is not None
     assert first.span.line == line
@@ -236,7 +216,7 @@ def test_a_context_refuses_an_internal_action_that_is_declared_to_act():
     assert wrong.message == "internal action `.tell` acts and cannot be in a context"
 
 
-def test_one_mistake_gives_one_error():
+def test_one_mistake_gives_one_error_and_parsing_continues():
     for text in (
         "+!a <- foo(.\n+!b <- c.",
         "p(q(1, 2.\nr(3).",
@@ -249,11 +229,14 @@ def test_one_mistake_gives_one_error():
         "+!g <- X = { +!i <- ( }; a.\n+!h.",
     ):
         assert len(places(text)) == 1, text
-
-
-def test_parsing_continues_after_every_error():
     text = "".join(f"+!g{number} <- a(;{' b' * (number % 3)}.\n" for number in range(40))
     assert sorted({line for line, _ in places(text)}) == list(range(1, 41))
+    found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
+    assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
+    (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
+    assert wrong.code == "nested-too-deeply"
+    (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")
+    assert wrong.code == "nested-too-deeply"
 
 
 def test_two_plans_with_one_label_are_an_error_that_names_both():
@@ -261,15 +244,9 @@ def test_two_plans_with_one_label_are_an_error_that_names_both():
     assert error.span is not None
     assert error.span.line == 4
     assert error.message == "two different plans have the label `@one`; the first one is at line 1"
-
-
-def test_two_plans_with_one_label_in_two_files_are_an_error_that_names_both():
     (error,) = errors('@one +!a.\n{ include("x.asl") }', {"x.asl": "\n@one +!b."})
     assert error.place() == "x.asl:2:2: "
     assert error.message.endswith("the first one is at main.asl, line 1")
-
-
-def test_labels_of_subplans_are_apart_from_those_of_the_program():
     load_program("x", "@one +!a. { @one +e. @two +f. } @two +!b.")
     assert len(errors("@one +!a. { @two +e. @two +f. }")) == 1
 
@@ -281,17 +258,12 @@ def test_labels_of_subplans_are_apart_from_those_of_the_program():
         ("+!g <- !h().", "+!g <- !h.", "empty brackets"),
     ],
 )
-def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text: str, plain: str, message: str):
+def test_ways_of_writing_in_the_thesis_are_errors_in_other_programs(text, plain, message):
     old = '+!make <- makeArtifact("m", "jason.architecture.ArtCmdVel"). '
     program, (warning,) = load_program("x", old + text)
     assert (warning.severity, warning.message) == ("warning", message)
     assert program.plans == load_program("x", old + plain)[0].plans
     assert [diagnostic.message for diagnostic in errors(text)] == [message]
-
-
-def test_warnings_come_with_the_errors_in_the_order_of_the_text():
-    found = errors("+!g <- not a.\n+!h <- b(.\n+!i <- not c.")
-    assert [diagnostic.severity for diagnostic in found] == ["warning", "error", "warning"]
 
 
 def test_every_statement_of_a_plan_is_read_although_others_are_wrong():
@@ -326,10 +298,3 @@ Corner(1,2).
         (7, "unclosed-string"),
         (8, "unexpected-token"),
     ]
-
-
-def test_the_length_of_a_sum_is_limited():
-    (wrong,) = errors(f"p({'+'.join(['1'] * 252)}). q.")
-    assert wrong.code == "nested-too-deeply"
-    (wrong,) = errors(f"p({'**'.join(['1'] * 200)}). q.")
-    assert wrong.code == "nested-too-deeply"

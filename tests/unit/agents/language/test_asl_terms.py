@@ -26,7 +26,7 @@ from jacaros.agents.language.lowering import format_term
         ("+4", 4.0),
     ],
 )
-def test_numbers(text: str, value: float):
+def test_numbers(text, value):
     assert parse_term(text) == nodes.Number(value)
 
 
@@ -46,16 +46,14 @@ def test_numbers(text: str, value: float):
         ("X = (a & b)", "(X = (a & b))"),
     ],
 )
-def test_operators_bind_as_in_the_language(text: str, grouped: str):
+def test_operators_bind_as_in_the_language(text, grouped):
     assert format_term(parse_term(text)) == grouped
 
 
-def test_strings_convert_line_feeds_and_quotes_and_nothing_else():
+def test_strings_and_quoted_atoms_keep_their_characters():
     assert parse_term(r'"a\nb\"c\td\\"') == nodes.String('a\nb"c\\td\\\\')
-
-
-def test_a_quoted_atom_keeps_its_quotes():
     assert parse_term("'my atom'(1)") == nodes.Literal("'my atom'", (nodes.Number(1.0),))
+    assert isinstance(parse_term("'a.b'"), nodes.Literal)
 
 
 def test_every_unnamed_variable_is_a_different_one():
@@ -63,38 +61,32 @@ def test_every_unnamed_variable_is_a_different_one():
     assert isinstance(term, nodes.Literal)
     names = {argument.name for argument in term.arguments if isinstance(argument, nodes.Variable)}
     assert len(names) == 4
-
-
-def test_a_numbered_variable_is_the_same_in_both_places():
     term = parse_term("f(_12Here, _12There)")
     assert isinstance(term, nodes.Literal)
     assert term.arguments[0] == term.arguments[1] == nodes.Variable("_12")
 
 
-def test_lists_splice_the_tails_that_are_lists():
+def test_lists_and_annotations_splice_their_tails():
     assert parse_term("[a|[b,c|T]]") == parse_term("[a,b,c|T]")
     assert parse_term("[|T]") == nodes.ListTerm((), nodes.Variable("T"))
     assert parse_term("[a|[]]") == parse_term("[a]")
-
-
-def test_annotations_may_have_annotations_and_a_tail():
     assert format_term(parse_term("p(1)[source(a)[source(b)], t|R]")) == "p(1)[source(a)[source(b)],t|R]"
     assert parse_term("X[a|R]") == nodes.Variable(
         "X", nodes.Annotations((nodes.Literal("a"),), nodes.Variable("R"))
     )
 
 
-def test_functions_differ_from_internal_actions_by_name_and_arity():
+def test_functions_and_namespaces_are_told_by_name():
     assert isinstance(parse_term(".length(L)"), nodes.FunctionCall)
     assert isinstance(parse_term(".length(L,N)"), nodes.InternalAction)
     assert isinstance(parse_term("system.time"), nodes.FunctionCall)
     assert isinstance(parse_term("math.abs(1)"), nodes.FunctionCall)
     assert isinstance(parse_term("robot.turn(1)"), nodes.InternalAction)
     assert isinstance(parse_term("robot.turn(1)", functions={"robot.turn": 1}), nodes.FunctionCall)
-
-
-def test_a_quoted_name_with_a_dot_is_an_atom():
-    assert isinstance(parse_term("'a.b'"), nodes.Literal)
+    assert parse_term("ns::~p") == nodes.Literal("p", negated=True, namespace="ns")
+    assert parse_term("N::p") == nodes.Literal("p", namespace=nodes.Variable("N"))
+    assert parse_term("ns::X") == nodes.Variable("X", namespace="ns")
+    assert parse_term("default::p") == parse_term("::p") == nodes.Literal("p")
 
 
 @pytest.mark.parametrize(
@@ -117,7 +109,7 @@ def test_a_quoted_name_with_a_dot_is_an_atom():
         ("{ b(X) }", nodes.BodyTerm),
     ],
 )
-def test_braces_hold_bodies_triggers_plans_and_rules(text: str, node: type):
+def test_braces_hold_bodies_triggers_plans_and_rules(text, node):
     assert isinstance(parse_term(text), node)
 
 
@@ -130,13 +122,6 @@ def test_a_plan_term_may_be_all_variables():
         nodes.Variable("C"),
         nodes.Variable("B"),
     )
-
-
-def test_namespaces_may_be_names_or_variables():
-    assert parse_term("ns::~p") == nodes.Literal("p", negated=True, namespace="ns")
-    assert parse_term("N::p") == nodes.Literal("p", namespace=nodes.Variable("N"))
-    assert parse_term("ns::X") == nodes.Variable("X", namespace="ns")
-    assert parse_term("default::p") == parse_term("::p") == nodes.Literal("p")
 
 
 def test_nodes_know_their_places():

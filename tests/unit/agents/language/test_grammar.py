@@ -105,7 +105,7 @@ def mutant(random: Random, tokens: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_parser_accepts_every_program_of_the_grammar(seed: int) -> None:
+def test_the_parser_accepts_every_program_of_the_grammar(seed):
     random = Random(seed)
     for _ in range(50):
         tokens = program(random, random.randrange(10, 120))
@@ -114,7 +114,7 @@ def test_the_parser_accepts_every_program_of_the_grammar(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_changed_program_belongs_to_the_grammar_exactly_if_the_parser_accepts_it(seed: int) -> None:
+def test_a_changed_program_belongs_to_the_grammar_exactly_if_the_parser_accepts_it(seed):
     random = Random(seed)
     for _ in range(60):
         tokens = program(random, random.randrange(10, 60))
@@ -157,7 +157,7 @@ def classes(token: Token) -> set[str]:
 
 
 @pytest.mark.parametrize("path", RECORDED, ids=lambda path: path.stem)
-def test_recorded_programs_belong_to_the_grammar(path: Path) -> None:
+def test_recorded_programs_belong_to_the_grammar(path):
     found: list[Diagnostic] = []
     file = SourceFile(str(path), path.read_text(encoding="utf-8"))
     ProgramParser(file, Names(count(), count(), count()), found, AnyDirective()).file_clauses()

@@ -19,7 +19,7 @@ def told(program: str) -> list[tuple[str, str | None]]:
         ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean `refuse`?"),
     ],
 )
-def test_needs_that_can_never_be_met_are_reported(needs: str, message: str, help: str) -> None:
+def test_needs_that_can_never_be_met_are_reported(needs, message, help):
     for program in (f"@a[{needs}] +!g <- b.", f"+!f <- !g[{needs}]."):
         ((found, help),) = told(program)
         assert message in found
@@ -27,6 +27,6 @@ def test_needs_that_can_never_be_met_are_reported(needs: str, message: str, help
         assert help in help
 
 
-def test_needs_that_can_be_met_are_not_reported() -> None:
+def test_needs_that_can_be_met_are_not_reported():
     for needs in ("needs(arm,base)", 'needs("/r1/wheels")'):
         assert not told(f"@a[{needs}, policy(refuse)] +!g <- b.")

@@ -3,9 +3,13 @@
 import heapq
 import itertools
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from random import Random
+from textwrap import dedent
 from typing import Any
+
+import pytest
 
 import jacaros.agents.mind.actions.standard  # noqa: F401 - fills the registry of internal actions
 from jacaros.agents.language.loader import load_program
@@ -202,6 +206,19 @@ def printed(program: str, **arguments: object) -> list[str]:
     host = mind(program, **arguments)  # type: ignore[arg-type]
     host.run()
     return host.printed
+
+
+def programs(cases: str) -> pytest.MarkDecorator:
+    """Parametrize a test with programs and their outputs: a line ``name => one | two``, then the program, indented.
+
+    A long output has a line of its own after the name.
+    """
+    found: list[Any] = []
+    for case in re.split(r"^(?=[^\s=])", cases.lstrip("\n"), flags=re.MULTILINE)[1:]:
+        name, rest = re.split(r"\s=>", case, maxsplit=1)
+        output, program = rest.split("\n", 1)
+        found.append(pytest.param(dedent(program), output.strip().split(" | ") if output else [], id=name))
+    return pytest.mark.parametrize(("program", "output"), found)
 
 
 def believed(host: RecordingHost, name: str) -> list[str]:

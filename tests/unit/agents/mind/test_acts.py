@@ -15,29 +15,40 @@ def begun(program: str) -> AgentHarness:
     return agent
 
 
-def test_an_action_suspends_only_its_intention() -> None:
+def test_an_action_suspends_only_its_intention_and_binds_its_outputs():
     agent = AgentHarness(MOVE)
     agent.run()
     assert agent.prints == ["other"]
     assert [str(act) for act in agent.acts] == ["move(1,X)"]
-
-
-def test_outputs_are_bound_when_the_action_ends() -> None:
     agent = begun(MOVE)
     agent.act("move").complete(7)
     agent.run()
     assert agent.prints == ["moved(7)", "other"]
 
 
-def test_an_action_that_ends_immediately_continues_in_the_next_cycle() -> None:
+def test_an_action_that_ends_immediately_takes_one_turn():
     agent = AgentHarness(
         "!g. +!g <- a; .print(1); b; .print(2).", actions={"a": lambda: True, "b": lambda: True}
     )
     agent.run()
     assert agent.prints == ["1", "2"]
+    agent = AgentHarness(TURNS, actions={"act": lambda: True})
+    agent.run()
+    assert agent.prints == ["a1", "b1", "a2", "b2", "b3", "a3", "b4", "b5"]
+    agent = AgentHarness(TURNS.replace("+!a", "@a[atomic] +!a"), actions={"act": lambda: True})
+    agent.run()
+    assert agent.prints == ["a1", "a2", "a3", "b1", "b2", "b3", "b4", "b5"]
+
+    def look() -> bool:
+        agent.perceive("seen(cup)")
+        return True
+
+    agent = AgentHarness("!a. +!a <- look; ?seen(X); .print(X).", actions={"look": look})
+    agent.run()
+    assert agent.prints == ["cup"]
 
 
-def test_a_failure_reaches_the_plan_with_its_reason() -> None:
+def test_a_failure_reaches_the_plan_with_its_reason():
     def refuse(metres: int) -> None:
         raise ActionFailed("limit(3)", "too far")
 
@@ -55,7 +66,7 @@ def test_a_failure_reaches_the_plan_with_its_reason() -> None:
     assert agent.prints == ["go", "action_failed too far limit(3) move(9) 4"]
 
 
-def test_dropping_the_intention_cancels_the_action() -> None:
+def test_dropping_cancels_an_action_and_a_second_completion_is_ignored():
     agent = begun("!g. !d. +!g <- move; .print(done). +!d <- .wait(10); .drop_intention(g).")
     agent.run()
     assert agent.acts[0].cancelled
@@ -64,9 +75,14 @@ def test_dropping_the_intention_cancels_the_action() -> None:
     agent.mind.complete(1, Completion(True))
     agent.run()
     assert agent.prints == []
+    agent = begun("!g. +!g <- move; .print(done).")
+    for _ in range(2):
+        agent.mind.complete(1, Completion(True))
+    agent.run()
+    assert agent.prints == ["done"]
 
 
-def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it() -> None:
+def test_suspending_the_intention_suspends_the_action():
     agent = begun("!g. !d. +!g <- move; .print(done). +!d <- .wait(10); .suspend(g); .wait(10); .resume(g).")
     move = agent.act("move")
     agent.run(seconds=0.015)
@@ -77,9 +93,6 @@ def test_suspending_the_intention_suspends_the_action_and_resuming_resumes_it() 
     move.complete()
     agent.run()
     assert agent.prints == ["done"]
-
-
-def test_an_action_that_ends_while_suspended_counts_after_resume() -> None:
     agent = begun("!g. +!g <- move; .print(done). +!s <- .suspend(g). +!r <- .resume(g).")
     agent.achieve("s")
     agent.run()
@@ -87,14 +100,6 @@ def test_an_action_that_ends_while_suspended_counts_after_resume() -> None:
     agent.run()
     assert agent.prints == []
     agent.achieve("r")
-    agent.run()
-    assert agent.prints == ["done"]
-
-
-def test_a_second_completion_of_an_act_is_ignored() -> None:
-    agent = begun("!g. +!g <- move; .print(done).")
-    for _ in range(2):
-        agent.mind.complete(1, Completion(True))
     agent.run()
     assert agent.prints == ["done"]
 
@@ -107,23 +112,7 @@ TURNS = """
 """
 
 
-def test_an_action_that_ends_immediately_takes_one_turn() -> None:
-    agent = AgentHarness(TURNS, actions={"act": lambda: True})
-    agent.run()
-    assert agent.prints == ["a1", "b1", "a2", "b2", "b3", "a3", "b4", "b5"]
-
-
-def test_percepts_of_an_action_are_believed_when_the_plan_continues() -> None:
-    def look() -> bool:
-        agent.perceive("seen(cup)")
-        return True
-
-    agent = AgentHarness("!a. +!a <- look; ?seen(X); .print(X).", actions={"look": look})
-    agent.run()
-    assert agent.prints == ["cup"]
-
-
-def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step() -> None:
+def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step():
     program = """
         !a.
         +!a <- get(X, X2); .print(X, X2); get(Y, Y); .print(no).
@@ -137,9 +126,3 @@ def test_an_output_of_an_immediate_action_is_bound_or_fails_the_step() -> None:
         "34",
         'action_failed bind_param_error(3,"4"): an output of the action would be 4, but is 3 already',
     ]
-
-
-def test_an_atomic_plan_keeps_its_turn_over_actions() -> None:
-    agent = AgentHarness(TURNS.replace("+!a", "@a[atomic] +!a"), actions={"act": lambda: True})
-    agent.run()
-    assert agent.prints == ["a1", "a2", "a3", "b1", "b2", "b3", "b4", "b5"]

@@ -1,6 +1,5 @@
 """The belief base against a simple model, and its indexes."""
 
-from collections.abc import Callable
 from unittest import mock
 
 import pytest
@@ -35,9 +34,7 @@ class Model:
 
 
 @given(OPERATIONS)
-def test_a_table_answers_like_a_list_after_any_changes(
-    operations: list[tuple[str, int, int]],
-) -> None:
+def test_a_table_answers_like_a_list_after_any_changes(operations):
     table, model = Table(functor("p", 2)), Model()
     table.find((0,), 0.0)
     table.find((0, 1), (0.0, 0.0))
@@ -68,9 +65,7 @@ def open_fact(a: object, b: object) -> OpenFact:
 
 @pytest.mark.parametrize("few", [0, 8])
 @given(st.lists(st.tuples(st.sampled_from("arxlRLdO"), st.integers(0, 7), st.integers(0, 2)), max_size=50))
-def test_candidates_of_mixed_tables_are_complete_and_in_order(
-    few: int, operations: list[tuple[str, int, int]]
-) -> None:
+def test_candidates_of_mixed_tables_are_complete_and_in_order(few, operations):
     """With *few* the ways of large tables are taken by small ones, too."""
     table = Table(functor("p", 2))
     entries = [Entry(), Entry(), *(open_fact(a, b) for a in (1.0, 2.0, Var()) for b in (2.0, Var()))]
@@ -102,7 +97,7 @@ def matches(row: object, asked: tuple[object, ...]) -> bool:
     return all(b in (None, a) for a, b in zip(row, asked, strict=True))
 
 
-def test_removing_the_newest_beliefs_leaves_no_gaps() -> None:
+def test_tables_lose_their_newest_beliefs_and_rules_without_traces():
     table = Table(functor("p", 2))
     table.find((0,), 1.0)
     for i in range(1000):
@@ -113,9 +108,16 @@ def test_removing_the_newest_beliefs_leaves_no_gaps() -> None:
     assert list(table.find((0,), 1.0)) == []
     table.add((1.0, 5.0), BY_SELF)
     assert list(table.find_items((0,), 1.0)) == [((1.0, 5.0), BY_SELF)]
+    table = Table(atom("p"))
+    rule = Entry()
+    table.add((), BY_SELF)
+    table.add(rule, ())
+    assert not table.plain
+    table.remove(rule)
+    assert table.plain
 
 
-def test_a_search_does_not_see_changes_by_its_own_actions() -> None:
+def test_a_search_does_not_see_changes_by_its_own_actions():
     base = BeliefTables()
     table = base[functor("p", 1)]
     for i in range(3):
@@ -131,21 +133,9 @@ def test_a_search_does_not_see_changes_by_its_own_actions() -> None:
     assert [row for row, _ in table.entries()] == [(10.0,), (11.0,), (12.0,)]
 
 
-def test_a_table_is_plain_again_without_its_rule() -> None:
-    table = Table(atom("p"))
-    rule = Entry()
-    table.add((), BY_SELF)
-    table.add(rule, ())
-    assert not table.plain
-    table.remove(rule)
-    assert table.plain
-
-
 @pytest.mark.parametrize("belief", ["d(I)", "d(a, I)", "d(I)[b]"])
 @pytest.mark.parametrize("others", ["", "d(0). d(0, 0).", "d(X) :- X < 0. d(X, Y) :- X < 0 & Y < 0."])
-def test_the_cost_of_a_belief_does_not_depend_on_the_number_of_others(
-    belief: str, others: str, calls_of: Callable[[Callable[[], object]], int]
-) -> None:
+def test_the_cost_of_a_belief_does_not_depend_on_the_number_of_others(belief, others, calls_of):
     def work(beliefs: int) -> int:
         program = f"""{others}
             !s.

@@ -22,24 +22,28 @@ def limited(program: str, limit: int) -> RecordingHost:
     return host
 
 
-def test_a_step_that_exceeds_the_limit_fails_with_the_reason() -> None:
+def test_a_step_that_exceeds_the_limit_fails_with_the_reason():
     host = limited(GROW, 10)
     assert host.printed == [
         "9 belief_limit in line 5",
         "there are 10 beliefs (option belief_limit), most of them grown/1 (8)",
     ]
     assert len(believed(host, "grown")) == 8
-
-
-def test_beliefs_that_come_and_go_do_not_use_up_a_large_limit() -> None:
     host = limited(GROW.replace("+grown(N)", "-+now(N); if (N mod 2 == 0) { +grown(N) }"), 3_000)
     assert host.printed == [
         "5996 belief_limit in line 5",
         "there are 3000 beliefs (option belief_limit), most of them grown/1 (2997)",
     ]
+    program = """
+    a. b.
+    !s.
+    +!s <- .asserta(c); .print(never).
+    -!s[error(E)] <- .print(E).
+    """
+    assert limited(program, 2).printed == ["belief_limit"]
 
 
-def test_replaced_and_deleted_beliefs_make_room() -> None:
+def test_rules_count_and_replaced_or_deleted_beliefs_make_room():
     program = """
     a(0). b(0).
     !s.
@@ -47,9 +51,18 @@ def test_replaced_and_deleted_beliefs_make_room() -> None:
     -!s[error(E)] <- .print(E).
     """
     assert limited(program, 2).printed == ["full", "belief_limit"]
+    program = """
+    a :- b.
+    !s.
+    +!s <- +c; +d.
+    -!s[error(E)] <- .print(E).
+    """
+    host = limited(program, 2)
+    assert host.printed == ["belief_limit"]
+    assert believed(host, "c") == ["c[source(self)]"]
 
 
-def test_refused_beliefs_from_outside_are_logged_once() -> None:
+def test_refused_beliefs_from_outside_are_logged_once():
     host = mind("+p(X) <- .print(X).", options=Options(belief_limit=3))
     host.run()
     percepts = [Percept("add", structure("p", float(n)), (SOURCE_PERCEPT,)) for n in range(4)]
@@ -70,25 +83,3 @@ def test_refused_beliefs_from_outside_are_logged_once() -> None:
     host.run()
     assert host.printed[3:] == ["7"]
     assert len(believed(host, "p")) == 3
-
-
-def test_the_limit_applies_to_internal_actions_that_add_beliefs() -> None:
-    program = """
-    a. b.
-    !s.
-    +!s <- .asserta(c); .print(never).
-    -!s[error(E)] <- .print(E).
-    """
-    assert limited(program, 2).printed == ["belief_limit"]
-
-
-def test_a_rule_counts_as_a_belief() -> None:
-    program = """
-    a :- b.
-    !s.
-    +!s <- +c; +d.
-    -!s[error(E)] <- .print(E).
-    """
-    host = limited(program, 2)
-    assert host.printed == ["belief_limit"]
-    assert believed(host, "c") == ["c[source(self)]"]

@@ -93,7 +93,7 @@ DELETIONS = st.builds(
 
 @settings(max_examples=150)
 @given(st.lists(ADDITIONS | DELETIONS, max_size=14))
-def test_the_beliefs_equal_those_of_the_model(changes: list[Change]) -> None:
+def test_the_beliefs_equal_those_of_the_model(changes):
     model = Model()
     for change in changes:
         model.apply(change)

@@ -1,25 +1,52 @@
 """Variables of plans: where they get their values, and when they give them back."""
 
-from collections.abc import Callable
-
 import pytest
-from recording_host import mind, printed
+from recording_host import mind, printed, programs
 
 from jacaros.agents.mind.rules import query
 
+PROGRAMS = """
+a failed goal unbinds its variables for the handler and the caller => unbound | free free_too
+    !s.
+    +!s <- !g(X, f(Y)); X = free; Y = free_too; .print(X, " ", Y).
+    +!g(A, f(B)) <- A = 1; B = 2; .fail.
+    -!g(A, f(B)) <- if (A == 1 | B == 2) { .print(bound) } else { .print(unbound) }.
+a variable bound on one branch only is free on the other => one | free | one
+    !s.
+    +!s <- for (.member(X, [1,2,1])) { if (X == 1) { Y = one }; if (Y = other) { .print(free) } else { .print(Y) } }.
+variables inside a negation or a collection stay free => 356[1,2]7
+    !g. p(1). p(2).
+    +!g <- ?(not q(Z)); Z = 3; .findall(X, p(X), [1,2]); X = 5; ?(true & .findall(Y, p(Y), L)); Y = 6; .count(p(W), 2);
+      W = 7; .print(Z, X, Y, L, W).
+a negated variable stands for negated literals only => p(3) | [p(1)[source(self)]] | p(5) | no
+    !g. ~p(1). p(2).
+    +!g <- Y = ~p(3); ~Z = Y; .print(Z); .findall(W, ~W, L); .print(L);
+      if (~V = p(3)) { .print(bad) }; !h(~p(5)); !h(p(5)).
+    +!h(~X) <- .print(X).
+    -!h(_) <- .print(no).
+bindings of an event wait outlive the search for its plan => 1 | k
+    !g. !k.
+    +!g <- .wait({+b(X)}); .print(X).
+    +!k <- .wait(5); +b(1); .print(k).
+    +b(X) : X > 5 <- .print(no).
+    +b(X) : X > 4 <- .print(no).
+the first free variable is unbound between the rounds of a loop
+=> 1 | 2 | X<no-value> | X<no-value> | 0 | 1 | Y<no-value> | Y<no-value>
+    !t. c(0).
+    +!t <- !h(X); .print(X); !k(Y); .print(Y).
+    +!h(X) <- for (.range(I,1,2)) { .print(I); X = I }; .print(X).
+    +!k(X) <- while (c(N) & N < 2) { -+c(N+1); X = N; .print(X) }; .print(X).
+annotations of a rule head have the values of the answer => [1,2] | 1[k(1),source(self)]
+    !g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R).
+"""
 
-def test_a_failed_goal_unbinds_its_variables_for_the_handler_and_the_caller() -> None:
-    assert printed(
-        """
-        !s.
-        +!s <- !g(X, f(Y)); X = free; Y = free_too; .print(X, " ", Y).
-        +!g(A, f(B)) <- A = 1; B = 2; .fail.
-        -!g(A, f(B)) <- if (A == 1 | B == 2) { .print(bound) } else { .print(unbound) }.
-        """
-    ) == ["unbound", "free free_too"]
+
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
-def test_bindings_made_before_a_goal_outlive_its_failure() -> None:
+def test_bindings_made_before_a_goal_outlive_its_failure():
     assert (
         printed(
             """
@@ -31,78 +58,17 @@ def test_bindings_made_before_a_goal_outlive_its_failure() -> None:
         )[1]
         == "pair(1,3)"
     )
-
-
-def test_variables_bound_in_a_loop_are_free_in_the_next_round_and_after_it() -> None:
-    assert printed(
-        """
-        !s.
-        +!s <- P = pair(A, B); for (.member(X, [1,2])) { A = X; .print(P) }; A = 9; B = 8; .print(P).
-        """
-    )[0::2] == ["pair(1,B)", "pair(9,8)"]
-
-
-def test_a_variable_bound_on_one_branch_only_is_free_on_the_other() -> None:
-    assert printed(
-        """
-        !s.
-        +!s <- for (.member(X, [1,2,1])) { if (X == 1) { Y = one }; if (Y = other) { .print(free) } else { .print(Y) } }.
-        """
-    ) == ["one", "free", "one"]
-
-
-def test_variables_inside_a_negation_or_a_collection_stay_free() -> None:
-    assert printed(
-        """
-        !g. p(1). p(2).
-        +!g <- ?(not q(Z)); Z = 3; .findall(X, p(X), [1,2]); X = 5; ?(true & .findall(Y, p(Y), L)); Y = 6; .count(p(W), 2);
-          W = 7; .print(Z, X, Y, L, W).
-        """
-    ) == ["356[1,2]7"]
-
-
-def test_a_negated_variable_stands_for_negated_literals_only() -> None:
-    assert printed(
-        """
-        !g. ~p(1). p(2).
-        +!g <- Y = ~p(3); ~Z = Y; .print(Z); .findall(W, ~W, L); .print(L);
-          if (~V = p(3)) { .print(bad) }; !h(~p(5)); !h(p(5)).
-        +!h(~X) <- .print(X).
-        -!h(_) <- .print(no).
-        """
-    ) == ["p(3)", "[p(1)[source(self)]]", "p(5)", "no"]
-
-
-def test_an_unbound_namespace_takes_every_namespace_in_turn() -> None:
+    assert (
+        printed("!g. +!g <- ++b(X); .print(a); .print(c); X = 7; .print(X). +b(Y) <- Y = 3; .print(b(Y)).")[
+            -1
+        ]
+        == "7"
+    )
     lines = printed("!g. a::p(1). b::p(3). p(4). +!g <- for (N::p(X)) { .print(N, X) }.")
     assert sorted(lines) == ["a1", "b3", "default4"]
 
 
-def test_bindings_of_an_event_wait_outlive_the_search_for_its_plan() -> None:
-    lines = printed(
-        """
-        !g. !k.
-        +!g <- .wait({+b(X)}); .print(X).
-        +!k <- .wait(5); +b(1); .print(k).
-        +b(X) : X > 5 <- .print(no).
-        +b(X) : X > 4 <- .print(no).
-        """
-    )
-    assert lines == ["1", "k"]
-
-
-def test_the_first_free_variable_is_unbound_between_the_rounds_of_a_loop() -> None:
-    assert printed(
-        """
-        !t. c(0).
-        +!t <- !h(X); .print(X); !k(Y); .print(Y).
-        +!h(X) <- for (.range(I,1,2)) { .print(I); X = I }; .print(X).
-        +!k(X) <- while (c(N) & N < 2) { -+c(N+1); X = N; .print(X) }; .print(X).
-        """
-    ) == ["1", "2", "X<no-value>", "X<no-value>", "0", "1", "Y<no-value>", "Y<no-value>"]
-
-
-def test_bindings_of_a_loop_end_with_each_round_and_after_it() -> None:
+def test_bindings_of_loops_and_failed_bodies_end_with_them():
     assert printed("!g. +!g <- for (.member(Z,[W,[3]])) { .print(Z,W); W = f(b) }.")[1] == "[3]W<no-value>"
     assert printed("!g. p(1). +!g <- for (p(Z)) { Y = Z }; if (p(2)) { Y = 3 }; .print(Y).") == [
         "Y<no-value>"
@@ -114,32 +80,20 @@ def test_bindings_of_a_loop_end_with_each_round_and_after_it() -> None:
         "one",
         "Y<no-value>",
     ]
-
-
-def test_a_failing_body_held_by_a_variable_unbinds_shared_variables() -> None:
+    assert printed(
+        """
+        !s.
+        +!s <- P = pair(A, B); for (.member(X, [1,2])) { A = X; .print(P) }; A = 9; B = 8; .print(P).
+        """
+    )[0::2] == ["pair(1,B)", "pair(9,8)"]
     assert printed("!g. +!g <- B = {.fail}; B. -!g[error(E)] <- .print(E).") == ["ia_failed"]
     assert printed("!g. s(1). +!g <- B = {for (s(X)) {.print(X)}}; B; .print(X).") == ["1", "X<no-value>"]
-
-
-def test_events_of_another_intention_share_no_variables() -> None:
-    assert (
-        printed("!g. +!g <- ++b(X); .print(a); .print(c); X = 7; .print(X). +b(Y) <- Y = 3; .print(b(Y)).")[
-            -1
-        ]
-        == "7"
-    )
-
-
-def test_annotations_of_a_rule_head_have_the_values_of_the_answer() -> None:
-    assert printed(
-        "!g. p(1). p(2). hd(X)[k(X)] :- p(X). +!g <- .findall(K,hd(_)[k(K)],L); .print(L); ?hd(Y)[|R]; .print(Y, R)."
-    ) == ["[1,2]", "1[k(1),source(self)]"]
 
 
 @pytest.mark.parametrize(
     "bounds", ["1, 4", "4, 1", "4, 1, -2", "1.9, 4.9", "1, 3, 0", "1, a", "U, 3", "X, 3"]
 )
-def test_range_answers_alike_whether_its_variable_is_new_or_known_to_be_free(bounds: str) -> None:
+def test_range_answers_alike_whether_its_variable_is_new_or_known_to_be_free(bounds):
     """A variable that the search meets for the first time is given its values without unification."""
     new = mind(f"!s. +!s <- .findall(X, .range(X, {bounds}), L); .print(L).")
     known = mind(f"!s. +!s <- P = f(X); .findall(X, .range(X, {bounds}), L); .print(L).")
@@ -149,9 +103,7 @@ def test_range_answers_alike_whether_its_variable_is_new_or_known_to_be_free(bou
     assert new.logged == known.logged
 
 
-def test_a_round_of_a_loop_over_numbers_takes_few_calls(
-    calls_of: Callable[[Callable[[], object]], int],
-) -> None:
+def test_a_round_of_a_loop_over_numbers_takes_few_calls(calls_of):
     def work(rounds: int) -> int:
         return calls_of(lambda: printed(f"!s. +!s <- for (.range(I, 1, {rounds})) {{ Y = I }}; .print(end)."))
 
@@ -176,7 +128,7 @@ def test_a_round_of_a_loop_over_numbers_takes_few_calls(
     ],
 )
 @pytest.mark.parametrize("parts", ["[F, A, N]", "[S, F, A, N]", "[_, F, A, _]", "[F, F, N]"])
-def test_deconstruction_treats_new_and_bound_variables_alike(term: str, parts: str) -> None:
+def test_deconstruction_treats_new_and_bound_variables_alike(term, parts):
     def shown(test: str) -> list[str]:
         return printed(f"!go. +!go <- T = {term}; {test}; .print(F, A, N). -!go <- .print(no).")
 
@@ -197,22 +149,14 @@ def test_deconstruction_treats_new_and_bound_variables_alike(term: str, parts: s
         "[p, [X], []]",
     ],
 )
-def test_construction_treats_new_and_unbound_variables_alike(parts: str) -> None:
+def test_construction_treats_new_and_unbound_variables_alike(parts):
     def shown(before: str) -> list[str]:
         return printed(f"!go. +!go <- {before} X =.. {parts}; Y = 2; .print(X). -!go <- .print(no).")
 
     assert shown("") == shown("L = [X];")
 
 
-def test_a_term_is_deconstructed_without_unification(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(query, "unify", None)
-    program = (
-        "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
-    )
-    assert printed(program) == ["q[1,a][][p]"]
-
-
-def test_a_text_that_is_parsed_again_uses_the_present_values() -> None:
+def test_terms_and_texts_are_taken_apart_with_their_present_values(monkeypatch):
     assert printed(
         """
         !go. +!go <- !g(1); !g(2).
@@ -222,7 +166,9 @@ def test_a_text_that_is_parsed_again_uses_the_present_values() -> None:
              .term2string(C, "c([1,b],\\"s\\")"); .print(C);
              .term2string(S, "1 + 2"); .print(S).
         """
-    ) == [
-        *("f(1,a,[1])", "h(1,5)", 'c([1,b],"s")', "3"),
-        *("f(2,a,[1])", "h(2,5)", 'c([1,b],"s")', "3"),
-    ]
+    ) == [*("f(1,a,[1])", "h(1,5)", 'c([1,b],"s")', "3"), *("f(2,a,[1])", "h(2,5)", 'c([1,b],"s")', "3")]
+    monkeypatch.setattr(query, "unify", None)
+    program = (
+        "!go(p(1, a)). +!go(T) <- T =.. [F, A, N]; M =.. [q, A, [F]]; M =.. [_, G, _, O]; .print(G, A, N, O)."
+    )
+    assert printed(program) == ["q[1,a][][p]"]

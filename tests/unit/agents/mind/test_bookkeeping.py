@@ -40,7 +40,12 @@ def is_looked_at(host: RecordingHost, name: str, *arguments: float) -> bool:
     return bool(waits.due or waits.restless)
 
 
-def test_a_wait_that_is_over_is_forgotten() -> None:
+def test_a_wait_looks_only_at_what_it_asks_for_and_is_forgotten():
+    host = awaiting("p(3) & r(_)")
+    assert not is_looked_at(host, "p", 4.0)
+    assert not is_looked_at(host, "p", 3.0, 3.0)
+    assert is_looked_at(host, "p", 3.0)
+    assert is_looked_at(host, "r", 8.0)
     host = awaiting("p(X) & not q(2) & q(1)")
     assert len(host.agent.waits.conditions) == 1
     host.run()
@@ -50,14 +55,6 @@ def test_a_wait_that_is_over_is_forgotten() -> None:
     for name in ("p", "q"):
         assert not is_looked_at(host, name, 1.0)
         assert not is_looked_at(host, name, 2.0)
-
-
-def test_only_changes_of_what_a_condition_asks_for_are_looked_at() -> None:
-    host = awaiting("p(3) & r(_)")
-    assert not is_looked_at(host, "p", 4.0)
-    assert not is_looked_at(host, "p", 3.0, 3.0)
-    assert is_looked_at(host, "p", 3.0)
-    assert is_looked_at(host, "r", 8.0)
 
 
 @pytest.mark.parametrize(
@@ -78,9 +75,7 @@ def test_only_changes_of_what_a_condition_asks_for_are_looked_at() -> None:
         (".my_name(X)", False),
     ],
 )
-def test_a_condition_on_facts_is_followed_and_any_other_tested_in_every_cycle(
-    condition: str, followed: bool
-) -> None:
+def test_a_condition_on_facts_is_followed_and_any_other_tested_in_every_cycle(condition, followed):
     agent = mind("r(X) :- p(X). p(1). !s. +!s.").agent
     assert (asked_by(term(condition), agent.beliefs, STANDARD) is not None) is followed
 
@@ -91,7 +86,7 @@ def test_a_condition_on_facts_is_followed_and_any_other_tested_in_every_cycle(
 @pytest.mark.parametrize(
     "end", [".wait(1)", ".fail", ".drop_intention(s)", ".fail_goal(s)", ".succeed_goal(s)"]
 )
-def test_an_intention_that_ends_is_not_kept_for_the_events_of_its_sub_plans(end: str) -> None:
+def test_an_intention_that_ends_is_not_kept_for_the_events_of_its_sub_plans(end):
     host = mind(
         f"""
         !s. +!s <- +seen; .wait(2); {end}. {{
@@ -108,10 +103,13 @@ def test_an_intention_that_ends_is_not_kept_for_the_events_of_its_sub_plans(end:
     assert not host.agent.conditioned
 
 
-def test_a_handler_for_a_failure_that_a_step_signals_is_not_its_own_handler() -> None:
+def test_handlers_of_failures_run_once():
     host = mind("!s. +!s <- .signal({-!g(1)}); .print(s). -!g(X) <- .print(h, X); .fail.")
     host.run(fuel=50, seconds=1)
     assert host.printed == ["s", "h1"]
+    host = mind("!s. +!s <- !a. { +!x <- true. } +!a <- .fail. -!s <- .print(h); .fail.")
+    host.run(fuel=100, seconds=1)
+    assert host.printed == ["h"]
 
 
 # --- messages ----------------------------------------------------------------------------------------------
@@ -119,7 +117,7 @@ def test_a_handler_for_a_failure_that_a_step_signals_is_not_its_own_handler() ->
 
 @pytest.mark.parametrize("content", ["3", '"text"', "X"])
 @pytest.mark.parametrize("performative", ["achieve", "tell"])
-def test_a_message_whose_content_is_not_a_literal_is_refused(content: str, performative: str) -> None:
+def test_a_message_whose_content_is_not_a_literal_is_refused(content, performative):
     host = mind("!s. +!s. +!g(X) <- .print(X).")
     host.run()
     host.agent.receive(SpeechAct(performative, "other", "tester", term(content), "m1"))
@@ -128,37 +126,13 @@ def test_a_message_whose_content_is_not_a_literal_is_refused(content: str, perfo
     assert [level for level, _ in host.logged] == ["warning"]
 
 
-def test_a_message_to_achieve_a_list_is_about_each_element() -> None:
+def test_messages_to_achieve_lists_and_urgent_ones():
     host = mind("!s. +!s. +!g(X) <- .print(X).")
     host.run()
     host.agent.receive(SpeechAct("achieve", "other", "tester", term("[g(1), g(2)]"), "m1"))
     host.agent.receive(SpeechAct("achieve", "other", "tester", NIL, "m2", flat=True))
     host.run()
     assert (host.printed, host.logged) == (["1", "2"], [])
-
-
-def test_a_question_is_forgotten_when_it_is_answered() -> None:
-    host = mind("!s. +!s <- .send(friend, askOne, p(_), A); .print(A).")
-    host.run()
-    (question,) = host.sent
-    host.agent.receive(SpeechAct("tell", "friend", "tester", term("p(1)"), "a1", question.id))
-    host.run()
-    assert host.printed == ["p(1)[source(friend)]"]
-    assert not host.agent.waits.questions
-
-
-def test_a_second_answer_to_a_question_is_not_for_the_asker() -> None:
-    host = mind("!s. +!s <- .send(friend, askOne, p(_), A); .print(A); .wait(50); .print(end).")
-    host.run(seconds=0.01)
-    (question,) = host.sent
-    for name in ("a1", "a2"):
-        host.agent.receive(SpeechAct("tell", "friend", "tester", term("p(1)"), name, question.id))
-        host.run(seconds=0.01)
-    host.run()
-    assert host.printed == ["p(1)[source(friend)]", "end"]
-
-
-def test_urgent_messages_go_first_after_plans_have_changed() -> None:
     host = mind("!s. +!s <- .wait(1). +!low <- .print(low). @h[urgency(1)] +!high <- .print(high).")
     host.run()
     for name in ("low", "high"):
@@ -169,10 +143,28 @@ def test_urgent_messages_go_first_after_plans_have_changed() -> None:
     assert host.printed == ["high", "low"]
 
 
+def test_questions_are_forgotten_when_they_are_answered():
+    host = mind("!s. +!s <- .send(friend, askOne, p(_), A); .print(A).")
+    host.run()
+    (question,) = host.sent
+    host.agent.receive(SpeechAct("tell", "friend", "tester", term("p(1)"), "a1", question.id))
+    host.run()
+    assert host.printed == ["p(1)[source(friend)]"]
+    assert not host.agent.waits.questions
+    host = mind("!s. +!s <- .send(friend, askOne, p(_), A); .print(A); .wait(50); .print(end).")
+    host.run(seconds=0.01)
+    (question,) = host.sent
+    for name in ("a1", "a2"):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", term("p(1)"), name, question.id))
+        host.run(seconds=0.01)
+    host.run()
+    assert host.printed == ["p(1)[source(friend)]", "end"]
+
+
 # --- failures ----------------------------------------------------------------------------------------------
 
 
-def test_a_wait_fails_when_its_condition_can_no_longer_be_evaluated() -> None:
+def test_conditions_that_cannot_be_evaluated_fail():
     host = mind(
         "!s. +!s <- .wait(p(X) & 1 div X > 0). -!s[error(E)] <- .print(E). !t. +!t <- .wait(5); +p(0)."
     )
@@ -180,9 +172,6 @@ def test_a_wait_fails_when_its_condition_can_no_longer_be_evaluated() -> None:
     assert len(host.printed) == 1
     assert not host.agent.waits.conditions
     assert not host.agent.alive
-
-
-def test_a_condition_of_a_plan_that_cannot_be_evaluated_counts_as_false() -> None:
     host = mind(
         """
         !s. @p[while(ok(X) & 1 div X > 0)] +!s <- .wait(50); .print(never). -!s[error(E)] <- .print(E).
@@ -193,9 +182,3 @@ def test_a_condition_of_a_plan_that_cannot_be_evaluated_counts_as_false() -> Non
     assert host.printed == ["condition_lost"]
     assert [level for level, _ in host.logged] == ["error"]
     assert "cannot evaluate the condition" in host.logged[0][1]
-
-
-def test_a_failing_handler_of_the_bottom_goal_is_not_run_again_in_a_scope() -> None:
-    host = mind("!s. +!s <- !a. { +!x <- true. } +!a <- .fail. -!s <- .print(h); .fail.")
-    host.run(fuel=100, seconds=1)
-    assert host.printed == ["h"]

@@ -17,7 +17,7 @@ def limited(program: str, **limits: int) -> RecordingHost:
     return mind(program, options=Options(**limits))
 
 
-def test_a_goal_beyond_the_intention_limit_fails_its_step() -> None:
+def test_what_goes_beyond_the_intention_limit_fails_its_step():
     host = limited(
         """
         !spawn(1).
@@ -33,9 +33,19 @@ def test_a_goal_beyond_the_intention_limit_fails_its_step() -> None:
         "10 intention_limit in line 3",
         "there are 10 intentions (option intention_limit)",
     ]
+    host = limited(
+        """
+        !g.
+        +!g <- .wait(1) |&| .wait(1) |&| .wait(1).
+        -!g[error(E)] <- .print(E).
+        """,
+        intention_limit=3,
+    )
+    host.run()
+    assert host.printed == ["intention_limit"]
 
 
-def test_an_event_beyond_the_limit_fails_its_step() -> None:
+def test_an_event_beyond_the_limit_fails_its_step():
     host = limited(
         """
         !flood.
@@ -53,20 +63,7 @@ def test_an_event_beyond_the_limit_fails_its_step() -> None:
     ]
 
 
-def test_branches_of_a_fork_count_as_intentions() -> None:
-    host = limited(
-        """
-        !g.
-        +!g <- .wait(1) |&| .wait(1) |&| .wait(1).
-        -!g[error(E)] <- .print(E).
-        """,
-        intention_limit=3,
-    )
-    host.run()
-    assert host.printed == ["intention_limit"]
-
-
-def test_refused_events_from_outside_are_logged_occasionally() -> None:
+def test_refused_events_from_outside_are_logged_occasionally():
     host = limited("+p(X) <- .print(X).", event_limit=2)
     for number in range(25):
         host.agent.perceive([Percept("add", structure("p", float(number)), (SOURCE_PERCEPT,))] * 1)
@@ -79,7 +76,7 @@ def test_refused_events_from_outside_are_logged_occasionally() -> None:
     assert host.printed == ["0", "1"]
 
 
-def test_sending_to_a_full_mailbox_fails() -> None:
+def test_sending_to_a_full_mailbox_fails():
     host = limited("+p(X) <- .print(X).", mailbox_limit=2)
     for number in range(2):
         host.agent.receive(SpeechAct("tell", "bob", "tester", structure("p", float(number)), f"m{number}"))
@@ -97,7 +94,7 @@ FORK_BOMB = """
 """
 
 
-def test_endless_goals_leave_other_plans_their_turns() -> None:
+def test_endless_goals_leave_other_plans_their_turns():
     host = limited(FORK_BOMB, intention_limit=200)
     turns = []
     for _ in range(20):
@@ -112,7 +109,7 @@ def test_endless_goals_leave_other_plans_their_turns() -> None:
     assert "bump" in host.printed
 
 
-def test_endless_goals_are_logged_occasionally() -> None:
+def test_endless_goals_are_logged_occasionally():
     host = limited(FORK_BOMB, intention_limit=20)
     host.agent.run(5000)
     warnings = [text for _, text in host.logged]
@@ -121,7 +118,7 @@ def test_endless_goals_are_logged_occasionally() -> None:
     assert warnings[-1].endswith("\n  1000 goals have failed for this reason")
 
 
-def test_a_lack_of_memory_is_reported_to_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lack_of_memory_is_reported_to_the_host(monkeypatch):
     def explode(ctx: object) -> None:
         raise MemoryError
 

@@ -67,7 +67,7 @@ PENDING = {
 
 
 @pytest.mark.parametrize("program", PENDING.values(), ids=PENDING)
-def test_what_is_pending_survives_storage_after_each_cycle(program: str) -> None:
+def test_what_is_pending_survives_storage_after_each_cycle(program):
     expected = printed(program, exchanged=False)
     assert expected
     assert "never" not in expected
@@ -80,7 +80,7 @@ def set_back(host: RecordingHost, seconds: float) -> None:
     host._timers = [(moment - seconds, *rest) for moment, *rest in host._timers]
 
 
-def test_the_elapsed_time_of_a_wait_is_that_which_has_passed() -> None:
+def test_the_elapsed_time_of_a_wait_is_that_which_has_passed():
     host = mind("!s. +!s <- .wait({+e}, 60000, T); .print(T). !t. +!t <- .wait(100); +e.")
     host.run(seconds=0.05)
     set_back(host, 3600)
@@ -88,7 +88,7 @@ def test_the_elapsed_time_of_a_wait_is_that_which_has_passed() -> None:
     assert host.printed == ["100"]
 
 
-def test_a_periodic_goal_continues_in_a_new_period() -> None:
+def test_a_periodic_goal_continues_in_a_new_period():
     host = mind("n(0). !s. +!s <- !!a[every(1000)]. +!a : n(N) <- -+n(N+1); .print(N).")
     host.run(seconds=2.5)
     assert host.printed == ["0", "1", "2"]
@@ -113,7 +113,7 @@ def later(host: RecordingHost, by: float) -> Mind:
 @pytest.mark.parametrize(
     ("by", "then"), [(-3600.0, 1.0), (-0.2, 1.0), (0.0, 1.0), (0.3, 0.7), (0.999, 0.001), (3600.0, 0.0)]
 )
-def test_a_stored_wait_ends_with_its_remaining_time(by: float, then: float) -> None:
+def test_a_stored_wait_ends_with_its_remaining_time(by, then):
     """Time that has passed meanwhile counts; a clock that was set back does not make it longer."""
     host = mind("!s. +!s <- .wait(1000); .print(waited).")
     host.run(seconds=0)
@@ -125,7 +125,7 @@ def test_a_stored_wait_ends_with_its_remaining_time(by: float, then: float) -> N
 
 
 @pytest.mark.parametrize("by", [-3600.0, 0.0])
-def test_a_stored_period_goes_on_whatever_the_clock_says(by: float) -> None:
+def test_a_stored_period_goes_on_whatever_the_clock_says(by):
     host = mind("n(0). !s. +!s <- !!a[every(1000)]. +!a : n(N) <- -+n(N+1); .print(N).")
     host.run(seconds=1.5)
     later(host, by)
@@ -133,7 +133,7 @@ def test_a_stored_period_goes_on_whatever_the_clock_says(by: float) -> None:
     assert host.printed == ["0", "1", "2", "3"]
 
 
-def test_a_restored_mind_answers_as_the_old_one() -> None:
+def test_a_restored_mind_answers_as_the_old_one():
     host = mind(
         "!s. +!s <- .wait(10); .findall(X, p(X)[a], L); .print(L). p(1)[a]. p(2)[b,a]. p(X)[c] :- q(X). p(3)[a]."
     )

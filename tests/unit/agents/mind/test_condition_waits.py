@@ -1,7 +1,5 @@
 """Waits for conditions end when the condition comes true, and cost the changes of other beliefs nothing."""
 
-from collections.abc import Callable
-
 import pytest
 from recording_host import believed, mind, printed
 
@@ -41,7 +39,7 @@ from jacaros.agents.terms.values import SOURCE_PERCEPT, atom, structure
         ("math.max(1, 2) == 2 & c(1)", "+c(1)"),
     ],
 )
-def test_a_wait_ends_when_its_condition_comes_true(condition: str, change: str) -> None:
+def test_a_wait_ends_when_its_condition_comes_true(condition, change):
     program = f"""
         old(1). old(2).
         by_rule(X) :- c(X).
@@ -54,7 +52,7 @@ def test_a_wait_ends_when_its_condition_comes_true(condition: str, change: str) 
     assert printed(program) == ["before", "came", "after"]
 
 
-def test_a_percept_ends_a_wait() -> None:
+def test_a_percept_ends_a_wait():
     host = mind("!wait. +!wait <- .wait(seen(2)); .print(came).")
     host.run(seconds=0)
     for number in (1.0, 2.0):
@@ -64,7 +62,7 @@ def test_a_percept_ends_a_wait() -> None:
     assert host.printed == ["came"]
 
 
-def test_waits_end_in_the_order_in_which_they_began() -> None:
+def test_waits_end_in_the_order_in_which_they_began():
     program = """
         !begin.
         +!begin <- !!first; !!second; !!third; !!fourth; .wait(10); -e; +d; +c(1).
@@ -77,9 +75,7 @@ def test_waits_end_in_the_order_in_which_they_began() -> None:
     assert printed(program) == ["fourth", "second", "first", "third"]
 
 
-def test_a_condition_costs_nothing_when_other_beliefs_change(
-    calls_of: Callable[[Callable[[], object]], int],
-) -> None:
+def test_a_condition_costs_nothing_when_other_beliefs_change(calls_of):
     def work(waits: int) -> int:
         host = mind(
             f"!wait({waits}). +!wait(0). +!wait(I) : I > 0 <- !!sleep(I); !wait(I - 1). +!sleep(I) <- .wait(c(I, _))."
@@ -94,7 +90,7 @@ def test_a_condition_costs_nothing_when_other_beliefs_change(
     assert work(200) < work(2) + 1000
 
 
-def test_ended_waits_leave_nothing_behind() -> None:
+def test_ended_waits_leave_nothing_behind():
     host = mind(
         "!go. +!go <- !!wait; .wait(1); !!wait; .wait(1); .drop_intention(wait); +done."
         "+!wait <- .wait(c(1, X) & not d(X) & .count(e(X), 5) & .intend(go), 10000)."

@@ -25,7 +25,7 @@ def needs_granted(act: Act) -> Completion | None:
     return Completion(True) if act.functor.name == ".needs" else None
 
 
-def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs() -> None:
+def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs():
     """Jason handles it there again, for ever."""
     host = mind(
         """
@@ -40,7 +40,7 @@ def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs(
     assert host.printed == ["handles_g", "handles_h"]
 
 
-def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts() -> None:
+def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts():
     host = mind(
         """
         !g(2).
@@ -54,7 +54,7 @@ def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts() -> None:
     assert host.printed == ["reacts(1)"]
 
 
-def test_the_first_branch_of_an_atomic_plan_is_not_interrupted() -> None:
+def test_the_first_branch_of_an_atomic_plan_is_not_interrupted():
     lines = printed(
         """
         !g. !other.
@@ -66,7 +66,7 @@ def test_the_first_branch_of_an_atomic_plan_is_not_interrupted() -> None:
     assert sorted(lines[3:]) == ["b1", "b2", "o1", "o2"]
 
 
-def test_branches_keep_what_their_plan_needs_until_the_last_has_ended() -> None:
+def test_branches_keep_what_their_plan_needs_until_the_last_has_ended():
     host = mind(
         "!g. @p[needs(arm)] +!g <- (.wait(10); .print(first)) |&| (.wait(50); .print(second)); .print(both).",
         complete=needs_granted,
@@ -82,7 +82,7 @@ def test_branches_keep_what_their_plan_needs_until_the_last_has_ended() -> None:
     assert len(host.cancelled) == 1
 
 
-def test_a_goal_condition_that_cannot_be_evaluated_is_reported_once_and_looked_at_again() -> None:
+def test_a_goal_condition_that_cannot_be_evaluated_is_reported_once_and_looked_at_again():
     host = mind(
         """
         n(0). !start.
@@ -97,7 +97,7 @@ def test_a_goal_condition_that_cannot_be_evaluated_is_reported_once_and_looked_a
     ]
 
 
-def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too() -> None:
+def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too():
     assert printed(
         """
         !start.
@@ -108,16 +108,13 @@ def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too() -> None:
     ) == ["deadline", "after"]
 
 
-def test_each_message_without_an_effect_takes_a_cycle() -> None:
+def test_messages_are_read_one_in_a_cycle_unless_they_are_urgent():
     host = mind("")
     for _ in range(3):
         host.agent.receive(message("sing", "p"))
     host.agent.run(2)
     assert len(host.logged) == 2
     assert len(host.agent.incoming.messages) == 1
-
-
-def test_after_an_urgent_message_others_are_read_one_in_a_cycle_again() -> None:
     host = mind("@s[urgency(5)] +bump(_) <- .print(bump). +low(N) <- .print(N).")
     host.agent.receive(message("tell", "bump(1)"))
     host.agent.run(5)
@@ -128,7 +125,7 @@ def test_after_an_urgent_message_others_are_read_one_in_a_cycle_again() -> None:
     assert len(host.agent.incoming.messages) == 2
 
 
-def test_a_change_is_untaken_while_its_event_waits() -> None:
+def test_a_change_is_untaken_while_its_event_waits():
     host = mind("+p(_) <- true; true. +q(_) <- true; true.")
     host.agent.perceive([percept("p", 1.0), percept("q", 1.0)])
     host.agent.run(1)
@@ -138,7 +135,7 @@ def test_a_change_is_untaken_while_its_event_waits() -> None:
     assert not host.agent.has_untaken("q")
 
 
-def test_a_program_included_at_run_time_must_not_take_a_label(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_a_program_included_at_run_time_must_not_take_a_label(tmp_path):  # type: ignore[no-untyped-def]
     (tmp_path / "more.asl").write_text("@same +!h <- .print(other).\n@free +!k <- true.\n")
     (tmp_path / "again.asl").write_text("@same +!h <- .print(own).\n@added +!k <- .print(k).\n")
 
@@ -156,13 +153,13 @@ def test_a_program_included_at_run_time_must_not_take_a_label(tmp_path) -> None:
     assert len(host.agent.library.plans) == plans + 1
 
 
-def test_a_limit_multiplies_a_random_number() -> None:
+def test_a_limit_multiplies_a_random_number():
     host = mind("!g. +!g <- .findall(X, .range(_, 1, 60) & X = math.random(10), L); .max(L, M); .print(M).")
     host.run()
     assert 3 < float(host.printed[0]) < 10
 
 
-def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely() -> None:
+def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely():
     steps = "; ".join(f".print({number})" for number in range(12))
     host = mind(f"!g. +!g <- {steps}. +p(_) <- .print(p).", options=Options(percept_interval=10))
     host.agent.run(2)
@@ -175,7 +172,7 @@ def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely() -> Non
     assert "p" in host.printed
 
 
-def test_an_observer_hears_of_a_goal_without_a_plan_in_each_attempt_of_the_goal_around_it() -> None:
+def test_an_observer_hears_of_a_goal_without_a_plan_in_each_attempt_of_the_goal_around_it():
     host = mind("!start. +!start <- !g[retry(2)]. +!g <- !h. -!start <- .print(handled).")
     states: list[tuple[str, str]] = []
     observe_goals(
@@ -186,7 +183,7 @@ def test_an_observer_hears_of_a_goal_without_a_plan_in_each_attempt_of_the_goal_
     assert [state for name, state in states if name == "h"] == ["failed", "finished"] * 3
 
 
-def test_an_observer_of_beliefs_does_not_hear_signals() -> None:
+def test_an_observer_of_beliefs_does_not_hear_signals():
     class Observer:
         changes: list[str] = []  # noqa: RUF012 - one test has one observer
 
@@ -205,7 +202,7 @@ def test_an_observer_of_beliefs_does_not_hear_signals() -> None:
     assert Observer.changes == ["+p/1"]
 
 
-def test_a_number_can_be_neither_believed_nor_forgotten() -> None:
+def test_a_number_can_be_neither_believed_nor_forgotten():
     host = mind("")
     assert not host.agent.tell(3.0)
     assert not host.agent.untell(3.0)
@@ -215,12 +212,12 @@ def test_a_number_can_be_neither_believed_nor_forgotten() -> None:
 @pytest.mark.parametrize(
     ("step", "error"), [("+X", "body_var_without_value"), ("+3", "body_var_not_literal")]
 )
-def test_a_belief_must_be_a_literal(step: str, error: str) -> None:
+def test_a_belief_must_be_a_literal(step, error):
     program = f"!g({'X' if 'X' in step else '3'}). +!g(X) <- +X. -!g(_)[error(E)] <- .print(E)."
     assert printed(program) == [error]
 
 
-def test_a_goal_that_is_watched_is_achieved_when_its_plan_has_ended() -> None:
+def test_a_goal_that_is_watched_is_achieved_when_its_plan_has_ended():
     host = mind("+!g <- .wait(10).")
     goal = WatchedGoal(host.agent, lower_value(parse_term("g")))
     host.run(seconds=0.005)

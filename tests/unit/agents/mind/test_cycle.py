@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from recording_host import mind, printed
+from recording_host import mind, printed, programs
 
 CASES = Path(__file__).parents[3] / "conformance"
 
@@ -17,7 +17,7 @@ def single_agent_cases() -> list[Path]:
 
 @pytest.mark.parametrize("case", single_agent_cases(), ids=lambda path: f"{path.parent.name}/{path.stem}")
 @pytest.mark.parametrize("fuel", [1, 3, 100_000])
-def test_staying_with_an_intention_is_invisible_to_programs(case: Path, fuel: int) -> None:
+def test_staying_with_an_intention_is_invisible_to_programs(case, fuel):
     host = mind(case.read_text(), name=case.stem, path=str(case), complete=no_environment)
     host.run(fuel)
     expected = [
@@ -36,7 +36,7 @@ def no_environment(act: object) -> object:
     return Completion(success=False)
 
 
-def test_a_tail_recursive_goal_needs_constant_space() -> None:
+def test_a_tail_recursive_goal_needs_constant_space():
     host = mind("!g(100000). +!g(0) <- .stopMAS. +!g(N) : N > 0 <- !g(N-1).")
     deepest = 0
     while host.agent.run(997):
@@ -45,104 +45,99 @@ def test_a_tail_recursive_goal_needs_constant_space() -> None:
     assert deepest == 1
 
 
-def test_ten_thousand_nested_goals_need_no_python_recursion() -> None:
-    assert printed(
-        "!g(10000,S). +!g(0,0). +!g(N,S) : N > 0 <- !g(N-1,T); S = T+1; if (N == 10000) { .print(S) }."
-    ) == ["10000"]
+PROGRAMS = """
+ten thousand nested goals need no python recursion => 10000
+    !g(10000,S). +!g(0,0). +!g(N,S) : N > 0 <- !g(N-1,T); S = T+1; if (N == 10000) { .print(S) }.
+a rule a hundred thousand levels deep needs no python recursion => deep
+    n(0). n(X) :- X > 0 & n(X-1). !s. +!s : n(100000) <- .print(deep).
+an ended goal is reported as achieved and finished
+=> bachieved | bfinished | cdropped | cfinished | aachieved | afinished
+    !a. !b. !w.
+    +!a <: done <- !c.
+    +!c <- .wait(10000).
+    +!b <- .wait(10000).
+    +!w <- .wait(10); .succeed_goal(b); +done.
+    ^!a[state(S)] : .member(S, [achieved, finished]) <- .print(a, S).
+    ^!b[state(S)] : .member(S, [achieved, finished]) <- .print(b, S).
+    ^!c[state(S)] : .member(S, [dropped, finished]) <- .print(c, S).
+programs see the annotations of labels => 2 | 1 | own | bob
+    !s.
+    @greet[cost(2), polite] +!greet.
+    +!s
+      <- .plan_label(P, greet[cost(C)]); .print(C);
+         .findall(L, .plan_label(_, L[polite]), Ls); .length(Ls, N); .print(N);
+         .relevant_plans({+!greet}, _, [M]); if (greet[source(self)] = M) { .print(own) };
+         .add_plan({ @told +!h }, bob); if (.plan_label(_, told[source(S)])) { .print(S) }.
+the plan of a suspended goal is chosen when it is resumed => changed | sub(2) | g2
+    !g. !k. c(1).
+    +!g <- !sub; .print(g2).
+    +!sub : c(X) <- .print(sub(X)).
+    +!k <- .suspend(g); -+c(2); .print(changed); .resume(g).
+a belief change without plan takes its turn in the event queue => b1 | b2 | c1 | a1 | c2 | a2
+    !g1. !g2. !g3.
+    +!g1 <- +b; .print(a1); .print(a2).
+    +!g2 <- .print(b1); .print(b2).
+    +!g3 <- .print(c1); .print(c2).
+replacing a belief with annotations replaces one that has them => del(2,[foo,source(self)]) | [9,1]
+    !g. p(1). p(2)[foo].
+    +!g <- -+p(9)[foo]; .findall(X, p(X), L); .print(L).
+    -p(X)[|R] <- .print(del(X,R)).
+beliefs with very long lists are found counted once and deleted => event | held | equal | 10
+    !g.
+    +!g <- .findall(X,.range(X,1,5000),L); .findall(X,.range(X,1,5000),M);
+      +l(L); +l(M); .count(l(_),N); if (l(M)) { .print(held) }; -l(L); .count(l(_),K);
+      if (k(L) == k(M)) { .print(equal) };
+      .print(N, K).
+    +l(_) <- .print(event).
+done ends the goal immediately => h1 | after
+    !g. +!g <- !h; .print(after). +!h <- .print(h1); .done; .print(no).
+an intention whose wait ended while suspended is ready at its resume => g2 | resumed | r2
+    !g. !k.
+    +!g <- .wait(10); .print(g2).
+    +!k <- .wait(5); .suspend(g); .wait(20); .resume(g); .print(resumed); .print(r2).
+goals of a dropped intention are not desires => gone
+    !g. !k. !x. !x. !x.
+    +!g <- !h(1).
+    +!k <- .drop_intention(g); if (.desire(h(_))) { .print(bad) } else { .print(gone) }.
+    +!h(_). +!x.
+the stack of an intention shows its goal and remaining steps => 1 | { .print(Y); .print(B); .wait(1) }
+    !g(1).
+    +!g(X) <- .intention(_, running, [im(_, { +!g(Y) }, { _; B }, _)|_], current); .print(Y); .print(B); .wait(X).
+a body held by a variable runs its first step in the same turn => a1 | b1 | a2 | b2 | a3 | b3 | b4 | b5
+    !a. !b.
+    +!a <- B = {.print(a1); .print(a2)}; B; .print(a3).
+    +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
+beliefs may change while a loop goes over them => 1 | 1 | 2 | 4 | 5 | end
+    !g. p(1). p(2). p(3). p(4). p(5). ok. r(X) :- p(X) & ok.
+    +!g <- for (r(X)) { .print(X); if (X == 1) { -ok } }; for (p(X)) { .print(X); -p(X+2) }; .print(end).
+a plan is removed with its last source => 1 | no_relevant
+    !g.
+    +!g <- .add_plan({@k +!a <- .print(1)}, bob); .add_plan({@k +!a <- .print(1)}, carl); .remove_plan(k, bob); !a;
+      .remove_plan(k, carl); !a.
+    -!g[error(E)] <- .print(E).
+the label of a plan without a file names no file => [k[source(self)]]
+    !g. +!g <- .add_plan("@k +!a."); .relevant_plans({+!a}, _, L); .print(L).
+removing an unknown plan succeeds => []
+    !g. @k +!a. +!g <- .remove_plan(none); .remove_plan([k, none]); .relevant_plans({+!a}, L); .print(L).
+dropping all intentions cancels planned events => now | later | end
+    !s.
+    +!s <- .at("now +1 s", {+!late}); .at("now", {+!now}); .wait(10); .drop_all_intentions;
+           .at("now +1 s", {+!later}); .wait(3000); .print(end).
+    +!late <- .print(late).
+    +!now <- .print(now).
+    +!later <- .print(later).
+a literal can be taken apart without its namespace => a[1][x]a
+    !go.
+    +!go <- n::a(1)[x] =.. [F, T, A]; a =.. [G, [], []]; .print(F, T, A, G); L = [b, [2], [y]]; b(2)[y] =.. L.
+"""
 
 
-def test_a_rule_a_hundred_thousand_levels_deep_needs_no_python_recursion() -> None:
-    assert printed("n(0). n(X) :- X > 0 & n(X-1). !s. +!s : n(100000) <- .print(deep).") == ["deep"]
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
-def test_an_ended_goal_is_reported_as_achieved_and_finished() -> None:
-    program = """
-        !a. !b. !w.
-        +!a <: done <- !c.
-        +!c <- .wait(10000).
-        +!b <- .wait(10000).
-        +!w <- .wait(10); .succeed_goal(b); +done.
-        ^!a[state(S)] : .member(S, [achieved, finished]) <- .print(a, S).
-        ^!b[state(S)] : .member(S, [achieved, finished]) <- .print(b, S).
-        ^!c[state(S)] : .member(S, [dropped, finished]) <- .print(c, S).
-        """
-    assert printed(program) == ["bachieved", "bfinished", "cdropped", "cfinished", "aachieved", "afinished"]
-
-
-def test_programs_see_the_annotations_of_labels() -> None:
-    assert printed(
-        """
-        !s.
-        @greet[cost(2), polite] +!greet.
-        +!s
-          <- .plan_label(P, greet[cost(C)]); .print(C);
-             .findall(L, .plan_label(_, L[polite]), Ls); .length(Ls, N); .print(N);
-             .relevant_plans({+!greet}, _, [M]); if (greet[source(self)] = M) { .print(own) };
-             .add_plan({ @told +!h }, bob); if (.plan_label(_, told[source(S)])) { .print(S) }.
-        """
-    ) == ["2", "1", "own", "bob"]
-
-
-def test_the_plan_of_a_suspended_goal_is_chosen_when_it_is_resumed() -> None:
-    assert printed(
-        """
-        !g. !k. c(1).
-        +!g <- !sub; .print(g2).
-        +!sub : c(X) <- .print(sub(X)).
-        +!k <- .suspend(g); -+c(2); .print(changed); .resume(g).
-        """
-    ) == ["changed", "sub(2)", "g2"]
-
-
-def test_a_belief_change_without_plan_takes_its_turn_in_the_event_queue() -> None:
-    assert printed(
-        """
-        !g1. !g2. !g3.
-        +!g1 <- +b; .print(a1); .print(a2).
-        +!g2 <- .print(b1); .print(b2).
-        +!g3 <- .print(c1); .print(c2).
-        """
-    ) == ["b1", "b2", "c1", "a1", "c2", "a2"]
-
-
-def test_replacing_a_belief_with_annotations_replaces_one_that_has_them() -> None:
-    assert printed(
-        """
-        !g. p(1). p(2)[foo].
-        +!g <- -+p(9)[foo]; .findall(X, p(X), L); .print(L).
-        -p(X)[|R] <- .print(del(X,R)).
-        """
-    ) == ["del(2,[foo,source(self)])", "[9,1]"]
-
-
-def test_beliefs_with_very_long_lists_are_found_counted_once_and_deleted() -> None:
-    assert printed(
-        """
-        !g.
-        +!g <- .findall(X,.range(X,1,5000),L); .findall(X,.range(X,1,5000),M);
-          +l(L); +l(M); .count(l(_),N); if (l(M)) { .print(held) }; -l(L); .count(l(_),K);
-          if (k(L) == k(M)) { .print(equal) };
-          .print(N, K).
-        +l(_) <- .print(event).
-        """
-    ) == ["event", "held", "equal", "10"]
-
-
-def test_done_ends_the_goal_immediately() -> None:
-    assert printed("!g. +!g <- !h; .print(after). +!h <- .print(h1); .done; .print(no).") == ["h1", "after"]
-
-
-def test_an_intention_whose_wait_ended_while_suspended_is_ready_at_its_resume() -> None:
-    assert printed(
-        """
-        !g. !k.
-        +!g <- .wait(10); .print(g2).
-        +!k <- .wait(5); .suspend(g); .wait(20); .resume(g); .print(resumed); .print(r2).
-        """
-    ) == ["g2", "resumed", "r2"]
-
-
-def test_goal_state_events_keep_their_order_and_carry_the_reason() -> None:
+def test_goal_state_events_keep_their_order_and_carry_the_reason():
     assert printed(
         """
         !g.
@@ -162,7 +157,7 @@ def test_goal_state_events_keep_their_order_and_carry_the_reason() -> None:
     ]
 
 
-def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals() -> None:
+def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals():
     assert printed(
         """
         !g.
@@ -186,74 +181,16 @@ def test_goal_state_events_report_suspension_and_resumption_of_waiting_goals() -
     ]
 
 
-def test_goals_of_a_dropped_intention_are_not_desires() -> None:
-    assert printed(
-        """
-        !g. !k. !x. !x. !x.
-        +!g <- !h(1).
-        +!k <- .drop_intention(g); if (.desire(h(_))) { .print(bad) } else { .print(gone) }.
-        +!h(_). +!x.
-        """
-    ) == ["gone"]
-
-
-def test_the_stack_of_an_intention_shows_its_goal_and_remaining_steps() -> None:
-    assert printed(
-        """
-        !g(1).
-        +!g(X) <- .intention(_, running, [im(_, { +!g(Y) }, { _; B }, _)|_], current); .print(Y); .print(B); .wait(X).
-        """
-    ) == ["1", "{ .print(Y); .print(B); .wait(1) }"]
-
-
-def test_a_body_held_by_a_variable_runs_its_first_step_in_the_same_turn() -> None:
-    assert printed(
-        """
-        !a. !b.
-        +!a <- B = {.print(a1); .print(a2)}; B; .print(a3).
-        +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
-        """
-    ) == ["a1", "b1", "a2", "b2", "a3", "b3", "b4", "b5"]
-
-
-def test_done_ends_a_handler_or_a_belief_plan_and_its_caller_continues() -> None:
+def test_done_ends_a_handler_and_a_test_without_value_fails():
     assert printed("!s. +!s <- !g; .print(after). +!g <- .fail. -!g <- .done; .print(no).") == ["after"]
     assert printed("!g. +!g <- +b; .print(x). +b <- .print(b); .done; .print(no).") == ["b", "x"]
-
-
-def test_beliefs_may_change_while_a_loop_goes_over_them() -> None:
-    assert printed(
-        """
-        !g. p(1). p(2). p(3). p(4). p(5). ok. r(X) :- p(X) & ok.
-        +!g <- for (r(X)) { .print(X); if (X == 1) { -ok } }; for (p(X)) { .print(X); -p(X+2) }; .print(end).
-        """
-    ) == ["1", "1", "2", "4", "5", "end"]
-
-
-def test_a_plan_is_removed_with_its_last_source() -> None:
-    assert printed(
-        """
-        !g.
-        +!g <- .add_plan({@k +!a <- .print(1)}, bob); .add_plan({@k +!a <- .print(1)}, carl); .remove_plan(k, bob); !a;
-          .remove_plan(k, carl); !a.
-        -!g[error(E)] <- .print(E).
-        """
-    ) == ["1", "no_relevant"]
-
-
-def test_the_label_of_a_plan_without_a_file_names_no_file() -> None:
-    program = '!g. +!g <- .add_plan("@k +!a."); .relevant_plans({+!a}, _, L); .print(L).'
-    assert printed(program) == ["[k[source(self)]]"]
-
-
-def test_removing_an_unknown_plan_succeeds() -> None:
-    assert printed(
-        "!g. @k +!a. +!g <- .remove_plan(none); .remove_plan([k, none]); .relevant_plans({+!a}, L); .print(L)."
-    ) == ["[]"]
+    program = "b(1). !go. +!go <- ?X; .print(X). -!go[error(E)] <- .print(E)."
+    assert printed(program) == ["body_var_without_value"]
+    assert printed("b(1). !go. +!go <- X = b(Y); ?X; .print(Y).") == ["1"]
 
 
 @pytest.mark.whole_stack
-def test_plans_of_any_width_are_compiled() -> None:
+def test_plans_of_any_width_are_compiled():
     context = " & ".join(f"X > {i}" for i in range(150))
     nots = " & ".join(f"not q({i})" for i in range(150))
     arguments = ",".join(str(i) for i in range(120))
@@ -268,7 +205,7 @@ def test_plans_of_any_width_are_compiled() -> None:
     ) == ["a", "b", "c"]
 
 
-def test_ending_a_goal_of_a_suspended_intention_resumes_its_caller_immediately() -> None:
+def test_ending_a_goal_of_a_suspended_intention_resumes_its_caller_immediately():
     lines = printed(
         """
         !g. !k.
@@ -281,20 +218,7 @@ def test_ending_a_goal_of_a_suspended_intention_resumes_its_caller_immediately()
     assert lines.index("a") < lines.index("k2")
 
 
-def test_dropping_all_intentions_cancels_planned_events() -> None:
-    assert printed(
-        """
-        !s.
-        +!s <- .at("now +1 s", {+!late}); .at("now", {+!now}); .wait(10); .drop_all_intentions;
-               .at("now +1 s", {+!later}); .wait(3000); .print(end).
-        +!late <- .print(late).
-        +!now <- .print(now).
-        +!later <- .print(later).
-        """
-    ) == ["now", "later", "end"]
-
-
-def test_a_context_may_ask_for_the_intention_of_its_event() -> None:
+def test_a_context_may_ask_for_the_intention_of_its_event():
     program = """
 !a. !b.
 +!a <- .wait(10); !c.
@@ -307,17 +231,3 @@ def test_a_context_may_ask_for_the_intention_of_its_event() -> None:
 !!new.
 """
     assert sorted(printed(program.replace("!!new", "!new"))) == ["1running", "2", "a new one"]
-
-
-def test_a_test_of_a_variable_without_a_value_fails() -> None:
-    program = "b(1). !go. +!go <- ?X; .print(X). -!go[error(E)] <- .print(E)."
-    assert printed(program) == ["body_var_without_value"]
-    assert printed("b(1). !go. +!go <- X = b(Y); ?X; .print(Y).") == ["1"]
-
-
-def test_a_literal_can_be_taken_apart_without_its_namespace() -> None:
-    program = """
-!go.
-+!go <- n::a(1)[x] =.. [F, T, A]; a =.. [G, [], []]; .print(F, T, A, G); L = [b, [2], [y]]; b(2)[y] =.. L.
-"""
-    assert printed(program) == ["a[1][x]a"]

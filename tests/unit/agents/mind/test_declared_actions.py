@@ -26,37 +26,22 @@ def printed(program: str) -> list[str]:
     return host.printed
 
 
-def test_a_context_collects() -> None:
+def test_every_way_to_ask_collects():
     assert printed("p(1). p(2). !g.\n+!g : .total(X, p(X), 3) & .total(X, p(X), T) <- .print(T).") == ["3"]
-
-
-def test_a_rule_collects() -> None:
     assert printed("t(T) :- .total(X, p(X), T). p(1). p(2). !g.\n+!g : t(T) <- .print(T).") == ["3"]
-
-
-def test_a_step_collects() -> None:
     assert printed("p(1). p(2). !g.\n+!g <- .total(X * 2, p(X) & X > 1, T); .print(T).") == ["4"]
-
-
-def test_a_formula_of_run_time_collects() -> None:
     assert printed(
         "p(1). p(2). !g.\n+!g <- Q = p(X); .total(X, Q, T); .eval(B, .total(Y, p(Y), 3)); .print(T, B)."
     ) == ["3true"]
 
 
-def test_a_wait_follows_the_condition() -> None:
+def test_waits_failures_and_the_check_see_the_condition():
     host = mind("p(1). !g.\n+!g <- .wait(.total(X, p(X), 3)); .print(done).")
     host.run()
     assert host.agent.waits.conditions
     assert not host.agent.waits.restless
-
-
-def test_a_failure_is_explained_with_the_value() -> None:
     host = mind("p(1). !g.\n+!g : .total(X, p(X), T) & T > 5.")
     host.run()
     assert any("stops at `T > 5` with T=1" in logged for _, logged in host.logged)
-
-
-def test_the_check_of_beliefs_sees_the_condition() -> None:
     program, _ = load_program("robot.asl", "+!g <- .total(X, zone(X), T); .print(T).", actions=STANDARD)
     assert set(beliefs_of(program, STANDARD).asked) == {"zone"}

@@ -16,13 +16,13 @@ PROGRAMS = sorted(
 )
 
 
-def test_there_are_programs() -> None:
+def test_there_are_programs():
     assert len(PROGRAMS) > 50
 
 
 @pytest.mark.parametrize("ordered", [False, True], ids=["plain", "in order of urgency"])
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_a_program_prints_the_same(program: Path, ordered: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_prints_the_same(program, ordered, monkeypatch):
     ordered_agents = []
 
     def run() -> RunResult:

@@ -17,7 +17,7 @@ def wait(agent: Mind, kind: object, heard: list[Listener]) -> Listener:
     return made
 
 
-def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
+def test_waits_keep_their_order_and_leave_nothing_behind():
     agent = mind("").agent
     heard: list[Listener] = []
     first, any_kind, other, last = (wait(agent, kind, heard) for kind in (ADDED, None, OTHER, ADDED))
@@ -26,9 +26,6 @@ def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
     notify_listeners(agent, ((OTHER, 1.0), None, BY_SELF, None))
     assert heard == [first, any_kind, last, other]
     assert not agent.waits.events
-
-
-def test_ended_waits_leave_nothing_behind() -> None:
     agent = mind("").agent
     heard: list[Listener] = []
     first, second = wait(agent, ADDED, heard), wait(agent, ADDED, heard)
@@ -37,9 +34,6 @@ def test_ended_waits_leave_nothing_behind() -> None:
     notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
     assert heard == [second]
     assert not agent.waits.events
-
-
-def test_waits_for_any_event_see_those_of_every_kind() -> None:
     host = mind(
         "!begin. +!begin <- !!one; !!any; .wait(10); +b(1); .wait(10); +a(2)."
         "+!one <- .wait({+a(X)}); .print(one, X). +!any <- .wait({+V}); .print(any)."

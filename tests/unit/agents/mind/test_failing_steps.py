@@ -4,28 +4,71 @@ import sys
 from types import FrameType
 from typing import Any
 
-import pytest
-from recording_host import mind, printed
+from recording_host import mind, printed, programs
 
 from jacaros.agents.mind.rules import failure
 from jacaros.agents.mind.rules.failure_reason import goal_text
 from jacaros.agents.mind.rules.meta_events import observe_goals
 
+PROGRAMS = """
+an exception in an internal action fails that step only => internal_action | other_lives
+    !other. !g.
+    +!other <- .wait(10); .print(other_lives).
+    +!g <- .nth(9, [a], _); .print(bad).
+    -!g[error(E)] <- .print(E).
+a handler that posts its goal again retries => try(3) | try(2) | try(1) | done
+    n(3). !g.
+    +!g : n(0) <- .print(done).
+    +!g : n(N) <- -+n(N-1); .print(try(N)); .fail.
+    -!g <- !g.
+a wait sees a failure event although nothing else runs => h | seen
+    !g. !k. +!g <- .wait({-!n}); .print(seen). +!k <- .wait(10); !n. -!n <- .print(h).
+a failing internal action does not hold as a condition => no | internal_action | 7 | []
+    !g. !h. r(X) :- .nth(5,[1],X). r(7).
+    +!g : .nth(5,[1],X) <- .print(bad).
+    +!g <- if (.nth(5,[1],X)) { .print(bad) } else { .print(no) };
+      ?r(Y); .print(Y); .findall(Z, .nth(5,[1],Z), L); .print(L).
+    +!h <- .nth(5,[1],_).
+    -!h[error(E)] <- .print(E).
+a goal can be failed before it is handled => k | failh(1) | after
+    !g. !k. !x. !x. !x.
+    +!g <- !h(1); .print(after).
+    +!k <- .fail_goal(h(_)); .print(k).
+    +!h(_) <- .print(no).
+    -!h(X) <- .print(failh(X)).
+    +!x.
+a goal that is not achieved by its deadline fails
+=> deadline_reached | after | quick | k deadline_reached | end
+    !g.
+    +!g <- !h[hard_deadline(50)]; .print(after); !!k[hard_deadline(50)]; !quick[hard_deadline(50)]; .wait(200);
+      .print(end).
+    +!h <- .wait(200); .print(no).
+    -!h[error(E)] <- .print(E).
+    +!k <- !h2.
+    +!h2 <- .wait(200); .print(no).
+    -!k[error(E)] <- .print(k, " ", E).
+    +!quick <- .print(quick).
+a goal in a variable has a deadline too => latedeadline_reached | adeadline_reached
+    !a. !b.
+    +!a <- G = slow; !G[hard_deadline(100)].
+    -!a[error(E)] <- .print(a, E).
+    +!b <- G = late[hard_deadline(50)]; !!G.
+    +!slow <- .wait(10000).
+    +!late <- .wait(10000).
+    -!late[error(E)] <- .print(late, E).
+the message of a goal without plan has the values of its failure => no relevant plan for !sub(1)
+    b(1). !try(_).
+    +!try(X) <- ?b(X); !sub(X).
+    -!try(X)[error_msg(M)] <- .print(M).
+"""
 
-def test_an_exception_in_an_internal_action_fails_that_step_only() -> None:
-    host = mind(
-        """
-        !other. !g.
-        +!other <- .wait(10); .print(other_lives).
-        +!g <- .nth(9, [a], _); .print(bad).
-        -!g[error(E)] <- .print(E).
-        """
-    )
-    host.run()
-    assert host.printed == ["internal_action", "other_lives"]
+
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
-def test_a_lost_intention_is_reported_with_its_place() -> None:
+def test_a_lost_intention_and_a_context_that_cannot_be_evaluated_are_reported():
     host = mind("!g.\n+!g <-\n  ?nothing(1).", name="lost")
     host.run()
     assert host.logged == [
@@ -38,27 +81,13 @@ def test_a_lost_intention_is_reported_with_its_place() -> None:
             ),
         )
     ]
-
-
-def test_a_handler_that_posts_its_goal_again_retries() -> None:
-    assert printed(
-        """
-        n(3). !g.
-        +!g : n(0) <- .print(done).
-        +!g : n(N) <- -+n(N-1); .print(try(N)); .fail.
-        -!g <- !g.
-        """
-    ) == ["try(3)", "try(2)", "try(1)", "done"]
-
-
-def test_a_context_that_cannot_be_evaluated_is_reported_and_the_next_plan_is_tried() -> None:
     host = mind("!g(0). +!g(X) : 5 div X > 1 <- .print(bad). +!g(_) <- .print(second).")
     host.run()
     assert host.printed == ["second"]
     assert "cannot evaluate" in host.logged[0][1]
 
 
-def test_an_observer_gets_the_reason_of_a_failure() -> None:
+def test_an_observer_gets_the_reason_of_a_failure():
     host = mind('!a. +!a <- !b. +!b <- .fail(error_msg("no way")). -!b.')
     heard: list[tuple[str, str, str]] = []
     observe_goals(
@@ -73,40 +102,7 @@ def test_an_observer_gets_the_reason_of_a_failure() -> None:
     assert not [state for state, _, why in heard if why and state != "failed"]
 
 
-def test_a_wait_sees_a_failure_event_although_nothing_else_runs() -> None:
-    assert printed("!g. !k. +!g <- .wait({-!n}); .print(seen). +!k <- .wait(10); !n. -!n <- .print(h).") == [
-        "h",
-        "seen",
-    ]
-
-
-def test_a_failing_internal_action_does_not_hold_as_a_condition() -> None:
-    assert printed(
-        """
-        !g. !h. r(X) :- .nth(5,[1],X). r(7).
-        +!g : .nth(5,[1],X) <- .print(bad).
-        +!g <- if (.nth(5,[1],X)) { .print(bad) } else { .print(no) };
-          ?r(Y); .print(Y); .findall(Z, .nth(5,[1],Z), L); .print(L).
-        +!h <- .nth(5,[1],_).
-        -!h[error(E)] <- .print(E).
-        """
-    ) == ["no", "internal_action", "7", "[]"]
-
-
-def test_a_goal_can_be_failed_before_it_is_handled() -> None:
-    assert printed(
-        """
-        !g. !k. !x. !x. !x.
-        +!g <- !h(1); .print(after).
-        +!k <- .fail_goal(h(_)); .print(k).
-        +!h(_) <- .print(no).
-        -!h(X) <- .print(failh(X)).
-        +!x.
-        """
-    ) == ["k", "failh(1)", "after"]
-
-
-def test_terms_that_are_not_goals_or_bodies_fail_with_the_reason() -> None:
+def test_terms_without_value_or_of_another_kind_fail_with_the_reason():
     assert printed(
         """
         !s.
@@ -125,31 +121,12 @@ def test_terms_that_are_not_goals_or_bodies_fail_with_the_reason() -> None:
         "u body_var_not_literal",
         "3[k,q,source(self)]",
     ]
-
-
-def test_a_goal_that_is_not_achieved_by_its_deadline_fails() -> None:
-    assert printed(
-        """
-        !g.
-        +!g <- !h[hard_deadline(50)]; .print(after); !!k[hard_deadline(50)]; !quick[hard_deadline(50)]; .wait(200);
-          .print(end).
-        +!h <- .wait(200); .print(no).
-        -!h[error(E)] <- .print(E).
-        +!k <- !h2.
-        +!h2 <- .wait(200); .print(no).
-        -!k[error(E)] <- .print(k, " ", E).
-        +!quick <- .print(quick).
-        """
-    ) == ["deadline_reached", "after", "quick", "k deadline_reached", "end"]
-
-
-def test_a_formula_without_value_fails_with_its_reason() -> None:
     assert printed("!g. +!g <- X = 1 div 0. -!g[error(E),code(C)] <- .print(E, " + '" ", C' + ").") == [
         "arithmetic_error (X = (1 div 0))"
     ]
 
 
-def test_every_failure_of_a_step_has_a_message() -> None:
+def test_every_failure_of_a_step_has_a_message():
     lines = printed(
         """
         !s.
@@ -170,21 +147,7 @@ def test_every_failure_of_a_step_has_a_message() -> None:
     ]
 
 
-def test_a_goal_in_a_variable_has_a_deadline_too() -> None:
-    assert printed(
-        """
-        !a. !b.
-        +!a <- G = slow; !G[hard_deadline(100)].
-        -!a[error(E)] <- .print(a, E).
-        +!b <- G = late[hard_deadline(50)]; !!G.
-        +!slow <- .wait(10000).
-        +!late <- .wait(10000).
-        -!late[error(E)] <- .print(late, E).
-        """
-    ) == ["latedeadline_reached", "adeadline_reached"]
-
-
-def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch):
     worded = []
     monkeypatch.setattr(failure, "goal_text", lambda goal: worded.append(goal) or goal_text(goal))
     program = """
@@ -198,17 +161,7 @@ def test_a_reason_is_worded_only_when_a_plan_asks_for_it(monkeypatch: pytest.Mon
     assert [arguments for _, *arguments in worded] == [[2.0]]
 
 
-def test_the_message_of_a_goal_without_plan_has_the_values_of_its_failure() -> None:
-    assert printed(
-        """
-        b(1). !try(_).
-        +!try(X) <- ?b(X); !sub(X).
-        -!try(X)[error_msg(M)] <- .print(M).
-        """
-    ) == ["no relevant plan for !sub(1)"]
-
-
-def test_a_step_that_fails_raises_no_exception() -> None:
+def test_a_step_that_fails_raises_no_exception():
     host = mind(
         "!g. +!g <- !a; !b; !c. +!a <- 1 > 2. +!b <- .fail. +!c <- ?d(_); .print(done). -!a. -!b. -!c <- .print(c)."
     )
@@ -229,7 +182,7 @@ def test_a_step_that_fails_raises_no_exception() -> None:
     assert raised == []
 
 
-def test_a_handler_runs_once_although_the_handler_of_an_inner_goal_failed() -> None:
+def test_a_handler_runs_once_although_the_handler_of_an_inner_goal_failed():
     goals = "!a. +!a <- !x. +!x <- .fail. -!x <- !b; {}. +!b <- !f. +!f <- .fail. -!f <- .fail."
     outer = "-!a <- .print(a)."
     assert printed(f"{goals.format('.print(x)')} -!b <- .print(b); .fail. {outer}") == ["b", "a"]

@@ -1,6 +1,5 @@
 """Needs, goal conditions and sub-plans cost only the plans that use them."""
 
-import pytest
 from recording_host import RecordingHost, mind
 
 from jacaros.agents.mind.rules import clr_int, forks, needs
@@ -20,7 +19,7 @@ def perceive(host: RecordingHost, name: str) -> None:
     host.run()
 
 
-def test_plans_that_do_not_run_change_no_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_plans_that_do_not_run_change_no_cycle(monkeypatch):
     def never(*_: object) -> None:
         raise AssertionError
 
@@ -35,9 +34,7 @@ def test_plans_that_do_not_run_change_no_cycle(monkeypatch: pytest.MonkeyPatch) 
     assert hosts[0].agent.counts.cycles == hosts[1].agent.counts.cycles
 
 
-def test_an_event_is_offered_only_to_intentions_with_sub_plans_for_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_event_is_offered_only_to_intentions_with_sub_plans_for_it(monkeypatch):
     host = mind(
         """
         !start.
@@ -57,7 +54,7 @@ def test_an_event_is_offered_only_to_intentions_with_sub_plans_for_it(
     assert len(asked) == 1
 
 
-def test_a_goal_condition_is_tested_only_while_its_goal_is_pursued() -> None:
+def test_a_goal_condition_is_tested_only_while_its_goal_is_pursued():
     host = mind("!s. +!s <- !g; .print(over). +!g <: done <- .wait({+never}). +e <- +done.")
     host.run()
     assert host.agent.conditioned
@@ -68,7 +65,7 @@ def test_a_goal_condition_is_tested_only_while_its_goal_is_pursued() -> None:
     assert not host.agent.incoming.called
 
 
-def test_the_branches_of_a_fork_react_with_the_sub_plans_of_their_goal() -> None:
+def test_the_branches_of_a_fork_react_with_the_sub_plans_of_their_goal():
     host = mind("!s. +!s <- (.wait({+n1}) |&| .wait({+n2})). { +y <- .print(y). }")
     host.run()
     perceive(host, "y")

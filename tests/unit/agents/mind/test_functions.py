@@ -15,21 +15,19 @@ def printed(program: str) -> list[str]:
     return host.printed
 
 
-def test_a_registered_rule_is_a_function() -> None:
+def test_registered_rules_and_internal_actions_are_functions():
     assert printed(SUM + "!g. +!g <- X = my.sum(1, my.sum(2, 3)); .print(X); .print(my.sum(X, X) * 2).") == [
         "6",
         "24",
     ]
-
-
-def test_a_registered_internal_action_is_a_function() -> None:
     program = (
         '{ register_function("my.size", 1, ".length") } !g. +!g <- .print(my.size([a, b]) + my.size("abc")).'
     )
     assert printed(program) == ["5"]
+    assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
 
 
-def test_functions_are_evaluated_in_conditions_rules_goals_and_beliefs() -> None:
+def test_functions_are_evaluated_wherever_they_are_written():
     program = """
         big(X) :- my.sum(X, 1) > 10.
         !g(9). !g(10).
@@ -38,23 +36,27 @@ def test_functions_are_evaluated_in_conditions_rules_goals_and_beliefs() -> None
         +!show(V) <- .print(V).
     """
     assert printed(SUM + program) == ["small", "11"]
-
-
-def test_texts_and_plans_parsed_at_run_time_may_call_functions() -> None:
     program = """
         !g. +!g <- .term2string(T, "f(my.sum(4, 5))"); .print(T);
             .add_plan("+!h(X) : my.sum(X, 1) > 3 <- .print(my.sum(X, 10))."); !h(3);
             .send(self, tellHow, "+!k <- .print(my.sum(1, 1))."); .wait(1); !k.
     """
     assert printed(SUM + program) == ["f(9)", "13", "2"]
-
-
-def test_a_function_waits_for_its_arguments() -> None:
-    assert printed(SUM + "!g. +!g <- X = my.sum(Q, 1); .print(X); Q = 4; .print(X).") == ["my.sum(Q,1)", "5"]
+    program = """
+        p(1). p(2).
+        !g. +!g <- +q(.count(p(X) & X > 1)); ?q(A); .term2string(B, "f(.count(p(_)))"); .print(A, B).
+    """
+    assert printed(program) == ["1f(2)"]
+    program = """
+        !g.
+        +!g <- .relevant_plans({ +!h(_) }, [P]); .print(found); .intention(_, _, _, current); .print(seen); !h(1).
+        +!h(X) <- .print(my.sum(X, 1)).
+    """
+    assert printed(SUM + program) == ["found", "seen", "2"]
 
 
 @pytest.mark.parametrize(("rule", "why"), [("none", "does not hold"), ("word", "is not a number")])
-def test_a_function_without_a_number_fails_the_step(rule: str, why: str) -> None:
+def test_a_function_without_a_number_fails_the_step(rule, why):
     program = f"""{{ register_function("my.f", 1, "{rule}") }}
         word(_, a).
         !g. +!g <- X = my.f(1); .print(never). -!g[error(E), error_msg(M)] <- .print(E, " ", M).
@@ -64,7 +66,7 @@ def test_a_function_without_a_number_fails_the_step(rule: str, why: str) -> None
     assert why in line
 
 
-def test_an_initial_belief_without_a_value_is_skipped_and_reported() -> None:
+def test_an_initial_belief_without_a_value_is_skipped_and_reported():
     host = mind(
         '{ register_function("my.f", 1, "none") } p(my.f(1)). p(2). !g(my.f(1)). !g(3). +!g(X) : p(Y) <- .print(X, Y).'
     )
@@ -73,24 +75,7 @@ def test_an_initial_belief_without_a_value_is_skipped_and_reported() -> None:
     assert [level for level, _ in host.logged] == ["error", "error"]
 
 
-def test_counts_are_evaluated_inside_terms() -> None:
-    program = """
-        p(1). p(2).
-        !g. +!g <- +q(.count(p(X) & X > 1)); ?q(A); .term2string(B, "f(.count(p(_)))"); .print(A, B).
-    """
-    assert printed(program) == ["1f(2)"]
-
-
-def test_a_plan_as_a_term_may_hold_a_function_that_has_no_value_yet() -> None:
-    program = """
-        !g.
-        +!g <- .relevant_plans({ +!h(_) }, [P]); .print(found); .intention(_, _, _, current); .print(seen); !h(1).
-        +!h(X) <- .print(my.sum(X, 1)).
-    """
-    assert printed(SUM + program) == ["found", "seen", "2"]
-
-
-def test_agents_in_two_threads_evaluate_their_own_functions() -> None:
+def test_agents_in_two_threads_evaluate_their_own_functions():
     both = threading.Barrier(2, timeout=30)
 
     def run(number: int) -> list[str]:

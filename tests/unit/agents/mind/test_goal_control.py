@@ -1,7 +1,7 @@
 """Goal control tells which goal it found; failures of waiting steps have a message; conditions do not wait."""
 
 import pytest
-from recording_host import mind, printed
+from recording_host import mind, printed, programs
 
 from jacaros.agents.mind.rules import goals
 from jacaros.agents.mind.state.intention import Intention
@@ -23,32 +23,58 @@ WAITING = (
         "drop_desire(w(X, _))",
     ],
 )
-def test_the_variables_of_a_goal_are_bound(action: str) -> None:
+def test_the_variables_of_a_goal_are_bound(action):
     host = mind(f"{WAITING} .{action}; .print(X).")
     host.run(seconds=5)
     assert host.printed[0] == "1"
 
 
-def test_resuming_reports_the_goal_as_well() -> None:
+def test_goal_control_binds_what_it_finds():
     host = mind(
         f"{WAITING} .suspend(w(1, _)); .suspended(w(X, Y), _); .print(X, Y); .resume(w(Z, _)); .print(Z)."
     )
     host.run(seconds=5)
     assert host.printed == ["1a", "1"]
-
-
-def test_nothing_is_bound_without_a_matching_goal() -> None:
     host = mind(f"{WAITING} .drop_desire(other(X)); .print(X).")
     host.run(seconds=0.5)
     assert host.printed == ["X<no-value>"]
-
-
-def test_a_plan_that_ends_its_own_goal_continues_after_the_goal() -> None:
     host = mind(
-        "!begin. +!begin <- !own(1); .print(after). +!own(X) <- .succeed_goal(own(_)); .print(never)."
+        '!begin. !later. +!begin <- .wait(p(X), 5000, T); .print(X, " ", T). +!later <- .wait(300); +p(1).'
     )
-    host.run()
-    assert host.printed == ["after"]
+    host.run(seconds=1)
+    assert host.printed == ["1 300"]
+    host = mind(
+        "!own. +!own <- .suspend; .print(on). !resume. +!resume <- .wait(100); .print(before); .resume(own)."
+    )
+    host.run(seconds=1)
+    assert host.printed == ["before", "on"]
+
+
+PROGRAMS = """
+a plan that ends its own goal continues after the goal => after
+    !begin. +!begin <- !own(1); .print(after). +!own(X) <- .succeed_goal(own(_)); .print(never).
+a failed formula that holds a shared variable is shown => .nth(5,[a],X) internal_action | X<no-value>
+    !begin. +!begin <- !do({ .nth(5, [a], X) }); .print(X).
+    +!do(B) <- B.
+    -!do(B)[code(C), error(E)] <- .print(C, " ", E).
+rules and plans are removed whatever their variables are called => [] | 1
+    r(X, Y) :- p(X, Y). p(1, 2).
+    !begin. +!begin <- -{ r(A, B) :- p(A, B) }; .findall(Q, r(Q, _), L); .print(L);
+        .add_plan({ +!more(A) : A > 1 <- .print(A) }); .add_plan({ +!more(B) : B > 1 <- .print(B) });
+        .relevant_plans({ +!more(_) }, Ps); .length(Ps, N); .print(N).
+the reason of a wait names what it waits for => 1 30012300
+    !a. !b. !c. !look.
+    +!a <- .wait(300).
+    +!b <- .wait({+e(1)}, 300, _).
+    +!c <- .wait(p(2), 300, _).
+    +!look <- .wait(50); .suspended(a, wait(I)[time(T)]); .suspended(b, wait(_)[e(N)]); .suspended(c, wait(_)[p(M)]);
+       .suspend(a); .suspended(a, wait(_)[time(U)]); .print(I, " ", T, N, M, U).
+"""
+
+
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
 @pytest.mark.parametrize(
@@ -59,7 +85,7 @@ def test_a_plan_that_ends_its_own_goal_continues_after_the_goal() -> None:
         ("act", "action_failed the action failed"),
     ],
 )
-def test_the_failure_of_a_waiting_step_has_a_message(step: str, error: str) -> None:
+def test_the_failure_of_a_waiting_step_has_a_message(step, error):
     from jacaros.agents.mind.state.act import Completion
 
     host = mind(
@@ -71,7 +97,7 @@ def test_the_failure_of_a_waiting_step_has_a_message(step: str, error: str) -> N
 
 
 @pytest.mark.parametrize("action", [".wait(1)", ".send(self, tell, hi)", ".broadcast(tell, hi)", ".stopMAS"])
-def test_actions_that_wait_or_act_on_others_are_not_conditions(action: str) -> None:
+def test_actions_that_wait_or_act_on_others_are_not_conditions(action):
     host = mind(
         f"r :- {action}. !begin. +!begin <- if (r) {{ .print(holds) }}; !known({action}). "
         "+!known(F) : F <- .print(holds). +!known(F) <- .print(end). +hi <- .print(hi)."
@@ -81,31 +107,10 @@ def test_actions_that_wait_or_act_on_others_are_not_conditions(action: str) -> N
     assert len(host.logged) == 2
 
 
-def test_a_failed_formula_that_holds_a_shared_variable_is_shown() -> None:
-    host = mind("""
-        !begin. +!begin <- !do({ .nth(5, [a], X) }); .print(X).
-        +!do(B) <- B.
-        -!do(B)[code(C), error(E)] <- .print(C, " ", E).
-    """)
-    host.run()
-    assert host.printed == [".nth(5,[a],X) internal_action", "X<no-value>"]
-
-
-def test_rules_and_plans_are_removed_whatever_their_variables_are_called() -> None:
-    host = mind("""
-        r(X, Y) :- p(X, Y). p(1, 2).
-        !begin. +!begin <- -{ r(A, B) :- p(A, B) }; .findall(Q, r(Q, _), L); .print(L);
-            .add_plan({ +!more(A) : A > 1 <- .print(A) }); .add_plan({ +!more(B) : B > 1 <- .print(B) });
-            .relevant_plans({ +!more(_) }, Ps); .length(Ps, N); .print(N).
-    """)
-    host.run()
-    assert host.printed == ["[]", "1"]
-
-
 @pytest.mark.parametrize(
     ("action", "lines"), [("drop_all_intentions", ["b"]), ("drop_all_events", ["a", "b"])]
 )
-def test_dropping_all_intentions_cancels_scheduled_events(action: str, lines: list[str]) -> None:
+def test_dropping_all_intentions_cancels_scheduled_events(action, lines):
     host = mind(
         f"""!begin. +!begin <- .at("now +20", {{ +!x(a) }}); .{action}; .at("now +30", {{ +!x(b) }}).
         +!x(N) <- .print(N)."""
@@ -114,30 +119,14 @@ def test_dropping_all_intentions_cancels_scheduled_events(action: str, lines: li
     assert host.printed == lines
 
 
-def test_a_wait_reports_how_long_its_condition_took() -> None:
-    host = mind(
-        '!begin. !later. +!begin <- .wait(p(X), 5000, T); .print(X, " ", T). +!later <- .wait(300); +p(1).'
-    )
-    host.run(seconds=1)
-    assert host.printed == ["1 300"]
-
-
 @pytest.mark.parametrize("action", [".suspend", ".suspend(own)"])
-def test_a_goal_that_suspends_itself_at_its_end_is_not_over(action: str) -> None:
+def test_a_goal_that_suspends_itself_at_its_end_is_not_over(action):
     host = mind(
         f"!caller. +!caller <- !own; .print(after). +!own <- {action}."
         " !resume. +!resume <- .wait(100); .print(before); .resume(own)."
     )
     host.run(seconds=1)
     assert host.printed == ["before", "after"]
-
-
-def test_a_goal_that_suspends_itself_continues_with_its_next_step() -> None:
-    host = mind(
-        "!own. +!own <- .suspend; .print(on). !resume. +!resume <- .wait(100); .print(before); .resume(own)."
-    )
-    host.run(seconds=1)
-    assert host.printed == ["before", "on"]
 
 
 @pytest.mark.parametrize(
@@ -151,24 +140,12 @@ def test_a_goal_that_suspends_itself_continues_with_its_next_step() -> None:
         (".drop_event(g(1)); .wait(10)", "pending dropped finished"),
     ],
 )
-def test_the_states_of_a_goal_that_is_still_an_event_are_reported(steps: str, states: str) -> None:
+def test_the_states_of_a_goal_that_is_still_an_event_are_reported(steps, states):
     program = f"!s. +!s <- !!g(1); {steps}; .print(end). +!g(X). ^!g(X)[state(S)] <- .print(S)."
     assert [line for line in printed(program) if line != "end"] == states.split()
 
 
-def test_the_reason_of_a_wait_names_what_it_waits_for() -> None:
-    program = """
-!a. !b. !c. !look.
-+!a <- .wait(300).
-+!b <- .wait({+e(1)}, 300, _).
-+!c <- .wait(p(2), 300, _).
-+!look <- .wait(50); .suspended(a, wait(I)[time(T)]); .suspended(b, wait(_)[e(N)]); .suspended(c, wait(_)[p(M)]);
-   .suspend(a); .suspended(a, wait(_)[time(U)]); .print(I, " ", T, N, M, U).
-"""
-    assert printed(program) == ["1 30012300"]
-
-
-def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
+def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it():
     program = """
         !g.
         +!g <- if (true) { !h(X, 3) } else { !h(1, Y) }; .print(end).
@@ -182,7 +159,7 @@ def test_the_body_of_a_plan_that_waits_for_a_goal_begins_with_it() -> None:
 
 
 @pytest.mark.parametrize("action", ["drop_event(b)", "drop_all_events"])
-def test_dropping_the_event_of_a_suspended_intention_drops_the_intention(action: str) -> None:
+def test_dropping_the_event_of_a_suspended_intention_drops_the_intention(action):
     host = mind(f"!s. +!s <- .{action}; .print(dropped). +!b <- .print(b).")
     agent = host.agent
     intention = Intention(agent)

@@ -147,10 +147,7 @@ class Storm:
         assert len(ended) == len(set(ended))
         assert sorted(self.agent.waits.acts) == sorted(self.under_way())
         agent = self.agent
-        waits = [
-            *agent.waits.acts.values(),
-            *(each.arguments[0] for each in agent.waits.conditions.values()),
-        ]
+        waits = [*agent.waits.acts.values(), *(each.arguments[0] for each in agent.waits.conditions.values())]
         waits += [each.arguments[0] for held in agent.waits.events.values() for each in held.values()]
         assert not any(waiting.intention.dropped for waiting in waits)
         ready = [intention for intention in agent.intentions if not intention.dropped]
@@ -197,7 +194,7 @@ def text_of(frame: Any) -> str:
 
 @settings(max_examples=100)
 @given(stories)
-def test_ended_goals_leave_nothing_behind_however_they_ended(story: list[tuple[Any, ...]]) -> None:
+def test_ended_goals_leave_nothing_behind_however_they_ended(story):
     storm = Storm()
     for step in story:
         storm.step(step)
@@ -208,7 +205,7 @@ def test_ended_goals_leave_nothing_behind_however_they_ended(story: list[tuple[A
 
 @settings(max_examples=60)
 @given(stories)
-def test_nothing_runs_after_everything_is_dropped(story: list[tuple[Any, ...]]) -> None:
+def test_nothing_runs_after_everything_is_dropped(story):
     storm = Storm()
     for step in story:
         storm.step(step)
@@ -228,9 +225,7 @@ def test_nothing_runs_after_everything_is_dropped(story: list[tuple[Any, ...]]) 
     st.lists(st.tuples(numbers, st.sampled_from([1.0, 4.0, 6.0, 7.0])), min_size=1, max_size=5),
     st.lists(st.booleans(), max_size=12),
 )
-def test_nothing_else_runs_between_the_steps_of_an_atomic_plan(
-    tasks: list[tuple[float, float]], ends: list[bool]
-) -> None:
+def test_nothing_else_runs_between_the_steps_of_an_atomic_plan(tasks, ends):
     host = mind(
         """
         @calm[atomic] +!sub(N,6) <- .print(begin); act(N); !inner(N); .print(end).
@@ -260,7 +255,7 @@ def test_nothing_else_runs_between_the_steps_of_an_atomic_plan(
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_an_id_that_is_not_pending_is_ignored(seed: int) -> None:
+def test_an_id_that_is_not_pending_is_ignored(seed):
     host = mind("!g. +!g <- act(1); .print(done).")
     host.run()
     host.agent.complete(99 + seed, Completion(False))

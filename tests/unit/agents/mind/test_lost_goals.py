@@ -20,34 +20,22 @@ def lost(goal: str, why: str, line: int, *details: str) -> list[str]:
     return [first, *(f"  {each}" for each in details)]
 
 
-def test_a_test_goal_is_reported_with_its_values() -> None:
+def test_a_step_is_reported_with_its_values():
     found = told("!g.\n+!g <- X = 7;\n ?reading(X, Y).")
     assert found == lost("g", "test_goal_failed, a test found no answer", 3, "step: ?reading(7,Y)")
-
-
-def test_a_comparison_is_reported_with_its_values() -> None:
     found = told("level(3).\n!g.\n+!g <- ?level(X);\n X > 5.")
     assert found == lost("g", "constraint_failed, a constraint does not hold", 4, "step: 3 > 5")
-
-
-def test_a_formula_without_value_is_reported_as_written() -> None:
     found = told("!g.\n+!g <- X = 1 div 0.")
     assert found == lost("g", "arithmetic_error, integer division by zero", 2, "step: X = (1 div 0)")
-
-
-def test_an_internal_action_is_reported_with_its_message() -> None:
     (first, step) = told("!g.\n+!g <- .nth(7, [a], X).")
     assert first.endswith("internal_action, .nth: position 7 is outside the 1 elements (tester.asl:2)")
     assert step == "  step: .nth(7,[a],X)"
-
-
-def test_the_terms_of_a_failure_are_reported() -> None:
     found = told('!g.\n+!g <- .fail(stuck(3), error_msg("the door is shut")).')
     step = "step: .fail(...)"
     assert found == lost("g", "internal_action, the door is shut", 2, step, "reason: stuck(3)")
 
 
-def test_a_failing_action_is_reported_with_reason_step_and_goals() -> None:
+def test_a_failing_action_is_reported_with_reason_step_and_goals():
     reason = structure("env_failure_reason", structure("aborted", 204.0, String("no path")))
     failed = Completion(False, (), (structure("error_msg", String("no path")), reason))
     program = (
@@ -62,16 +50,10 @@ def test_a_failing_action_is_reported_with_reason_step_and_goals() -> None:
     )
 
 
-def test_a_goal_without_relevant_plan() -> None:
+def test_goals_without_a_plan_are_reported_with_those_below_and_the_plans_that_do_not_fit():
     assert told("!g.\n+!g <- !missing(4).") == lost("g", "no_relevant, no relevant plan for !missing(4)", 2)
-
-
-def test_the_goals_below_one_without_plan_are_reported() -> None:
     found = told("!g.\n+!g <- !h.\n+!h <- !i.\n+!i <- !missing(4).")
     assert found == lost("g", "no_relevant, no relevant plan for !missing(4)", 4, "for: !i, !h, !g")
-
-
-def test_plans_that_do_not_fit_are_reported() -> None:
     found = told("!g.\n+!g <- !h(4).\n+!h(X) : X > 5.\n+!h(a).\n+!h(b).\n+!h(c).\n+!h(d).")
     assert found == lost(
         "g",
@@ -82,39 +64,27 @@ def test_plans_that_do_not_fit_are_reported() -> None:
         "does not fit: +!h(b) (tester.asl:5)",
         "and 2 more plans",
     )
-
-
-def test_an_initial_goal_without_applicable_plan_has_a_name() -> None:
     assert told("!g.\n+!g : ready.") == [
         "the goal !g failed and has no plan for its failure: no_applicable, no applicable plan for !g",
         "  does not fit: +!g (tester.asl:2), stops at `ready`",
     ]
 
 
-def test_fail_goal_names_its_caller_and_the_ended_goal() -> None:
+def test_fail_goal_and_deadlines_name_the_ended_goal_and_its_step():
     found = told("!a. !b.\n+!a <- .wait(10);\n .fail_goal(b).\n+!b <- !c(1).\n+!c(X) <- .wait(9000).")
     assert found == lost(
         "b", ".fail_goal in the plan of !a ended it", 5, "step: .wait(9000), for !c(1), !b"
     )  # fmt: skip
-
-
-def test_fail_goal_on_the_own_goal() -> None:
     found = told("!a.\n+!a <- .fail_goal(a).")
     assert found == lost("a", ".fail_goal in the plan of !a ended it", 2, "step: .fail_goal(a)")
-
-
-def test_a_deadline_reports_the_running_step() -> None:
     found = told("!a.\n+!a <- !late[hard_deadline(50)].\n+!late <- !inner.\n+!inner <- .wait(9000).")
     told_why = "deadline_reached, the goal was not achieved in time"
     assert found == lost("a", told_why, 4, "step: .wait(9000), for !inner, !late, !a")
 
 
-def test_a_failing_handler_is_reported_with_its_goal() -> None:
+def test_failing_handlers_are_reported_with_their_goals():
     found = told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b <- ?help.")
     assert found == lost("a", "test_goal_failed, a test found no answer", 4, "step: ?help, for -!b, !a")
-
-
-def test_handlers_that_do_not_fit_are_reported() -> None:
     assert told("!a.\n+!a <- !b.\n+!b <- .fail.\n-!b[error(other)].") == [
         (
             "no applicable plan for the failure event -!b; the intention is dropped: "
@@ -123,9 +93,6 @@ def test_handlers_that_do_not_fit_are_reported() -> None:
         "  step: .fail, for !b, !a",
         "  does not fit: -!b[error(other)] (tester.asl:4)",
     ]
-
-
-def test_a_plan_for_a_belief_has_no_goal_to_name() -> None:
     assert told("low(7).\n+low(X) <- .fail.") == [
         (
             "the plan for +low(7) failed and has no plan for its failure: "
@@ -135,16 +102,24 @@ def test_a_plan_for_a_belief_has_no_goal_to_name() -> None:
     ]
 
 
-def test_long_terms_and_deep_stacks_are_cut() -> None:
+def test_long_terms_messages_and_stacks_are_cut():
     goals = "\n".join(f"+!g{n} <- !g{n + 1}." for n in range(10))
     (_, step) = told(f"!g0.\n{goals}\n+!g10 <- .length([{'abcdefghi,' * 20}a], 3).")
     assert step == (
         "  step: .length([abcdefghi," + "abcdefghi," * 9 + "abcdefgh..., for "
         "!g10, !g9, !g8, !g7, !g6, 5 more, !g0"
     )
+    found = told("!b(200, a).\n+!b(0, T) <- .fail.\n+!b(N, T) <- !b(N - 1, f(T, T)); .print(N).")
+    assert len(found) == 2
+    assert found[1].startswith("  step: .fail, for !b(0,f(f(f(")
+    assert found[1].endswith(", 195 more, !b(200,a)")
+    assert len(found[1]) < 1000
+    (found,) = told("!a.\n+!a <- .findall(X, .range(X, 1, 50000), L); !g(L).")
+    assert "no relevant plan for !g([1,2,3," in found
+    assert len(found) < 1000
 
 
-def test_an_observer_gets_error_place_step_and_reason() -> None:
+def test_an_observer_gets_error_place_step_and_reason():
     host = mind('!a.\n+!a <- .fail(wet, error_msg("ouch")).')
     heard: list[str] = []
     observe_goals(host.agent, lambda state, goal, number, intention, why: heard.append(why) if why else None)
@@ -152,24 +127,10 @@ def test_an_observer_gets_error_place_step_and_reason() -> None:
     assert heard == ["internal_action, ouch (tester.asl:2)\nstep: .fail(...)\nreason: wet"]
 
 
-def test_goals_with_shared_parts_are_reported_in_part() -> None:
-    found = told("!b(200, a).\n+!b(0, T) <- .fail.\n+!b(N, T) <- !b(N - 1, f(T, T)); .print(N).")
-    assert len(found) == 2
-    assert found[1].startswith("  step: .fail, for !b(0,f(f(f(")
-    assert found[1].endswith(", 195 more, !b(200,a)")
-    assert len(found[1]) < 1000
-
-
-def test_a_long_message_is_cut() -> None:
-    (found,) = told("!a.\n+!a <- .findall(X, .range(X, 1, 50000), L); !g(L).")
-    assert "no relevant plan for !g([1,2,3," in found
-    assert len(found) < 1000
-
-
 ASKS = "!ask.\n+!ask <- .send(self, askOne, door(X), R); .print(R).\n"
 
 
-def test_a_failed_plan_for_a_question_is_reported_with_its_reason() -> None:
+def test_questions_are_reported_only_when_their_plan_failed():
     (first, step) = told(ASKS + "+?door(X) <- ?seen(X).")
     assert first.startswith("the question ?door(")
     assert first.endswith(
@@ -177,16 +138,10 @@ def test_a_failed_plan_for_a_question_is_reported_with_its_reason() -> None:
         "test_goal_failed, a test found no answer (tester.asl:3)"
     )
     assert step.startswith("  step: ?seen(")
-
-
-def test_a_question_without_applicable_plan_is_answered_without_a_warning() -> None:
     host = mind(ASKS + "+?door(X) : open(X).")
     host.run()
     assert host.printed == ["false"]
     assert host.logged == []
-
-
-def test_a_question_saved_by_a_failure_plan_is_not_reported() -> None:
     assert told(ASKS + "+?door(X) <- .fail.\n-?door(X) <- X = shut.") == []
 
 
@@ -203,13 +158,10 @@ WHY_NOT = [
 ]
 
 
-def test_details_report_why_no_plan_was_selected_for_an_event() -> None:
+def test_details_report_why_no_plan_was_selected_for_an_event():
     plan = "+alarm(T) : zones(T).\n"
     assert details(plan + "alarm(fire).") == WHY_NOT
     assert details(plan + "!go.\n+!go <- +alarm(fire).") == WHY_NOT
     assert details(plan + "!go.\n+!go <- +alarm(fire). { +other. }") == WHY_NOT
-
-
-def test_without_details_events_without_applicable_plan_are_skipped_silently() -> None:
     assert details("+alarm(T) : zones(T). alarm(fire).", verbose=1) == []
     assert details("+other. alarm(fire).") == []

@@ -46,7 +46,7 @@ def count_left(use: Callable[[RecordingHost, int], None]) -> int:
     ],
     ids=["atoms", "beliefs", "replaced beliefs", "queries"],
 )
-def test_names_made_by_plans_are_freed(steps: str) -> None:
+def test_names_made_by_plans_are_freed(steps):
     host = mind(
         f"+!use(F, L) <- for (.range(I, F, L)) {{ {steps} }}. !use(1, 100). +!more <- !use(101, {NAMES})."
     )
@@ -58,7 +58,7 @@ def test_names_made_by_plans_are_freed(steps: str) -> None:
     assert live_names() - before < KEPT
 
 
-def test_names_of_percepts_are_freed() -> None:
+def test_names_of_percepts_are_freed():
     def perceive(host: RecordingHost, number: int) -> None:
         literal = (functor(f"seen_{number}", 1), 1.0)
         for kind in ("add", "remove"):
@@ -69,7 +69,7 @@ def test_names_of_percepts_are_freed() -> None:
 
 
 @pytest.mark.parametrize("performatives", [("tell", "untell"), ("achieve",), ("signal",), ("askOne",)])
-def test_names_of_messages_and_their_senders_are_freed(performatives: tuple[str, ...]) -> None:
+def test_names_of_messages_and_their_senders_are_freed(performatives):
     def receive(host: RecordingHost, number: int) -> None:
         literal = (functor(f"said_{number}", 1), 1.0)
         for performative in performatives:
@@ -81,7 +81,7 @@ def test_names_of_messages_and_their_senders_are_freed(performatives: tuple[str,
     assert count_left(receive) < KEPT
 
 
-def test_event_kinds_that_only_a_plan_for_any_goal_handles_are_freed() -> None:
+def test_event_kinds_that_only_a_plan_for_any_goal_handles_are_freed():
     host = mind(
         '!use. +!use <- for (.range(I, 1, 1200)) { .concat("do_", I, S); .term2string(T, S); !T }. +!G.'
     )
@@ -92,7 +92,7 @@ def test_event_kinds_that_only_a_plan_for_any_goal_handles_are_freed() -> None:
     assert len({id(select) for kind, select in selects.items() if select and kind is not named}) == 1
 
 
-def test_the_filter_of_options_still_works_after_many_names() -> None:
+def test_filters_and_tables_survive_many_names():
     names = '.concat("seen_", I, "(1)", S); .term2string(T, S); +T; -T'
     host = mind(f"""
         !go.
@@ -102,10 +102,7 @@ def test_the_filter_of_options_still_works_after_many_names() -> None:
     host.run()
     assert host.agent.selections.option_filter is host.agent.beliefs[SELECT_OPTION]
     assert host.printed == ["there"]
-
-
-def test_empty_tables_are_kept_while_they_are_few() -> None:
-    """The order of the tables is the order of the answers to a query for anything."""
+    # The order of the tables is the order of the answers to a query for anything.
     host = mind("""
         !go.
         +!go <- +a(1); +b(1); -a(1); !count(5000); +a(2); .findall(X, X[source(self)], L); .print(L).

@@ -18,7 +18,7 @@ CASES = Path(__file__).parents[3] / "conformance"
 BEGUN = ("pursued", "suspended", "resumed")
 
 
-def test_an_observer_is_notified_of_every_change_of_a_goal() -> None:
+def test_an_observer_is_notified_of_every_change_of_a_goal():
     host = mind("!a. +!a <- !b; .wait(10); .suspend(a); .print(x). +!b <- .fail. -!b.")
     heard: list[tuple[str, str]] = []
     observe_goals(
@@ -45,41 +45,29 @@ def goals_at_the_end(program):
     return list(last.values())
 
 
-def test_a_goal_whose_variables_get_values_stays_one_goal():
+def test_goals_with_new_values_and_tail_calls_are_followed():
     assert goals_at_the_end("!a. +!a <- !ask(X). +!ask(X) <- X = 3.") == ["achieved !a", "achieved !ask(3)"]
-
-
-def test_a_goal_that_a_tail_call_replaces_ends():
     program = "!loop(1). +!loop(N) : N < 3 <- !loop(N + 1). +!loop(_)."
     assert goals_at_the_end(program) == ["replaced !loop(1)", "replaced !loop(2)", "achieved !loop(3)"]
 
 
-def test_goals_below_a_handled_failure_failed_and_the_handled_one_recovered():
+def test_goals_fail_or_recover_by_their_failure_plans():
     program = "!try. +!try <- !inner. -!try. +!inner <- .fail."
     assert goals_at_the_end(program) == ["recovered !try", "failed !inner"]
-
-
-def test_a_goal_without_a_plan_whose_failure_plan_ends_has_recovered():
     assert goals_at_the_end("!a. +!a <- !b(1). -!b(_) <- .wait(1).") == ["achieved !a", "recovered !b(1)"]
     assert goals_at_the_end("!b(1). -!b(_) <- .wait(1).") == ["recovered !b(1)"]
-
-
-def test_goals_whose_failure_plan_fails_have_failed():
     program = "!a. +!a <- !b. -!b <- !c. +!c <- .fail."
     assert goals_at_the_end(program) == ["failed !a", "failed !b", "failed !c"]
     assert goals_at_the_end("!a. +!a <- .fail. -!a : false.") == ["failed !a"]
 
 
-def test_the_goals_of_a_branch_end_with_it_and_those_around_the_fork_continue():
+def test_the_goals_of_branches_end_with_them():
     program = "!a(1). +!a(N) <- !b(N) ||| !c(X); .wait(10). +!b(_) <- .wait(20). +!c(3) <- .wait(5)."
     assert goals_at_the_end(program) == ["achieved !a(1)", "dropped !b(1)", "achieved !c(3)"]
     program = "!a(1). +!a(N) <- !b(N) |&| !c(X); .wait(10). +!b(_) <- .wait(20). +!c(3) <- .wait(5)."
     assert goals_at_the_end(program) == ["achieved !a(1)", "achieved !b(1)", "achieved !c(3)"]
     program = "!a(1). +!a(N) <- !b(N) ||| !c(X). +!b(_) <- .wait(20). +!c(3) <- !d. +!d <- .fail."
     assert goals_at_the_end(program) == ["achieved !a(1)", "achieved !b(1)", "failed !c(3)", "failed !d"]
-
-
-def test_a_branch_that_is_lost_in_a_handler_ends_the_fork_that_waits_for_it():
     program = "!a. +!a <- !b {} !c; .print(joined). +!b <- .fail. -!b : p. +!c <- .wait(10)."
     assert goals_at_the_end(program.format("|&|")) == ["failed !a", "failed !b", "dropped !c"]
     assert goals_at_the_end(program.format("|||")) == ["achieved !a", "failed !b", "achieved !c"]
@@ -148,7 +136,7 @@ def pursued(agent, intention):
 @pytest.mark.parametrize(
     "case", sorted(CASES.rglob("*.asl")), ids=lambda path: f"{path.parent.name}/{path.stem}"
 )
-def test_every_goal_ends_once_unless_it_is_still_pursued(case: Path) -> None:
+def test_every_goal_ends_once_unless_it_is_still_pursued(case):
     if "syntax_errors" in case.parts or not case.with_suffix(".expected").exists():
         return
     watched = Watched(case.read_text(), name=case.stem, path=str(case), complete=no_environment)

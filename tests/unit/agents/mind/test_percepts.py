@@ -19,13 +19,13 @@ def told(*changes: Percept, program: str = "") -> RecordingHost:
     return host
 
 
-def test_a_percept_becomes_a_belief_and_an_event() -> None:
+def test_percepts_and_signals_are_events_and_only_percepts_beliefs():
     host = told(percept("add", 1.0))
     assert host.printed == ["plus(1)"]
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
-
-
-def test_all_plans_of_a_change_see_the_newest_beliefs() -> None:
+    host = told(percept("signal", 5.0))
+    assert host.printed == ["plus(5)"]
+    assert believed(host, "level") == []
     host = mind("-level(X) <- ?level(Y); .print(minus(X, Y)). +level(X) <- .print(plus(X)).")
     host.agent.perceive([percept("add", 1.0)])
     host.run()
@@ -34,33 +34,18 @@ def test_all_plans_of_a_change_see_the_newest_beliefs() -> None:
     assert host.printed == ["plus(1)", "minus(1,2)", "plus(2)"]
 
 
-def test_a_signal_is_an_event_but_not_a_belief() -> None:
-    host = told(percept("signal", 5.0))
-    assert host.printed == ["plus(5)"]
-    assert believed(host, "level") == []
-
-
-def test_a_literal_perceived_twice_stays_while_one_percept_holds() -> None:
+def test_a_belief_stays_while_a_percept_or_the_agent_holds_it():
     host = told(percept("add", 1.0, "a"), percept("add", 1.0, "b"), percept("remove", 1.0, "a"))
     assert believed(host, "level") == ["level(1)[artifact_name(b),source(percept)]"]
-
-
-def test_an_own_belief_beside_a_percept_outlives_it() -> None:
     host = told(percept("add", 1.0), program="!s. +!s <- +level(1).")
     host.agent.perceive([percept("remove", 1.0)])
     host.run()
     assert believed(host, "level") == ["level(1)[source(self)]"]
-
-
-def test_the_agent_cannot_delete_a_percept_as_its_own() -> None:
     host = told(percept("add", 1.0), program="+!s <- -level(1).")
     goal: Term = atom("s")
     host.agent.post_goal(goal)
     host.run()
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
-
-
-def test_two_properties_of_one_artifact_with_one_value_are_two_reasons() -> None:
     twice = percept("add", 1.0)
     host = told(twice, twice, Percept("remove", twice.literal, twice.annotations))
     assert believed(host, "level") == ["level(1)[artifact_name(a),source(percept)]"]
@@ -70,7 +55,7 @@ def test_two_properties_of_one_artifact_with_one_value_are_two_reasons() -> None
     assert host.printed == ["plus(1)", "plus(1)", "minus(1)", "minus(1)"]
 
 
-def test_percepts_of_lists_and_structures_come_and_go() -> None:
+def test_percepts_of_any_arguments_come_and_go():
     host = mind("+shape(X) <- .print(plus(X)). -shape(X) <- .print(minus(X)).")
     values: list[Term] = [
         make_list([1.0, make_list([2.0])]),
@@ -87,26 +72,12 @@ def test_percepts_of_lists_and_structures_come_and_go() -> None:
         *("minus([1,[2]])", 'minus(point(1,"here"))', "minus(dot)"),
     ]
     assert believed(host, "shape") == []
-
-
-def test_percepts_without_arguments_come_and_go() -> None:
     host = mind("+dark <- .print(dark). -dark <- .print(light).")
     for kind in ("add", "remove", "remove", "signal"):
         host.agent.perceive([Percept(kind, atom("dark"), annotation_set((SOURCE_PERCEPT,)))])
         host.run()
     assert host.printed == ["dark", "light", "dark"]
     assert believed(host, "dark") == []
-
-
-def test_a_percept_that_the_agent_has_deleted_ends_without_an_event() -> None:
-    host = told(percept("add", 1.0), program="!s. +!s <- .abolish(level(_)).")
-    host.agent.perceive([percept("remove", 1.0)])
-    host.run()
-    assert host.printed == ["plus(1)", "minus(1)"]
-    assert believed(host, "level") == []
-
-
-def test_indexes_follow_percepts() -> None:
     host = mind(
         """
         +!look(X) <- .findall(Y, at(X, Y), L); .print(X, L).
@@ -121,3 +92,11 @@ def test_indexes_follow_percepts() -> None:
     host.agent.post_goal(structure("look", 1.0))
     host.run()
     assert host.printed[-1] == "1[28]"
+
+
+def test_a_percept_that_the_agent_has_deleted_ends_without_an_event():
+    host = told(percept("add", 1.0), program="!s. +!s <- .abolish(level(_)).")
+    host.agent.perceive([percept("remove", 1.0)])
+    host.run()
+    assert host.printed == ["plus(1)", "minus(1)"]
+    assert believed(host, "level") == []

@@ -39,7 +39,7 @@ def adopt(host: RecordingHost, goal: str) -> None:
     host.run()
 
 
-def test_the_select_function_is_made_once() -> None:
+def test_select_functions_are_made_once_and_shared():
     first, second = agents("a", "b")
     adopt(first, "greet(bob)")
     adopt(second, "greet(ann)")
@@ -48,9 +48,6 @@ def test_the_select_function_is_made_once() -> None:
         kind for kind in first.agent.library.selects if kind.functor.name == "greet" and kind.operator == "+"
     ]
     assert first.agent.library.selects[kinds[0]] is second.agent.library.selects[kinds[0]]
-
-
-def test_select_functions_are_shared_until_plans_change() -> None:
     first, second = agents("a", "b")
     assert first.agent.library.selects is second.agent.library.selects
     assert first.agent.library.plans is second.agent.library.plans
@@ -63,13 +60,10 @@ def test_select_functions_are_shared_until_plans_change() -> None:
     assert len(second.agent.library.program.plans) == len(second.agent.library.plans) + 1
 
 
-def test_a_plan_that_is_added_within_an_intention_counts_for_its_next_goal() -> None:
+def test_added_and_removed_plans_count_for_that_agent():
     (only,) = agents("a")
     adopt(only, "both")
     assert only.printed == ["hello bob", "hi bob"]
-
-
-def test_an_added_plan_is_the_agents_own() -> None:
     first, second = agents("a", "b")
     adopt(first, "greet(bob)")
     adopt(first, "learn")
@@ -77,9 +71,6 @@ def test_an_added_plan_is_the_agents_own() -> None:
     adopt(second, "greet(bob)")
     assert first.printed == ["hello bob", "hi bob"]
     assert second.printed == ["hello bob"]
-
-
-def test_a_removed_plan_is_missing_for_that_agent_only() -> None:
     first, second = agents("a", "b")
     adopt(first, "forget")
     adopt(first, "greet(bob)")
@@ -88,7 +79,7 @@ def test_a_removed_plan_is_missing_for_that_agent_only() -> None:
     assert second.printed == ["hello bob"]
 
 
-def test_a_running_plan_keeps_its_place_when_its_kind_is_compiled_again() -> None:
+def test_a_running_plan_keeps_its_place_when_its_kind_is_compiled_again():
     first, second = agents("a", "b")
     adopt(first, "slow")
     adopt(second, "slow")
@@ -96,7 +87,7 @@ def test_a_running_plan_keeps_its_place_when_its_kind_is_compiled_again() -> Non
 
 
 @pytest.mark.parametrize("size", [30, 125, 1500])
-def test_a_context_may_be_a_chain_of_any_length(size: int) -> None:
+def test_a_context_may_be_a_chain_of_any_length(size):
     beliefs = " ".join(f"ok({i})." for i in range(size - 1))
     conjunction = " & ".join(f"ok(X{i}) & X{i} == {i}" for i in range(size))
     disjunction = " | ".join(f"no({i})" for i in range(size))
@@ -112,12 +103,9 @@ def test_a_context_may_be_a_chain_of_any_length(size: int) -> None:
     assert printed(program) == ["not all", f"all, 0 to {size - 1}", "none", "one"]
 
 
-def test_a_context_that_is_nested_deeply_is_searched() -> None:
+def test_plans_are_searched_or_run_although_nested_or_not_compiled():
     context = "".join("(ok & (no(X) | " for _ in range(70)) + "ok & Y = 3" + "))" * 70
     assert printed(f"!go. ok. +!go : {context} <- .print(Y). +!go <- .print(none).") == ["3"]
-
-
-def test_a_plan_that_cannot_be_compiled_runs_anyway() -> None:
     deep = "[" * 140 + "X" + "]" * 140
     host = mind(f"""
         !go.

@@ -71,7 +71,7 @@ def state(agent: Circumstance) -> object:
         (".relevant_plans({+!wait}, L) & .length(L, N) & L = M", None),
     ],
 )
-def test_a_question_is_answered(formula: str, found: list[str] | None) -> None:
+def test_a_question_is_answered(formula, found):
     agent = asked().agent
     before = state(agent)
     assert answers(agent, formula) == found or (found is None and answers(agent, formula))
@@ -82,7 +82,7 @@ def test_a_question_is_answered(formula: str, found: list[str] | None) -> None:
 @pytest.mark.parametrize(
     "form", ["{}", "asks({})", "not {}", "F = {} & F", ".findall(1, {}, L)", ".eval(R, {})"]
 )
-def test_every_internal_action_that_is_not_declared_pure_is_refused(name: str, form: str) -> None:
+def test_every_internal_action_that_is_not_declared_pure_is_refused(name, form):
     host = asked()
     action = STANDARD[name]
     arguments = ", ".join(["{+!z <- .print(no)}", '"x"', "x"][: action.minimum])
@@ -95,7 +95,7 @@ def test_every_internal_action_that_is_not_declared_pure_is_refused(name: str, f
 @pytest.mark.parametrize(
     "formula", ["rewrites(X)", "thrown(X)", "X = math.random", "N = .count(rewrites(Y))"]
 )
-def test_an_effect_that_a_rule_or_function_hides_is_refused(formula: str) -> None:
+def test_an_effect_that_a_rule_or_function_hides_is_refused(formula):
     agent = asked().agent
     before = state(agent)
     with pytest.raises(Impure):
@@ -103,7 +103,7 @@ def test_an_effect_that_a_rule_or_function_hides_is_refused(formula: str) -> Non
     assert state(agent) == before
 
 
-def test_nothing_is_printed_or_logged() -> None:
+def test_nothing_is_printed_or_logged():
     host = asked()
     logged = len(host.logged)
     assert answers(host.agent, '.print("no") & .nth(9, [a], X)') == []
@@ -114,14 +114,14 @@ def test_nothing_is_printed_or_logged() -> None:
 @pytest.mark.parametrize(
     "formula", ["endless(0)", ".range(X, 1, 1000000) & X < 0", "p(X) & p(Y) & endless(Y)"]
 )
-def test_a_search_ends_after_its_steps(formula: str) -> None:
+def test_a_search_ends_after_its_steps(formula):
     agent = asked().agent
     with pytest.raises(SearchLimit):
         answers(agent, formula, 500)
     assert agent.beliefs.budget is None
 
 
-def test_values_that_double_do_not_exhaust_the_memory() -> None:
+def test_values_that_double_do_not_exhaust_the_memory():
     doubling = " & ".join(f".concat(X{i}, X{i}, X{i + 1})" for i in range(60))
     for first in ('"abcdefgh"', "[1, 2, 3]"):
         with pytest.raises(SearchLimit, match=f"more than {LARGEST} elements"):

@@ -3,7 +3,7 @@
 from recording_host import printed
 
 
-def test_a_fact_with_variables_is_listed_as_a_rule() -> None:
+def test_facts_with_variables_are_listed_as_rules():
     program = """
         a(X) :- b(X). open(Y). ~no(Z)[k]. b(1).
         !s.
@@ -12,9 +12,6 @@ def test_a_fact_with_variables_is_listed_as_a_rule() -> None:
            .relevant_rules(_, P); .print(.length(P)).
     """
     assert printed(program) == ["[{ open(Y) :- true }]", "[{ ~no(Z)[k] :- true }]", "[]", "[]", "3"]
-
-
-def test_the_list_of_rules_has_facts_with_variables() -> None:
     assert sorted(printed("a(X) :- b(X). open(Y)[k]. b(1). !s. +!s <- .list_rules.")) == [
         "a(X)[source(self)] :- b(X)",
         "open(Y)[k,source(self)] :- true",

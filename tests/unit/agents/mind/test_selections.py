@@ -57,13 +57,13 @@ def with_policy(program: str, policy: type[Fair]) -> RecordingHost:
         (LongestFirst, ["1", "1", "2", "2", "3", "3"]),
     ],
 )
-def test_a_policy_decides_what_goes_first(policy: type[Fair], printed: list[str]) -> None:
+def test_a_policy_decides_what_goes_first(policy, printed):
     host = with_policy(GOALS, policy)
     host.run()
     assert host.printed == printed
 
 
-def test_a_policy_decides_how_many_messages_are_read_in_a_cycle() -> None:
+def test_a_policy_decides_how_many_messages_are_read_in_a_cycle():
     for policy, read in ((Fair, 1), (AllMessagesAtOnce, 3)):
         host = with_policy("+told(N) <- .print(N).", policy)
         host.run()
@@ -75,7 +75,7 @@ def test_a_policy_decides_how_many_messages_are_read_in_a_cycle() -> None:
         assert 3 - len(host.agent.incoming.messages) == read
 
 
-def test_a_plain_policy_is_not_asked_for_each_event() -> None:
+def test_a_plain_policy_is_not_asked_for_each_event():
     class Refusing(Fair):
         def select_event(self) -> Event | None:
             raise AssertionError

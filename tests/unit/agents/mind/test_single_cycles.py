@@ -24,7 +24,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("kind", PROGRAMS)
-def test_single_cycles_have_the_same_effect(kind: str) -> None:
+def test_single_cycles_have_the_same_effect(kind):
     printed = []
     for fuel in (1000, 7, 2, 1):
         host = mind(PROGRAMS[kind])

@@ -135,16 +135,15 @@ def test_the_time_of_an_agent_goes_on_when_the_clock_is_set_back():
     assert (other.printed, round(other.time - 1_577_836_800.0 + 3600, 3)) == (["1000"], 0.4)
 
 
-def test_a_mind_that_holds_an_object_of_python_cannot_be_stored():
+def test_data_that_cannot_be_restored_are_refused():
+    with pytest.raises(ValueError, match="format 0"):
+        restore(mind("!s. +!s.").agent, {"format": 0})
+    with pytest.raises(ValueError, match="not that of a stored mind"):
+        tampered(pickle.dumps(Changed()))
     host = mind("!s. +!s.")
     host.agent.add_belief(structure("b", atom("x"))[0], (Reference(object()),), ())
     with pytest.raises(NotStorable, match="a term holds a Python object"):
         stored(host.agent)
-
-
-def test_a_stored_mind_of_another_format_is_refused():
-    with pytest.raises(ValueError, match="format 0"):
-        restore(mind("!s. +!s.").agent, {"format": 0})
 
 
 def tampered(pickled: bytes) -> Mind:
@@ -163,11 +162,6 @@ def test_data_that_calls_something_else_is_refused(called):
 class Changed:
     def __reduce__(self) -> tuple[object, ...]:
         return atom, ("true",), {"name": "false"}
-
-
-def test_data_that_changes_shared_values_is_refused():
-    with pytest.raises(ValueError, match="not that of a stored mind"):
-        tampered(pickle.dumps(Changed()))
 
 
 def test_a_deep_stack_and_a_long_open_list_are_stored():

@@ -1,7 +1,7 @@
 """Messages: what each performative does at the receiver, and synchronous questions."""
 
 import pytest
-from recording_host import RecordingHost, believed, mind
+from recording_host import RecordingHost, believed, mind, printed, programs
 
 from jacaros.agents.language.loader import parse_term
 from jacaros.agents.language.lowering import lower_value
@@ -25,20 +25,14 @@ def after(program: str, *messages: SpeechAct) -> RecordingHost:
     return host
 
 
-def test_tell_adds_a_belief_with_the_sender_as_source() -> None:
+def test_tell_and_untell_change_beliefs_of_their_sender_and_achieve_posts_a_goal():
     assert believed(after("", message("tell", "p(1)[at(2)]")), "p") == ["p(1)[at(2),source(ann)]"]
-
-
-def test_sources_are_nested() -> None:
     assert believed(after("", message("tell", "p[source(bob)]")), "p") == ["p[source(ann)[source(bob)]]"]
-
-
-def test_untell_takes_only_the_source_of_the_sender() -> None:
     assert believed(after("p.", message("tell", "p"), message("untell", "p")), "p") == ["p[source(self)]"]
-
-
-def test_achieve_posts_a_goal() -> None:
     assert after("+!g(X)[source(S)] <- .print(X, S).", message("achieve", "g(1)")).printed == ["1ann"]
+    host = after("+!g <- .wait(100); .print(bad).", message("achieve", "g"))
+    host = after("!g. +!g <- .wait(100); .print(bad).", message("unachieve", "g"))
+    assert host.printed == []
 
 
 @pytest.mark.parametrize("flat", [False, True])
@@ -52,7 +46,7 @@ def test_achieve_posts_a_goal() -> None:
         ("[]", []),
     ],
 )
-def test_a_flat_content_is_taken_as_any_other(content: str, done: list[str], flat: bool) -> None:
+def test_a_flat_content_is_taken_as_any_other(content, done, flat):
     said = message("achieve", content)
     said.flat = flat and is_flat(said.content)
     plans = "+!g[source(S)] <- .print(g, S). +!g(X)[source(S)] <- .print(X, S). +!g(X, Y)[source(S)] <- .print(X, Y, S)."
@@ -61,7 +55,7 @@ def test_a_flat_content_is_taken_as_any_other(content: str, done: list[str], fla
 
 @pytest.mark.parametrize("flat", [False, True])
 @pytest.mark.parametrize("content", ["p", "p(1)", 'p(x, "y")', "[p, p(2)]", "[]"])
-def test_a_flat_content_is_believed_as_any_other(content: str, flat: bool) -> None:
+def test_a_flat_content_is_believed_as_any_other(content, flat):
     said = message("tell", content)
     said.flat = flat and is_flat(said.content)
     host = after(
@@ -78,7 +72,7 @@ def test_a_flat_content_is_believed_as_any_other(content: str, flat: bool) -> No
 
 
 @pytest.mark.parametrize("flat", [False, True])
-def test_a_requested_goal_is_reported_and_awaited(flat: bool) -> None:
+def test_a_requested_goal_is_reported_and_awaited(flat):
     said = message("achieve", "g(1)")
     said.flat = flat
     assert after("+!g(_). ^!g(X)[state(pending)] <- .print(X).", said).printed == ["1"]
@@ -90,14 +84,14 @@ def test_a_requested_goal_is_reported_and_awaited(flat: bool) -> None:
 
 
 @pytest.mark.parametrize("flat", [False, True])
-def test_a_plan_of_the_program_for_messages_comes_first(flat: bool) -> None:
+def test_a_plan_of_the_program_for_messages_comes_first(flat):
     said = message("achieve", "g(1)")
     said.flat = flat
     program = "+!kqml_received(S, P, C, M) : .ground(C) <- .print(S, P, C, M). +!g(X) <- .print(no)."
     assert after(program, said).printed == ["annachieveg(1)m1"]
 
 
-def test_a_question_waits_for_the_events_before_it() -> None:
+def test_questions_wait_for_events_and_atomic_plans_before_them():
     host = mind("v(0). +!set(X) <- -+v(X). +e <- +seen.")
     host.agent.receive(message("signal", "e"))
     host.agent.receive(message("signal", "e"))
@@ -106,9 +100,6 @@ def test_a_question_waits_for_the_events_before_it() -> None:
     host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
     host.run()
     assert [text(answer.content) for answer in host.sent] == ["v(1)"]
-
-
-def test_a_question_waits_for_the_end_of_an_atomic_plan() -> None:
     host = mind("!work. v(old). @w[atomic] +!work <- -+v(half); .wait(10); -+v(new).")
     host.agent.run(10)
     host.agent.receive(message("askOne", "v(_)"))
@@ -116,9 +107,6 @@ def test_a_question_waits_for_the_end_of_an_atomic_plan() -> None:
     assert host.sent == []
     host.run()
     assert [text(answer.content) for answer in host.sent] == ["v(new)"]
-
-
-def test_a_queued_question_that_cannot_be_processed_is_answered_with_false() -> None:
     host = mind("+e <- +seen.")
     host.agent.post(((trigger("+", "", functor("e", 0)),), None, BY_SELF, None))
     host.agent.receive(message("askHow", "5"))
@@ -126,13 +114,7 @@ def test_a_queued_question_that_cannot_be_processed_is_answered_with_false() -> 
     assert [answer.performative for answer in host.sent] == ["untell"]
 
 
-def test_unachieve_drops_the_goal() -> None:
-    host = after("+!g <- .wait(100); .print(bad).", message("achieve", "g"))
-    host = after("!g. +!g <- .wait(100); .print(bad).", message("unachieve", "g"))
-    assert host.printed == []
-
-
-def test_a_question_is_answered_from_beliefs_then_by_a_plan_then_with_false() -> None:
+def test_a_question_is_answered_and_a_synchronous_one_waits():
     host = after("p(1). +?q(X) <- X = 2. +?r(_) <- .fail.", *(message("askOne", f"{f}(X)") for f in "pqrs"))
     answers = {text(a.content)[0]: (a.performative, text(a.content), a.in_reply_to) for a in host.sent}
     assert answers == {
@@ -141,9 +123,6 @@ def test_a_question_is_answered_from_beliefs_then_by_a_plan_then_with_false() ->
         "r": ("untell", "r(X)", "m1"),
         "s": ("untell", "s(X)", "m1"),
     }
-
-
-def test_a_synchronous_question_waits_for_its_answer() -> None:
     host = mind("!g. +!g <- .send(friend, askOne, p(_), A); .print(A).")
     host.run(seconds=0.1)
     question = host.sent[0]
@@ -154,44 +133,51 @@ def test_a_synchronous_question_waits_for_its_answer() -> None:
     assert host.printed == ["p(3)[source(friend)]"]
 
 
-def test_a_question_without_answer_times_out() -> None:
-    host = mind("!g. +!g <- .send(friend, askOne, p(_), A, 100); .print(A).")
-    host.run()
-    assert host.printed == ["timeout"]
+PROGRAMS = """
+a question without answer times out => timeout
+    !g. +!g <- .send(friend, askOne, p(_), A, 100); .print(A).
+an unknown receiver fails the step => receiver_not_found
+    !g. +!g <- .send(ghost, tell, p). -!g[error(E)] <- .print(E).
+a rule held by a variable is added with its sources => 2[bob,self]1
+    r(X) :- X > 1.
+    !go.
+    +!go
+      <- .relevant_rules(_, [R]);
+         +R[source(bob)];
+         .count(r(2), N);
+         .findall(S, r(2)[source(S)], L);
+         -R[source(bob)];
+         .count(r(2), M);
+         .print(N, L, M).
+relevant plans unify with the event => 214
+    !go.
+    +!g(1) <- .print(one).
+    +!g(2)[source(bob)] <- .print(two).
+    +!g(X)[critical] <- .print(X).
+    +!g(X) : X > 2 <- .print(X).
+    +!go
+      <- .relevant_plans({+!g(2)}, L); .length(L, N);
+         .relevant_plans({+!g(2)[source(ann)]}, M); .length(M, O);
+         .relevant_plans({+!g(_)[critical]}, P); .length(P, Q);
+         .print(N, O, Q).
+"""
 
 
-def test_an_unknown_receiver_fails_the_step() -> None:
-    host = mind("!g. +!g <- .send(ghost, tell, p). -!g[error(E)] <- .print(E).")
-    host.run()
-    assert host.printed == ["receiver_not_found"]
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
 @pytest.mark.parametrize("performative", ["tellHow", "tell-how"])
-def test_plans_can_be_sent(performative: str) -> None:
+def test_plans_can_be_sent(performative):
     host = after("", message(performative, '"+!h <- .print(told)."'), message("achieve", "h"))
     assert host.printed == ["told"]
 
 
-def test_a_plan_of_the_program_comes_before_what_a_message_does() -> None:
+def test_a_plan_of_the_program_comes_before_what_a_message_does():
     host = after("+!kqml_received(S, tell, C, _) <- .print(S, C).", message("tell", "p(1)"))
     assert host.printed == ["annp(1)"]
     assert believed(host, "p") == []
-
-
-LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
-
-
-def test_a_late_answer_is_discarded() -> None:
-    asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
-    assert after(LATE + asking).printed == ["timeout", "0"]
-
-
-def test_an_answer_without_a_wait_becomes_a_belief() -> None:
-    asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
-    assert after(LATE + asking).printed == ["3self"]
-
-
-def test_a_plan_that_answers_a_question_sees_who_asks() -> None:
     program = """
 +?limit(X)[source(ann)] <- X = 100.
 +?limit(X)[source(self)] <- X = 0.
@@ -201,7 +187,17 @@ def test_a_plan_that_answers_a_question_sees_who_asks() -> None:
     assert [text(sent.content) for sent in host.sent] == ["limit(100)", "limit(100)[urgent]"]
 
 
-def test_requested_plans_are_sent_and_added() -> None:
+LATE = "!ask. +?late(X) <- .wait(300); X = 3. "
+
+
+def test_a_late_answer_is_discarded_and_one_without_a_wait_believed():
+    asking = "+!ask <- .send(self, askOne, late(X), A, 100); .print(A); .wait(1000); .count(late(_), N); .print(N)."
+    assert after(LATE + asking).printed == ["timeout", "0"]
+    asking = "+!ask <- .send(self, askOne, late(X)); .wait(1000); ?late(Y)[source(S)]; .print(Y, S)."
+    assert after(LATE + asking).printed == ["3self"]
+
+
+def test_requested_plans_are_sent_and_added_unless_the_agent_is_restricted():
     host = after("+!goto(X) <- .print(going, X). +!goto(a) <- .print(a).", message("askHow", "{+!goto(b)}"))
     [answer] = host.sent
     assert (answer.performative, answer.in_reply_to) == ("tellHow", "m1")
@@ -211,9 +207,6 @@ def test_requested_plans_are_sent_and_added() -> None:
     asker.run()
     assert asker.printed == ["going7"]
     assert len(asker.agent.library.plans) == 1
-
-
-def test_a_restricted_agent_does_not_add_requested_plans() -> None:
     host = after("+!goto(X) <- .print(X).", message("askHow", "{+!goto(_)}"))
     asker = mind("", options=Options(plans_from_others=False))
     asker.agent.receive(host.sent[0])
@@ -222,7 +215,7 @@ def test_a_restricted_agent_does_not_add_requested_plans() -> None:
 
 
 @pytest.mark.parametrize("receivers", ["[]", "None"])
-def test_a_message_to_an_empty_list_is_not_sent(receivers: str) -> None:
+def test_a_message_to_an_empty_list_is_not_sent(receivers):
     host = mind(
         f"!g. +!g <- None = []; .send({receivers}, tell, p); .send({receivers}, askOne, p, A); .print(A)."
     )
@@ -230,25 +223,7 @@ def test_a_message_to_an_empty_list_is_not_sent(receivers: str) -> None:
     assert (host.sent, host.printed) == ([], ["[]"])
 
 
-def test_a_rule_held_by_a_variable_is_added_with_its_sources() -> None:
-    program = """
-r(X) :- X > 1.
-!go.
-+!go
-  <- .relevant_rules(_, [R]);
-     +R[source(bob)];
-     .count(r(2), N);
-     .findall(S, r(2)[source(S)], L);
-     -R[source(bob)];
-     .count(r(2), M);
-     .print(N, L, M).
-"""
-    host = mind(program)
-    host.run()
-    assert host.printed == ["2[bob,self]1"]
-
-
-def test_a_plan_held_by_a_variable_is_added_for_its_sources() -> None:
+def test_a_plan_held_by_a_variable_is_added_for_its_sources():
     program = """
 !go.
 +!go
@@ -265,21 +240,3 @@ def test_a_plan_held_by_a_variable_is_added_for_its_sources() -> None:
     host.run()
     assert host.printed[1:] == ["h", "no_relevant"]
     assert host.printed[0].endswith("[source(bob)]")
-
-
-def test_relevant_plans_unify_with_the_event() -> None:
-    program = """
-!go.
-+!g(1) <- .print(one).
-+!g(2)[source(bob)] <- .print(two).
-+!g(X)[critical] <- .print(X).
-+!g(X) : X > 2 <- .print(X).
-+!go
-  <- .relevant_plans({+!g(2)}, L); .length(L, N);
-     .relevant_plans({+!g(2)[source(ann)]}, M); .length(M, O);
-     .relevant_plans({+!g(_)[critical]}, P); .length(P, Q);
-     .print(N, O, Q).
-"""
-    host = mind(program)
-    host.run()
-    assert host.printed == ["214"]

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from recording_host import RecordingHost, mind
+from recording_host import RecordingHost, mind, programs
 from test_snapshot import printed as printed_by_stored_minds
 
 from jacaros.agents.mind.state.act import Completion
@@ -50,54 +50,54 @@ def test_a_sub_goal_fails_at_its_deadline():
     assert elapsed(host) == 0.05
 
 
-def test_separate_initial_and_received_goals_fail_at_their_deadlines():
-    assert printed(
-        """
-        !a[within(30)]. !g.
-        +!g <- !!b[within(20)]; .send(tester, achieve, c[within(40)]).
-        +!a <- .wait(200).
-        +!b <- .wait(200).
-        +!c <- .wait(200).
-        -!a[error(E)] <- .print(a, " ", E).
-        -!b[error(E)] <- .print(b, " ", E).
-        -!c[error(E)] <- .print(c, " ", E).
-        """
-    ) == ["b deadline", "a deadline", "c deadline"]
+WITHIN_PROGRAMS = """
+separate initial and received goals fail at their deadlines => b deadline | a deadline | c deadline
+    !a[within(30)]. !g.
+    +!g <- !!b[within(20)]; .send(tester, achieve, c[within(40)]).
+    +!a <- .wait(200).
+    +!b <- .wait(200).
+    +!c <- .wait(200).
+    -!a[error(E)] <- .print(a, " ", E).
+    -!b[error(E)] <- .print(b, " ", E).
+    -!c[error(E)] <- .print(c, " ", E).
+only the goal with the deadline fails => failed | achieved
+    // Another intention may pursue an equal goal.
+    !g.
+    +!g <- !!h(1)[within(50)]; !!h(1).
+    +!h(X) <- .wait(200); .print(achieved).
+    -!h(X) <- .print(failed).
+a failure plan has no deadline => handled | after
+    !g.
+    +!g <- !h[within(50)]; .print(after).
+    +!h <- .fail.
+    -!h <- .wait(200); .print(handled).
+a deadline that has passed fails immediately => deadline
+    !g. +!g <- T = 3 - 5; !h[within(T)]. +!h <- .wait(10). -!h[error(E)] <- .print(E).
+the deadline of a goal holds for all branches of its fork => b | deadline | after
+    !g.
+    +!g <- !h[within(50)]; .print(after).
+    +!h <- { .wait(100); .print(a) } |&| { .wait(20); .print(b) }; .print(never).
+    -!h[error(E)] <- .print(E).
+a plan has a deadline => deadline30 | after
+    !g.
+    +!g <- !h; .print(after).
+    @p[within(30)] +!h <- .wait(200).
+    -!h[error(E), deadline(D)] <- .print(E, D).
+a goal with sub plans around it finds them => h | h | ia_failed | after
+    !g.
+    +!g <- !h[within(300), retry(1)]; .print(after). { +!h <- .print(h); .fail. -!h[error(E)] <- .print(E). }
+"""
 
 
-def test_only_the_goal_with_the_deadline_fails():
-    """Another intention may pursue an equal goal."""
-    assert printed(
-        """
-        !g.
-        +!g <- !!h(1)[within(50)]; !!h(1).
-        +!h(X) <- .wait(200); .print(achieved).
-        -!h(X) <- .print(failed).
-        """
-    ) == ["failed", "achieved"]
+@programs(WITHIN_PROGRAMS)
+def test_what_a_program_prints_of_within(program, output):
+    assert printed(program) == output
 
 
 def test_a_goal_that_is_achieved_in_time_leaves_no_alarm():
     host = ran("!g. +!g <- !h[within(5000)]; .print(after). +!h <- .wait(10).")
     assert (host.printed, elapsed(host)) == (["after"], 0.01)
     assert not host.agent.waits.alarms
-
-
-def test_a_failure_plan_has_no_deadline():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[within(50)]; .print(after).
-        +!h <- .fail.
-        -!h <- .wait(200); .print(handled).
-        """
-    ) == ["handled", "after"]
-
-
-def test_a_deadline_that_has_passed_fails_immediately():
-    assert printed("!g. +!g <- T = 3 - 5; !h[within(T)]. +!h <- .wait(10). -!h[error(E)] <- .print(E).") == [
-        "deadline"
-    ]
 
 
 def test_the_deadline_of_a_suspended_goal_keeps_running():
@@ -118,37 +118,6 @@ def test_a_deadline_cancels_the_action_of_the_goal():
     assert (host.printed, host.cancelled) == (["stopped"], [1])
 
 
-def test_the_deadline_of_a_goal_holds_for_all_branches_of_its_fork():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[within(50)]; .print(after).
-        +!h <- { .wait(100); .print(a) } |&| { .wait(20); .print(b) }; .print(never).
-        -!h[error(E)] <- .print(E).
-        """
-    ) == ["b", "deadline", "after"]
-
-
-def test_a_plan_has_a_deadline():
-    assert printed(
-        """
-        !g.
-        +!g <- !h; .print(after).
-        @p[within(30)] +!h <- .wait(200).
-        -!h[error(E), deadline(D)] <- .print(E, D).
-        """
-    ) == ["deadline30", "after"]
-
-
-def test_a_goal_with_sub_plans_around_it_finds_them():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[within(300), retry(1)]; .print(after). { +!h <- .print(h); .fail. -!h[error(E)] <- .print(E). }
-        """
-    ) == ["h", "h", "ia_failed", "after"]
-
-
 # --- retry -------------------------------------------------------------------------------------------------
 
 
@@ -164,15 +133,39 @@ def test_a_goal_is_tried_again_with_back_off():
     assert host.printed == ["0", "0.5", "1.5", "3.5", "after"]
 
 
-def test_after_the_last_attempt_the_goal_fails_with_its_own_reason():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[retry(2, 10)]; .print(after).
-        +!h <- .print(try); .fail(error(blocked), door(kitchen)).
-        -!h[error(E), door(D), attempts(A)] <- .print(E, " ", D, " ", A).
-        """
-    ) == ["try", "try", "try", "blocked kitchen 3", "after"]
+RETRY_PROGRAMS = """
+after the last attempt the goal fails with its own reason => try | try | try | blocked kitchen 3 | after
+    !g.
+    +!g <- !h[retry(2, 10)]; .print(after).
+    +!h <- .print(try); .fail(error(blocked), door(kitchen)).
+    -!h[error(E), door(D), attempts(A)] <- .print(E, " ", D, " ", A).
+a goal without applicable plan is tried again => h
+    !g. !t. +!g <- !h[retry(5, 100)]. +!h : ready <- .print(h). +!t <- .wait(250); +ready.
+variables that a failed attempt has bound are free again => 2
+    n(0). !g.
+    +!g <- !h(X)[retry(3)]; .print(X).
+    +!h(X) <- ?n(N); -+n(N + 1); X = N; N > 1.
+a goal inside a fork is tried again => h | b | h | handled | after
+    !g.
+    +!g <- !h[retry(1, 100)] |&| { .wait(30); .print(b) }; .print(after).
+    +!h <- .print(h); .fail.
+    -!h <- .print(handled).
+a fork inside a goal is tried again => b | b | 2 | after
+    !g.
+    +!g <- !h[retry(1, 100)]; .print(after).
+    +!h <- { .wait(10); .fail } |&| { .wait(5); .print(b); .wait(50); .print(never) }.
+    -!h[attempts(A)] <- .print(A).
+an atomic plan lets others run between its attempts => h0 | k | h1 | after
+    n(0). !g. !k.
+    +!g <- !h[retry(1, 100)]; .print(after).
+    @[atomic] +!h <- ?n(N); -+n(N + 1); .print(h, N); N > 0.
+    +!k <- .wait(50); .print(k).
+"""
+
+
+@programs(RETRY_PROGRAMS)
+def test_what_a_program_prints_of_retry(program, output):
+    assert printed(program) == output
 
 
 def test_a_lost_goal_reports_the_number_of_attempts():
@@ -180,22 +173,6 @@ def test_a_lost_goal_reports_the_number_of_attempts():
     [(level, told)] = host.logged
     assert level == "warning"
     assert told.splitlines()[1:] == ["  step: 2 > 20, for !h, !g", "  reason: attempts(3)"]
-
-
-def test_a_goal_without_applicable_plan_is_tried_again():
-    assert printed(
-        "!g. !t. +!g <- !h[retry(5, 100)]. +!h : ready <- .print(h). +!t <- .wait(250); +ready."
-    ) == ["h"]
-
-
-def test_variables_that_a_failed_attempt_has_bound_are_free_again():
-    assert printed(
-        """
-        n(0). !g.
-        +!g <- !h(X)[retry(3)]; .print(X).
-        +!h(X) <- ?n(N); -+n(N + 1); X = N; N > 1.
-        """
-    ) == ["2"]
 
 
 def test_a_deadline_holds_for_all_attempts():
@@ -234,38 +211,6 @@ def test_a_goal_between_two_attempts_is_dropped_succeeds_and_fails(step, expecte
     assert not host.agent.alive
 
 
-def test_a_goal_inside_a_fork_is_tried_again():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[retry(1, 100)] |&| { .wait(30); .print(b) }; .print(after).
-        +!h <- .print(h); .fail.
-        -!h <- .print(handled).
-        """
-    ) == ["h", "b", "h", "handled", "after"]
-
-
-def test_a_fork_inside_a_goal_is_tried_again():
-    assert printed(
-        """
-        !g.
-        +!g <- !h[retry(1, 100)]; .print(after).
-        +!h <- { .wait(10); .fail } |&| { .wait(5); .print(b); .wait(50); .print(never) }.
-        -!h[attempts(A)] <- .print(A).
-        """
-    ) == ["b", "b", "2", "after"]
-
-
-def test_an_atomic_plan_lets_others_run_between_its_attempts():
-    program = """
-        n(0). !g. !k.
-        +!g <- !h[retry(1, 100)]; .print(after).
-        @[atomic] +!h <- ?n(N); -+n(N + 1); .print(h, N); N > 0.
-        +!k <- .wait(50); .print(k).
-        """
-    assert printed(program) == ["h0", "k", "h1", "after"]
-
-
 # --- every -------------------------------------------------------------------------------------------------
 
 
@@ -283,9 +228,7 @@ def test_missed_periods_are_reported_once():
         9.0,
     )
     assert host.printed == ["0", "1", "missed1", "3", "missed2", "6"]
-    assert host.logged == [
-        ("warning", "goal !scan has missed a period of 1000 ms: it takes longer"),
-    ]
+    assert host.logged == [("warning", "goal !scan has missed a period of 1000 ms: it takes longer")]
 
 
 def test_missed_periods_are_warned_of_at_the_first_tenth_and_hundredth():
@@ -386,11 +329,7 @@ def test_the_periods_of_a_suspended_goal_are_missed_once():
 def test_each_period_has_variables_of_its_own():
     assert printed(
         "n(0). !g. +!g <- !!scan(X)[every(10)]. +!scan(X) <- ?n(X); -+n(X + 1); .print(X).", 0.025
-    ) == [
-        "0",
-        "1",
-        "2",
-    ]
+    ) == ["0", "1", "2"]
 
 
 # --- while and cleanup -------------------------------------------------------------------------------------
@@ -411,30 +350,53 @@ def test_a_plan_stops_when_its_condition_is_lost():
     assert not host.agent.waits.conditions
 
 
-def test_the_clean_up_goal_is_pursued_before_the_goal_fails():
-    assert printed(
-        """
-        ok. !g. !t.
-        +!g <- !h; .print(after).
-        @p[while(ok), cleanup(park(dock))] +!h <- drive(5).
-        -!h[error(E)] <- .print(E).
-        +!park(X) <- .print(parking); .wait(100); .print(X).
-        +!t <- .wait(100); -ok; +ok.
-        """
-    ) == ["parking", "dock", "condition_lost", "after"]
+WHILE_AND_CLEANUP_PROGRAMS = """
+the clean up goal is pursued before the goal fails => parking | dock | condition_lost | after
+    ok. !g. !t.
+    +!g <- !h; .print(after).
+    @p[while(ok), cleanup(park(dock))] +!h <- drive(5).
+    -!h[error(E)] <- .print(E).
+    +!park(X) <- .print(parking); .wait(100); .print(X).
+    +!t <- .wait(100); -ok; +ok.
+a failing clean up still reports the lost condition => ia_failedok | after
+    ok. !g. !t.
+    +!g <- !h; .print(after).
+    @p[while(ok), cleanup(park)] +!h <- drive(5).
+    -!h[error(E), condition_lost(C)] <- .print(E, C).
+    +!park <- .fail.
+    +!t <- .wait(100); -ok.
+a condition sees the variables of the plan => t | hallcondition_lost
+    at(hall). !g. !t.
+    +!g <- !clean(hall).
+    @p[while(at(Room)), within(9000)] +!clean(Room) <- drive(5).
+    -!clean(R)[error(E)] <- .print(R, E).
+    +!t <- +at(kitchen); .wait(100); -at(kitchen); .print(t); -at(hall).
+a plan whose condition does not hold makes no step => condition_lost
+    !g. +!g <- !h. @p[while(ok)] +!h <- .print(never). -!h[error(E)] <- .print(E).
+a plan that makes its own condition false makes no further step => condition_lost
+    ok. !g. +!g <- !h. @[while(ok)] +!h <- -ok; .print(never). -!h[error(E)] <- .print(E).
+the condition of a plan does not hold for its failure plan => handled | after
+    ok. !g. !t.
+    +!g <- !h; .print(after).
+    @p[while(ok)] +!h <- .fail.
+    -!h <- .wait(100); .print(handled).
+    +!t <- .wait(50); -ok.
+a failure plan has guards of its own => deadline
+    !g.
+    +!g <- !h.
+    -!g[error(E)] <- .print(E).
+    +!h <- .fail.
+    @p[within(50)] -!h <- .wait(100).
+sub plans have guards => condition_lost | after
+    ok. !g. !t.
+    +!g <- !h; .print(after). { @[while(ok)] +!h <- drive(3). -!h[error(E)] <- .print(E). }
+    +!t <- .wait(100); -ok.
+"""
 
 
-def test_a_failing_clean_up_still_reports_the_lost_condition():
-    assert printed(
-        """
-        ok. !g. !t.
-        +!g <- !h; .print(after).
-        @p[while(ok), cleanup(park)] +!h <- drive(5).
-        -!h[error(E), condition_lost(C)] <- .print(E, C).
-        +!park <- .fail.
-        +!t <- .wait(100); -ok.
-        """
-    ) == ["ia_failedok", "after"]
+@programs(WHILE_AND_CLEANUP_PROGRAMS)
+def test_what_a_program_prints_of_while_and_cleanup(program, output):
+    assert printed(program) == output
 
 
 @pytest.mark.parametrize(
@@ -451,30 +413,6 @@ def test_conditions_are_formulas_of_beliefs_and_rules(condition):
         +!t <- .wait(100); -+battery(30); .print(low); .wait(100); -+battery(10).
         """
     assert printed(program) == ["low", "1condition_lost"]
-
-
-def test_a_condition_sees_the_variables_of_the_plan():
-    assert printed(
-        """
-        at(hall). !g. !t.
-        +!g <- !clean(hall).
-        @p[while(at(Room)), within(9000)] +!clean(Room) <- drive(5).
-        -!clean(R)[error(E)] <- .print(R, E).
-        +!t <- +at(kitchen); .wait(100); -at(kitchen); .print(t); -at(hall).
-        """
-    ) == ["t", "hallcondition_lost"]
-
-
-def test_a_plan_whose_condition_does_not_hold_makes_no_step():
-    assert printed("!g. +!g <- !h. @p[while(ok)] +!h <- .print(never). -!h[error(E)] <- .print(E).") == [
-        "condition_lost"
-    ]
-
-
-def test_a_plan_that_makes_its_own_condition_false_makes_no_further_step():
-    assert printed(
-        "ok. !g. +!g <- !h. @[while(ok)] +!h <- -ok; .print(never). -!h[error(E)] <- .print(E)."
-    ) == ["condition_lost"]
 
 
 def test_the_condition_of_a_plan_that_has_ended_is_not_watched():
@@ -498,30 +436,6 @@ def test_a_plan_ended_from_outside_leaves_nothing_behind(end):
     assert not host.agent.waits.conditions
     assert not host.agent.waits.alarms
     assert not host.agent.alive
-
-
-def test_the_condition_of_a_plan_does_not_hold_for_its_failure_plan():
-    assert printed(
-        """
-        ok. !g. !t.
-        +!g <- !h; .print(after).
-        @p[while(ok)] +!h <- .fail.
-        -!h <- .wait(100); .print(handled).
-        +!t <- .wait(50); -ok.
-        """
-    ) == ["handled", "after"]
-
-
-def test_a_failure_plan_has_guards_of_its_own():
-    assert printed(
-        """
-        !g.
-        +!g <- !h.
-        -!g[error(E)] <- .print(E).
-        +!h <- .fail.
-        @p[within(50)] -!h <- .wait(100).
-        """
-    ) == ["deadline"]
 
 
 def test_a_plan_that_has_lost_its_condition_is_tried_again():
@@ -567,16 +481,6 @@ def test_plans_that_are_added_at_run_time_have_guards(added):
         +!t <- .wait(100); -ok.
         """
     ) == ["parked", "condition_lost"]
-
-
-def test_sub_plans_have_guards():
-    assert printed(
-        """
-        ok. !g. !t.
-        +!g <- !h; .print(after). { @[while(ok)] +!h <- drive(3). -!h[error(E)] <- .print(E). }
-        +!t <- .wait(100); -ok.
-        """
-    ) == ["condition_lost", "after"]
 
 
 def test_a_plan_with_guards_keeps_what_it_needs_until_it_ends():

@@ -3,13 +3,13 @@
 import gc
 
 import pytest
-from recording_host import believed, mind, printed
+from recording_host import believed, mind, printed, programs
 
 from jacaros.agents.mind.actions import internal_action
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.terms.values import String, Term, Var, atom, structure
+from jacaros.agents.terms.values import String, Var, atom, structure
 
 
 @pytest.fixture(autouse=True)
@@ -18,31 +18,34 @@ def without_garbage() -> None:
     gc.collect()
 
 
-def test_a_context_may_end_with_a_difference() -> None:
-    assert printed("!g(5,2). +!g(X,Y) : 2 < X-Y <- .print(yes). +!g(_,_) <- .print(no).") == ["yes"]
-
-
-def test_a_plan_for_any_goal_fails_in_place_after_many_kinds_of_goals() -> None:
-    program = """
+PROGRAMS = """
+a context may end with a difference => yes
+    !g(5,2). +!g(X,Y) : 2 < X-Y <- .print(yes). +!g(_,_) <- .print(no).
+a plan for any goal fails in place after many kinds of goals => b | test_goal_failed missing
     !a.
     +!X : not b = X <- !b; ?missing.
     +!b <- .print(b).
     -!a[error(E), code(C)] <- .print(E, " ", C).
-    """
-    assert printed(program) == ["b", "test_goal_failed missing"]
-
-
-def test_running_plans_for_every_goal_show_what_is_left_of_each() -> None:
-    program = """
+running plans for every goal show what is left of each => { !show; .print(rest) } | rest
     !a(1).
     +!X : not show = X & not c = X <- !c; !show; .print(rest).
     +!c.
     +!show <- .intention(_, _, S, current); .reverse(S, [im(_, _, B, _)|_]); .print(B).
-    """
-    assert printed(program) == ["{ !show; .print(rest) }", "rest"]
+an infinite number may be in a head => infinite
+    !g(1/0). +!g(1e400) <- .print(infinite). +!g(_) <- .print(other).
+the reasons of a retried goal do not pile up => unknown[source(self)]
+    n(0). !unknown.
+    -!X : n(N) & N < 60 <- -+n(N+1); !X.
+    -!X[code(C)] <- .print(C).
+"""
 
 
-def test_an_initial_belief_or_goal_without_value_is_skipped_and_reported() -> None:
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
+
+
+def test_unevaluated_initial_clauses_are_skipped_and_reported():
     host = mind("p(1). p(1 div 0). !g(1 div 0). !h. +!h <- .print(ready). +!g(_) <- .print(never).")
     host.run()
     assert host.printed == ["ready"]
@@ -51,10 +54,10 @@ def test_an_initial_belief_or_goal_without_value_is_skipped_and_reported() -> No
         "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
         "tester.asl:1: cannot evaluate an initial belief or goal: integer division by zero",
     ]
-
-
-def test_an_infinite_number_may_be_in_a_head() -> None:
-    assert printed("!g(1/0). +!g(1e400) <- .print(infinite). +!g(_) <- .print(other).") == ["infinite"]
+    host = mind("r(1)[1 div 0] :- p. p. !g. +!g <- .print(alive).")
+    host.run()
+    assert host.printed == ["alive"]
+    assert any("cannot evaluate" in text for level, text in host.logged if level == "error")
 
 
 @pytest.mark.parametrize(
@@ -69,9 +72,7 @@ def test_an_infinite_number_may_be_in_a_head() -> None:
         SystemError(),
     ],
 )
-def test_an_exception_of_an_internal_action_fails_its_step_only(
-    fault: Exception, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_exception_of_an_internal_action_fails_its_step_only(fault, monkeypatch):
     def explode(ctx: object) -> None:
         raise fault
 
@@ -108,7 +109,7 @@ def test_an_exception_of_an_internal_action_fails_its_step_only(
         *("untellHow", "unheard_of", "ask-one"),
     ],
 )
-def test_no_message_content_does_any_harm(performative: str, content: Term) -> None:
+def test_no_message_content_does_any_harm(performative, content):
     host = mind("q(1). +!g <- .print(here).")
     host.agent.receive(SpeechAct(performative, "friend", "tester", content, "m1"))
     host.run()
@@ -119,15 +120,6 @@ def test_no_message_content_does_any_harm(performative: str, content: Term) -> N
         assert [message.in_reply_to for message in host.sent] == ["m1"]
 
 
-def test_the_reasons_of_a_retried_goal_do_not_pile_up() -> None:
-    program = """
-    n(0). !unknown.
-    -!X : n(N) & N < 60 <- -+n(N+1); !X.
-    -!X[code(C)] <- .print(C).
-    """
-    assert printed(program) == ["unknown[source(self)]"]
-
-
 def ended(program: str, **options: int) -> list[str]:
     """What a program prints with small limits."""
     host = mind(program, options=Options(**options))
@@ -135,7 +127,7 @@ def ended(program: str, **options: int) -> list[str]:
     return host.printed
 
 
-def test_endless_rules_fail_with_the_reason() -> None:
+def test_endless_rules_fail_with_the_reason():
     program = """
     !s. !other.
     endless(N) :- endless(N+1).
@@ -150,12 +142,14 @@ def test_endless_rules_fail_with_the_reason() -> None:
     ]
 
 
-def test_an_endless_condition_does_not_hold() -> None:
+def test_endless_conditions_and_changes_have_an_end():
     program = "!s. e :- e. +!s : e <- .print(never). +!s <- .print(next); if (e) { .print(never) }. -!s <- .print(failed)."
     assert ended(program, rule_depth=2000) == ["next", "failed"]
+    program = "!s. +!s <- +b(1); .print(never). +b(N) <- +b(N+1); .print(never). -!s[error(E)] <- .print(E)."
+    assert ended(program, goal_depth=500) == ["too_deep"]
 
 
-def test_endless_goals_fail_with_the_reason() -> None:
+def test_endless_goals_fail_with_the_reason():
     program = """
     !s.
     +!s <- !g(0).
@@ -169,7 +163,14 @@ def test_endless_goals_fail_with_the_reason() -> None:
     ]
 
 
-def test_a_goal_beyond_the_depth_limit_can_be_handled_in_place() -> None:
+def test_goals_without_value_fail_and_can_be_handled():
+    program = """
+    !g. !h.
+    +!g <- Y = 1 div X; X = 0; !unknown(Y); .print(never).
+    -!g[error(E)] <- .print(E).
+    +!h <- .print(alive).
+    """
+    assert sorted(printed(program)) in (["alive", "arithmetic_error"], ["alive", "no_relevant"])
     program = """
     !s.
     +!s <- !g(1); .print(done).
@@ -177,9 +178,6 @@ def test_a_goal_beyond_the_depth_limit_can_be_handled_in_place() -> None:
     -!g(N)[error(too_deep)] <- .print(N).
     """
     assert ended(program, goal_depth=500) == ["500", "done"]
-
-
-def test_endless_handlers_end_their_intention() -> None:
     program = """
     !s. !other.
     +!s <- !g(0); .print(never).
@@ -191,30 +189,8 @@ def test_endless_handlers_end_their_intention() -> None:
     assert ended(program, goal_depth=500) == ["alive", "too_deep"]
 
 
-def test_endless_mutual_belief_changes_fail() -> None:
-    program = "!s. +!s <- +b(1); .print(never). +b(N) <- +b(N+1); .print(never). -!s[error(E)] <- .print(E)."
-    assert ended(program, goal_depth=500) == ["too_deep"]
-
-
-def test_a_rule_whose_head_has_no_value_is_skipped_and_reported() -> None:
-    host = mind("r(1)[1 div 0] :- p. p. !g. +!g <- .print(alive).")
-    host.run()
-    assert host.printed == ["alive"]
-    assert any("cannot evaluate" in text for level, text in host.logged if level == "error")
-
-
-def test_a_goal_without_plan_whose_argument_has_no_value_fails_with_a_reason() -> None:
-    program = """
-    !g. !h.
-    +!g <- Y = 1 div X; X = 0; !unknown(Y); .print(never).
-    -!g[error(E)] <- .print(E).
-    +!h <- .print(alive).
-    """
-    assert sorted(printed(program)) in (["alive", "arithmetic_error"], ["alive", "no_relevant"])
-
-
 @pytest.mark.whole_stack
-def test_an_element_that_python_could_not_hash_is_refused() -> None:
+def test_an_element_that_python_could_not_hash_is_refused():
     program = """
     !g.
     +!g <- !deep(20000, a, T); .set.create(S); .set.add(S, [1, 2]); .print(S); .set.add(S, T); .print(never).
@@ -226,7 +202,7 @@ def test_an_element_that_python_could_not_hash_is_refused() -> None:
 
 
 @pytest.mark.whole_stack
-def test_a_sum_that_waits_for_its_operand_may_be_hundreds_of_operations_deep() -> None:
+def test_a_sum_that_waits_for_its_operand_may_be_hundreds_of_operations_deep():
     program = """
     !s.
     +!s <- !sum(300, 0, Open, S); Open = 1; .print(S).

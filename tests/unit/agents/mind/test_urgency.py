@@ -4,7 +4,7 @@ from collections import Counter, deque
 from random import Random
 
 import pytest
-from recording_host import RecordingHost, mind, printed
+from recording_host import RecordingHost, mind, printed, programs
 
 from jacaros.agents.mind.rules.urgency import Fair, Urgent, UrgentQueue
 from jacaros.agents.mind.state.act import Percept, SpeechAct
@@ -42,30 +42,21 @@ def told(*literals: Term, program: str = TWO_STEPS, options: Options | None = No
 # --- events ---------------------------------------------------------------------------------------------------
 
 
-def test_an_urgent_event_is_handled_before_those_that_came_first() -> None:
+def test_an_urgent_event_comes_first_and_equals_in_order():
     assert told(low(1), low(2), bump(1)).printed == [
         *("bump 1", "end of bump 1"),
         *("low 1", "end of low 1", "low 2", "end of low 2"),
     ]
-
-
-def test_without_urgency_the_order_is_that_of_arrival() -> None:
     program = TWO_STEPS.replace("[urgency(10)]", "")
     assert told(low(1), low(2), bump(1), program=program).printed == [
-        *("low 1", "end of low 1", "low 2", "bump 1", "end of low 2", "end of bump 1"),
+        *("low 1", "end of low 1", "low 2", "bump 1", "end of low 2", "end of bump 1")
     ]
-
-
-def test_equals_are_first_come_first_served() -> None:
     program = TWO_STEPS + '@other[urgency(10)] +edge(I) <- .print("edge ", I); .print("end of edge ", I).'
     edge = structure("edge", 1.0)
     assert told(low(1), bump(1), edge, bump(2), program=program).printed == [
         *("bump 1", "end of bump 1", "edge 1", "bump 2", "end of edge 1", "end of bump 2"),
         *("low 1", "end of low 1"),
     ]
-
-
-def test_several_degrees_go_from_the_greatest_down() -> None:
     program = """
         +a <- .print(a). @b[urgency(1)] +b <- .print(b). @c[urgency(2)] +c <- .print(c). @d[urgency(3)] +d <- .print(d).
     """
@@ -73,20 +64,19 @@ def test_several_degrees_go_from_the_greatest_down() -> None:
     assert told(*literals, program=program).printed == ["d", "d", "c", "c", "b", "b", "a", "a"]
 
 
-def test_an_event_is_as_urgent_as_the_most_urgent_of_its_plans_applicable_or_not() -> None:
+def test_an_event_is_as_urgent_as_its_most_urgent_plan():
     program = TWO_STEPS + '@never[urgency(20)] +low(I) : I > 100 <- .print("high ", I).'
     assert told(bump(1), low(1), program=program).printed[0] == "low 1"
-
-
-def test_a_plan_for_all_events_makes_them_all_as_urgent() -> None:
     program = TWO_STEPS + "@all[urgency(10)] +Any : false <- true."
+    assert told(low(1), bump(1), program=program).printed[0] == "low 1"
+    program = TWO_STEPS.replace("urgency(10)", "urgency(high), urgency(1.5), urgency(-3), urgency")
     assert told(low(1), bump(1), program=program).printed[0] == "low 1"
 
 
 # --- intentions -----------------------------------------------------------------------------------------------
 
 
-def test_the_goals_of_an_urgent_plan_are_as_urgent() -> None:
+def test_the_goals_of_an_urgent_plan_are_as_urgent():
     program = (
         TWO_STEPS
         + """
@@ -97,37 +87,35 @@ def test_the_goals_of_an_urgent_plan_are_as_urgent() -> None:
     assert told(low(1), bump(1), atom("crash"), program=program).printed[:3] == ["brake", "off", "reported"]
 
 
-def test_an_urgent_goal_lifts_its_intention_while_it_is_pursued() -> None:
-    program = """
-        !a. !b.
-        +!a <- .print(a1); !hurry; .print(a2); .print(a3).
-        +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
-        @now[urgency(5)] +!hurry <- .print(h1); .print(h2); .print(h3).
-    """
-    assert printed(program) == ["a1", "h1", "h2", "h3", "b1", "a2", "b2", "a3", "b3", "b4", "b5"]
+PROGRAMS = """
+an urgent goal lifts its intention while it is pursued => a1 | h1 | h2 | h3 | b1 | a2 | b2 | a3 | b3 | b4 | b5
+    !a. !b.
+    +!a <- .print(a1); !hurry; .print(a2); .print(a3).
+    +!b <- .print(b1); .print(b2); .print(b3); .print(b4); .print(b5).
+    @now[urgency(5)] +!hurry <- .print(h1); .print(h2); .print(h3).
+an urgent handler of a failure goes first => a1 | saved | safe | b1 | b2 | b3
+    !a. !b.
+    +!a <- .print(a1); .fail.
+    +!b <- .print(b1); .print(b2); .print(b3).
+    @save[urgency(1)] -!a <- .print(saved); .print(safe).
+intentions of equal urgency take turns => a1 | a2 | b1 | a3 | b2 | b3 | w1 | w2
+    !work. !a. !b.
+    @a[urgency(1)] +!a <- .print(a1); .print(a2); .print(a3).
+    @b[urgency(1)] +!b <- .print(b1); .print(b2); .print(b3).
+    +!work <- .print(w1); .print(w2).
+a suspended urgent intention blocks no others and goes first when resumed => a1 | b1 | b2 | a2 | a3 | b3 | b4
+    !a. !b.
+    @a[urgency(1)] +!a <- .print(a1); .suspend; .print(a2); .print(a3).
+    +!b <- .print(b1); .print(b2); .resume(a); .print(b3); .print(b4).
+"""
 
 
-def test_an_urgent_handler_of_a_failure_goes_first() -> None:
-    program = """
-        !a. !b.
-        +!a <- .print(a1); .fail.
-        +!b <- .print(b1); .print(b2); .print(b3).
-        @save[urgency(1)] -!a <- .print(saved); .print(safe).
-    """
-    assert printed(program) == ["a1", "saved", "safe", "b1", "b2", "b3"]
+@programs(PROGRAMS)
+def test_what_a_program_prints(program, output):
+    assert printed(program) == output
 
 
-def test_intentions_of_equal_urgency_take_turns() -> None:
-    program = """
-        !work. !a. !b.
-        @a[urgency(1)] +!a <- .print(a1); .print(a2); .print(a3).
-        @b[urgency(1)] +!b <- .print(b1); .print(b2); .print(b3).
-        +!work <- .print(w1); .print(w2).
-    """
-    assert printed(program) == ["a1", "a2", "b1", "a3", "b2", "b3", "w1", "w2"]
-
-
-def test_no_event_is_handled_while_a_more_urgent_intention_is_ready() -> None:
+def test_no_event_is_handled_while_a_more_urgent_intention_is_ready():
     program = """
         +low(I) : .count(busy, 0) <- .print("low ", I).
         +low(I) <- .print("bad moment ", I).
@@ -136,7 +124,7 @@ def test_no_event_is_handled_while_a_more_urgent_intention_is_ready() -> None:
     assert told(low(1), low(2), bump(1), program=program).printed == ["bump 1", "low 1", "low 2"]
 
 
-def test_a_waiting_urgent_intention_lets_the_others_continue() -> None:
+def test_intentions_that_wait_let_others_continue_and_atomic_ones_are_not_interrupted():
     program = """
         !a. !b.
         @a[urgency(1)] +!a <- .print(a1); .wait(10); .print(a2); .print(a3).
@@ -145,18 +133,6 @@ def test_a_waiting_urgent_intention_lets_the_others_continue() -> None:
     lines = printed(program)
     assert lines[:2] == ["a1", "b1"]
     assert lines.index("a3") == lines.index("a2") + 1
-
-
-def test_a_suspended_urgent_intention_blocks_no_others_and_goes_first_when_resumed() -> None:
-    program = """
-        !a. !b.
-        @a[urgency(1)] +!a <- .print(a1); .suspend; .print(a2); .print(a3).
-        +!b <- .print(b1); .print(b2); .resume(a); .print(b3); .print(b4).
-    """
-    assert printed(program) == ["a1", "b1", "b2", "a2", "a3", "b3", "b4"]
-
-
-def test_an_atomic_intention_is_not_interrupted() -> None:
     program = (
         TWO_STEPS
         + """
@@ -168,7 +144,7 @@ def test_an_atomic_intention_is_not_interrupted() -> None:
     assert printed(program) == ["p1", "p2", "m1", "p3", "bump 1", "end of bump 1"]
 
 
-def test_a_deep_stack_knows_its_urgency() -> None:
+def test_a_deep_stack_knows_its_urgency():
     program = """
         !down(2000). !other.
         +!down(0) <- .print(bottom).
@@ -186,7 +162,7 @@ def test_a_deep_stack_knows_its_urgency() -> None:
 # --- plans and options ----------------------------------------------------------------------------------------
 
 
-def test_an_urgent_plan_that_is_added_at_run_time_counts_from_the_next_cycle() -> None:
+def test_plans_that_become_urgent_count_from_the_next_cycle():
     program = """
         +low(I) <- .print("low ", I); .print("end of low ", I).
         !start.
@@ -199,9 +175,6 @@ def test_an_urgent_plan_that_is_added_at_run_time_counts_from_the_next_cycle() -
     assert lines.index("bump(1)") + 1 == lines.index("end(1)")
     assert lines.index("end(1)") < lines.index("started")
     assert [line for line in lines if line.startswith("low")] == ["low 1", "low 2", "low 3"]
-
-
-def test_waiting_events_are_sorted_when_their_plan_becomes_urgent() -> None:
     program = """
         +low(I) <- .print("low ", I).
         @old +bump(I) : false.
@@ -213,9 +186,6 @@ def test_waiting_events_are_sorted_when_their_plan_becomes_urgent() -> None:
     host.agent.perceive(noticed(low(1), low(2), low(3), bump(1)))
     host.run()
     assert host.printed == ["bump(1)", "low 1", "low 2", "low 3"]
-
-
-def test_without_its_urgent_plan_an_event_is_as_any_other() -> None:
     program = TWO_STEPS + '+bump(I) <- .print("bump as well").'
     host = mind(program + "!s. +!s <- .remove_plan(stop).")
     host.run()
@@ -224,19 +194,16 @@ def test_without_its_urgent_plan_an_event_is_as_any_other() -> None:
     assert host.printed == ["low 1", "end of low 1", "bump as well"]
 
 
-def test_an_option_sets_the_urgency_of_events_without_labels() -> None:
+def test_an_option_sets_the_urgency_of_events_and_takes_precedence():
     program = TWO_STEPS.replace("[urgency(10)]", "")
     options = Options(urgency=(("bump", 3),))
     host = told(low(1), low(2), bump(1), program=program, options=options)
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
-
-
-def test_an_option_takes_precedence_over_a_label() -> None:
     options = Options(urgency=(("bump", 0), ("low", 1)))
     assert told(bump(1), low(1), options=options).printed[0] == "low 1"
 
 
-def test_sub_plans_count_for_the_urgency_of_events() -> None:
+def test_sub_plans_count_for_the_urgency_of_events():
     program = """
         !guard.
         +!guard <- .wait(1000) { @stop[urgency(9)] +bump(I) <- .print("bump ", I); .print("end of bump ", I). }.
@@ -249,12 +216,7 @@ def test_sub_plans_count_for_the_urgency_of_events() -> None:
     assert host.printed[:2] == ["bump 1", "end of bump 1"]
 
 
-def test_an_invalid_urgency_has_no_effect() -> None:
-    program = TWO_STEPS.replace("urgency(10)", "urgency(high), urgency(1.5), urgency(-3), urgency")
-    assert told(low(1), bump(1), program=program).printed[0] == "low 1"
-
-
-def test_an_agent_without_urgent_plans_is_fair() -> None:
+def test_an_agent_without_urgent_plans_is_fair():
     host = mind("!s. +!s <- .print(a).")
     host.run()
     assert isinstance(host.agent.selections, Fair)
@@ -264,7 +226,7 @@ def test_an_agent_without_urgent_plans_is_fair() -> None:
 # --- bursts ---------------------------------------------------------------------------------------------------
 
 
-def test_a_burst_of_percepts_does_not_keep_an_urgent_goal_waiting() -> None:
+def test_a_burst_of_percepts_does_not_keep_an_urgent_goal_waiting():
     program = """
         +low(I) <- ++handled(I).
         @stop[urgency(10)] +bump(I) <- .print(brake); .print(off); .count(handled(_), N); .print(N).
@@ -280,7 +242,7 @@ def test_a_burst_of_percepts_does_not_keep_an_urgent_goal_waiting() -> None:
     assert len(host.agent.beliefs[structure("handled", 1.0)[0]]) == 10_000
 
 
-def test_a_stream_of_percepts_does_not_keep_an_urgent_goal_waiting() -> None:
+def test_a_stream_of_percepts_does_not_keep_an_urgent_goal_waiting():
     program = """
         +low(I) <- .print("low").
         @stop[urgency(1)] +!stop(0) <- .print(stopped).
@@ -296,30 +258,7 @@ def test_a_stream_of_percepts_does_not_keep_an_urgent_goal_waiting() -> None:
     assert host.printed == ["stopped"]
 
 
-def test_messages_before_an_urgent_one_are_read_with_it_in_their_order() -> None:
-    host = mind(TWO_STEPS.replace('.print("end of low ", I)', "true"))
-    for number in range(1, 101):
-        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
-    host.agent.receive(SpeechAct("tell", "friend", "tester", bump(1), "m101"))
-    host.agent.receive(SpeechAct("tell", "friend", "tester", low(101), "m102"))
-    host.agent.run(2)
-    assert host.printed == ["bump 1", "end of bump 1"]
-    assert len(host.agent.incoming.messages) == 0
-    host.run()
-    assert host.printed[2:] == [f"low {number}" for number in range(1, 102)]
-
-
-def test_an_urgent_goal_of_a_message_goes_first_too() -> None:
-    program = '@halt[urgency(2)] +!halt <- .print(halted). +low(I) <- .print("low ", I); true.'
-    host = mind(program)
-    for number in range(1, 4):
-        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
-    host.agent.receive(SpeechAct("achieve", "friend", "tester", atom("halt"), "m9"))
-    host.run()
-    assert host.printed == ["halted", "low 1", "low 2", "low 3"]
-
-
-def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch):
     asked = []
     of_event = Urgent._of_event
 
@@ -342,7 +281,7 @@ def test_a_burst_is_not_sorted_when_something_urgent_comes(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("events", ["discard", "requeue"])
-def test_the_queues_are_in_order_in_every_cycle(events: str) -> None:
+def test_the_queues_are_in_order_in_every_cycle(events):
     """As long as nothing urgent was noted, all that waits has urgency 0: so nothing has to be sorted.
 
     But for events that are put back to be tried again: they go back to the front.
@@ -380,7 +319,7 @@ def test_the_queues_are_in_order_in_every_cycle(events: str) -> None:
 # --- the queue ------------------------------------------------------------------------------------------------
 
 
-def test_a_queue_in_order_of_urgency() -> None:
+def test_a_queue_in_order_of_urgency():
     queue: UrgentQueue[tuple[int, str]] = UrgentQueue(lambda item: item[0])
     for item in ((0, "a"), (5, "b"), (0, "c"), (5, "d"), (9, "e"), (3, "f"), (0, "g"), (3, "h")):
         queue.append(item)
@@ -408,29 +347,15 @@ def busy(program: str = BUSY) -> RecordingHost:
     return host
 
 
-def test_an_urgent_percept_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions() -> None:
+def test_urgent_percepts_messages_and_waits_go_first_beside_a_hundred_busy_intentions():
     host = busy()
     host.agent.perceive(noticed(bump(1)))
     host.agent.run(2)
     assert host.printed == ["halt 1"]
-
-
-def test_an_urgent_message_is_answered_in_the_next_cycles_beside_a_hundred_busy_intentions() -> None:
     host = busy(BUSY + "@ask[urgency(5)] +!stop <- .print(stopped).")
     host.agent.receive(SpeechAct("achieve", "bob", "tester", atom("stop"), "m1"))
     host.agent.run(1)
     assert host.printed == ["stopped"]
-
-
-def test_an_urgent_question_does_not_wait_for_the_events_before_it() -> None:
-    host = mind("+low(I) <- .print(low, I). @q[urgency(5)] +?state(X) <- .print(asked); X = ok.")
-    host.agent.perceive(noticed(*(low(number) for number in range(5))))
-    host.agent.receive(SpeechAct("askOne", "bob", "tester", structure("state", Var()), "m1"))
-    host.run()
-    assert host.printed[0] == "asked"
-
-
-def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None:
     host = busy(BUSY + "@w[urgency(5)] +go <- .wait(10); .print(first); .wait(10); .print(second).")
     host.agent.perceive(noticed(atom("go")))
     for expected in ([], ["first"], ["first", "second"]):
@@ -439,7 +364,32 @@ def test_an_urgent_intention_that_waited_goes_first_when_its_wait_ends() -> None
         host.ring_next(host.time + 1000)
 
 
-def test_the_first_goes_first_while_nothing_is_urgent() -> None:
+def test_urgent_questions_and_goals_of_messages_go_first():
+    host = mind("+low(I) <- .print(low, I). @q[urgency(5)] +?state(X) <- .print(asked); X = ok.")
+    host.agent.perceive(noticed(*(low(number) for number in range(5))))
+    host.agent.receive(SpeechAct("askOne", "bob", "tester", structure("state", Var()), "m1"))
+    host.run()
+    assert host.printed[0] == "asked"
+    program = '@halt[urgency(2)] +!halt <- .print(halted). +low(I) <- .print("low ", I); true.'
+    host = mind(program)
+    for number in range(1, 4):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
+    host.agent.receive(SpeechAct("achieve", "friend", "tester", atom("halt"), "m9"))
+    host.run()
+    assert host.printed == ["halted", "low 1", "low 2", "low 3"]
+    host = mind(TWO_STEPS.replace('.print("end of low ", I)', "true"))
+    for number in range(1, 101):
+        host.agent.receive(SpeechAct("tell", "friend", "tester", low(number), f"m{number}"))
+    host.agent.receive(SpeechAct("tell", "friend", "tester", bump(1), "m101"))
+    host.agent.receive(SpeechAct("tell", "friend", "tester", low(101), "m102"))
+    host.agent.run(2)
+    assert host.printed == ["bump 1", "end of bump 1"]
+    assert len(host.agent.incoming.messages) == 0
+    host.run()
+    assert host.printed[2:] == [f"low {number}" for number in range(1, 102)]
+
+
+def test_the_first_goes_first_while_nothing_is_urgent():
     host = busy()
     agent = host.agent
     assert agent.selections.plain

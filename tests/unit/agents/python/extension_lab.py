@@ -5,6 +5,9 @@ from textwrap import dedent
 
 from jacaros.testing import RunResult, run_project
 
+HEAD = "from collections.abc import Iterator\nfrom jacaros import *\n"
+"""The first two lines of each module ``my.py``."""
+
 
 def write(folder: Path, **files: str) -> Path:
     """Write files into a folder: ``my="..."`` is ``my.py``, ``t_asl="..."`` is ``t.asl``, ``my__a`` is ``my/a.py``."""
@@ -20,10 +23,10 @@ def write(folder: Path, **files: str) -> Path:
 
 
 def run(folder: Path, program: str, python: str = "", seconds: float | None = None) -> RunResult:
-    """Run a program ``t.asl`` beside a module ``my.py``."""
+    """Run a program ``t.asl`` beside a module ``my.py``, whose first two lines are `HEAD`."""
     write(folder, t_asl=program)
     if python:
-        write(folder, my=python)
+        write(folder, my=HEAD + dedent(python))
     return run_project(folder / "t.asl", until_idle=True, seconds=seconds)
 
 

@@ -30,7 +30,7 @@ def said(
     return result.of("bob")
 
 
-def test_an_option_is_selected_by_the_class(tmp_path: Path) -> None:
+def test_an_option_is_selected_by_the_class(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -47,7 +47,7 @@ class Mine(Agent):
     assert said(tmp_path, program, python) == ["high72", "middle8", "no_relevant"]
 
 
-def test_the_bindings_of_options_are_seen_and_none_may_be_taken(tmp_path: Path) -> None:
+def test_the_bindings_of_options_are_seen_and_none_may_be_taken(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -65,7 +65,7 @@ class Mine(Agent):
     assert "no applicable plan for !go" in result.errors[0]
 
 
-def test_messages_are_refused_by_the_class(tmp_path: Path) -> None:
+def test_messages_are_refused_by_the_class(tmp_path):
     python = """
 class Mine(Agent):
     def soc_acc(self, message):
@@ -76,7 +76,7 @@ class Mine(Agent):
     assert (result.of("bob"), result.errors) == (["ann1", "ann2", "ann3", "ann4"], [])
 
 
-def test_an_agent_need_not_accept_its_end(tmp_path: Path) -> None:
+def test_an_agent_need_not_accept_its_end(tmp_path):
     python = """
 class Mine(Agent):
     def kill_acc(self, killer):
@@ -88,7 +88,7 @@ class Mine(Agent):
     assert result.lines == ["[ann] refused", "[boss] killed"]
 
 
-def test_an_error_in_the_class_is_logged_and_the_default_is_used(tmp_path: Path) -> None:
+def test_an_error_in_the_class_is_logged_and_the_default_is_used(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -104,7 +104,7 @@ class Mine(Agent):
     assert f"Mine.select_option: ZeroDivisionError: division by zero ({tmp_path}/my.py:6)" in result.errors[1]
 
 
-def test_an_option_that_is_not_offered_is_logged_and_the_first_is_used(tmp_path: Path) -> None:
+def test_an_option_that_is_not_offered_is_logged_and_the_first_is_used(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -126,9 +126,7 @@ class Mine(Agent):
         ("agentClass my.Broken", "my.py:9)"),
     ],
 )
-def test_an_unknown_class_is_reported_before_anything_runs(
-    tmp_path: Path, declared: str, message: str
-) -> None:
+def test_an_unknown_class_is_reported_before_anything_runs(tmp_path, declared, message):
     python = "class Mine(Agent):\n    def init(self):\n        pass\n\n"
     python += "class Broken(Agent):\n    def init(self):\n        1 / 0\n"
     result = run(tmp_path, "!go. +!go <- .print(hello).", python, declared, broken="undefined_name\n")
@@ -137,14 +135,14 @@ def test_an_unknown_class_is_reported_before_anything_runs(
     assert "sys.mas2j:1:" in "\n".join(result.errors)
 
 
-def test_a_java_class_is_reported_and_has_no_effect(tmp_path: Path) -> None:
+def test_a_java_class_is_reported_and_has_no_effect(tmp_path):
     result = run(tmp_path, "!go. +!go <- .print(hello).", "", "agentClass your.Careful")
     assert result.of("bob") == ["hello"]
     assert "the Java class `your.Careful` has no effect" in result.errors[0]
     assert "`class Careful(jacaros.Agent)` in your.py" in result.errors[0]
 
 
-def test_an_agent_made_at_run_time_can_be_of_a_class(tmp_path: Path) -> None:
+def test_an_agent_made_at_run_time_can_be_of_a_class(tmp_path):
     python = """
 class Mine(Agent):
     def init(self, word):
@@ -165,7 +163,7 @@ class Mine(Agent):
     assert "unknown class Missing" in result.errors[1]
 
 
-def test_python_code_can_look_at_beliefs_and_talk(tmp_path: Path) -> None:
+def test_python_code_can_look_at_beliefs_and_talk(tmp_path):
     python = """
 @internal_action
 def look(agent: Agent) -> list[str]:
@@ -182,7 +180,7 @@ def look(agent: Agent) -> list[str]:
     assert result.errors == ["[bob] info: looking"]
 
 
-def test_every_answer_of_a_plan_for_all_unifiers_is_an_option(tmp_path: Path) -> None:
+def test_every_answer_of_a_plan_for_all_unifiers_is_an_option(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -197,7 +195,7 @@ class Mine(Agent):
     assert said(tmp_path, program, python) == ["8"]
 
 
-def test_a_plan_after_a_general_one_is_reachable_if_the_class_selects(tmp_path: Path) -> None:
+def test_a_plan_after_a_general_one_is_reachable_if_the_class_selects(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -207,7 +205,7 @@ class Mine(Agent):
     assert check_files([tmp_path / "sys.mas2j"]).diagnostics == []
 
 
-def test_texts_parsed_at_run_time_can_name_python_code(tmp_path: Path) -> None:
+def test_texts_parsed_at_run_time_can_name_python_code(tmp_path):
     python = """
 @internal_action
 def double(x: float) -> float:
@@ -225,7 +223,7 @@ def sq(x: float) -> float:
     assert said(tmp_path, program, python, "") == ["15", "26"]
 
 
-def test_a_clone_is_of_the_same_class(tmp_path: Path) -> None:
+def test_a_clone_is_of_the_same_class(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):
@@ -237,7 +235,7 @@ class Mine(Agent):
     assert run(tmp_path, program, python).of("twin") == ["last"]
 
 
-def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> None:
+def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path):
     write(
         tmp_path,
         sys_mas2j="MAS sys { agents: bob agentClass my.Mien; sue agentClass your.Mine; }",
@@ -255,7 +253,7 @@ def test_a_check_looks_at_the_classes_and_the_python_code(tmp_path: Path) -> Non
     ]
 
 
-def test_the_contexts_of_options_are_asked_once(tmp_path: Path) -> None:
+def test_the_contexts_of_options_are_asked_once(tmp_path):
     python = """
 class Mine(Agent):
     def select_option(self, options):

@@ -1,15 +1,11 @@
 """Arithmetic functions that a project writes in Python."""
 
-from pathlib import Path
-
 from extension_lab import run, said
 
 from jacaros.agents.terms import operators
 from jacaros.testing import AgentHarness
 
 SQ = """
-from jacaros import arithmetic_function
-
 @arithmetic_function("my.sq")
 def sq(x):
     return x * x
@@ -32,7 +28,7 @@ def word(x):
 """
 
 
-def test_a_function_stands_in_expressions_and_conditions(tmp_path: Path) -> None:
+def test_a_function_stands_in_expressions_and_conditions(tmp_path):
     program = """
     large(X) :- my.sq(X) > 10.
     side(4).
@@ -44,23 +40,23 @@ def test_a_function_stands_in_expressions_and_conditions(tmp_path: Path) -> None
     assert said(tmp_path, program, SQ) == ["10", "4", "7", "yes", "8", "ok"]
 
 
-def test_a_function_waits_for_its_arguments(tmp_path: Path) -> None:
+def test_a_function_waits_for_its_arguments(tmp_path):
     program = "!go. +!go <- Y = my.sq(X) + 1; X = 3; .print(Y)."
     assert said(tmp_path, program, SQ) == ["10"]
 
 
-def test_jasons_directive_is_accepted(tmp_path: Path) -> None:
+def test_jasons_directive_is_accepted(tmp_path):
     program = '{ register_function("my.sq") } !go. +!go <- .print(my.sq(3)).'
     assert said(tmp_path, program, SQ) == ["9"]
 
 
-def test_a_java_function_is_reported(tmp_path: Path) -> None:
+def test_a_java_function_is_reported(tmp_path):
     result = run(tmp_path, '{ register_function("your.sq") } !go. +!go <- .print(hello).', SQ)
     assert result.of("t") == ["hello"]
     assert "a function sq with @arithmetic_function in your.py" in result.errors[0]
 
 
-def test_an_exception_fails_the_step(tmp_path: Path) -> None:
+def test_an_exception_fails_the_step(tmp_path):
     program = (
         "!go. +!go <- X = my.broken(1); .print(X). -!go[error(E), error_msg(M)] <- .print(E); .print(M)."
     )
@@ -70,24 +66,24 @@ def test_an_exception_fails_the_step(tmp_path: Path) -> None:
     assert result.errors == [f"[t] error: {result.of('t')[1]}"]
 
 
-def test_a_result_that_is_not_a_number_fails_the_step(tmp_path: Path) -> None:
+def test_a_result_that_is_not_a_number_fails_the_step(tmp_path):
     result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
     assert result.of("t") == ["arithmetic_error"]
     assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
 
 
-def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path: Path) -> None:
+def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path):
     result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
     assert result.exit_code in (0, 1)
     assert "my.sq" in result.errors[0]
 
 
-def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path: Path) -> None:
+def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path):
     said(tmp_path, "!go. +!go <- .print(my.sq(3)).", SQ)
     assert "my.sq" not in operators.function_table
 
 
-def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path: Path) -> None:
+def test_two_projects_have_functions_of_one_name_at_the_same_time(tmp_path):
     module = (
         "from jacaros import arithmetic_function\n@arithmetic_function\ndef size(x):\n    return {result}\n"
     )

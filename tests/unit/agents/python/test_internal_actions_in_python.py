@@ -1,104 +1,68 @@
 """Internal actions that a project writes in Python."""
 
-from pathlib import Path
-
 import pytest
-from extension_lab import run, said, write
+from extension_lab import HEAD, run, said, write
+from recording_host import programs
 
 from jacaros.testing import run_project
 
-HEAD = "from collections.abc import Iterator\nfrom jacaros import *\n"
-
-
-def test_a_function_is_called_and_its_value_is_the_last_argument(tmp_path: Path) -> None:
-    python = """
-    from jacaros import internal_action
-
+EXTENDED = """
+a function is called and its value is the last argument => 5 | yes | ia_failed
     @internal_action("my.norm")
     def anything(x: float, y: float) -> float:
         return (x * x + y * y) ** 0.5
-    """
-    program = (
-        "!go. +!go <- my.norm(3, 4, L); .print(L); my.norm(3, 4, 5); .print(yes); my.norm(3, "
-        "4, 6); .print(no). -!go[error(E)] <- .print(E)."
-    )
-    assert said(tmp_path, program, python) == ["5", "yes", "ia_failed"]
+    ---
+    !go. +!go <- my.norm(3, 4, L); .print(L); my.norm(3, 4, 5); .print(yes); my.norm(3, 4, 6); .print(no).
+    -!go[error(E)] <- .print(E).
+the default name is module and function => 12
+    @internal_action
+    def one(x: Out) -> None:
+        x.set(1)
 
-
-def test_the_default_name_is_module_and_function(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef one(x: Out) -> None:\n    x.set(1)\n\n"
-    python += "@internal_action()\ndef two(x: Out) -> None:\n    x.set(2)\n"
-    assert said(tmp_path, "!go. +!go <- my.one(X); my.two(Y); .print(X, Y).", python) == ["12"]
-
-
-@pytest.mark.parametrize(("returned", "outcome"), [("None", "yes"), ("True", "yes"), ("False", "ia_failed")])
-def test_a_function_without_value_succeeds_unless_it_returns_false(
-    tmp_path: Path, returned: str, outcome: str
-) -> None:
-    python = HEAD + f"@internal_action\ndef test(x):\n    return {returned}\n"
-    program = "!go. +!go <- my.test(1); .print(yes). -!go[error(E)] <- .print(E)."
-    assert said(tmp_path, program, python) == [outcome]
-
-
-def test_a_function_that_declares_a_value_and_has_none_fails(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef find(x: int) -> int | None:\n    return x if x > 3 else None\n"
-    program = "!go. +!go <- .findall(Y, .member(X, [2,4,6]) & my.find(X, Y), L); .print(L)."
-    assert said(tmp_path, program, python) == ["[4,6]"]
-
-
-def test_an_undeclared_value_is_reported_with_help(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef sum(x, y):\n    return x + y\n"
-    result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
-    assert result.of("t") == ["internal_action"]
-    assert "write 'def sum(...) -> int'" in result.errors[0]
-
-
-def test_arguments_arrive_as_python_values(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef show(*values) -> str:\n    return repr(values)\n"
-    program = '!go. +!go <- my.show(1, 1.5, "s", a, [1,b], p(1,[x]), true, S); .print(S).'
-    assert said(tmp_path, program, python) == [
-        "(1, 1.5, 's', Atom('a'), [1, Atom('b')], Structure(functor='p', arguments=(1, [Atom('x')])), True)"
-    ]
-
-
-def test_an_unbound_variable_is_a_place_for_a_result(tmp_path: Path) -> None:
-    python = """
-    from jacaros import Structure, internal_action
-
+    @internal_action()
+    def two(x: Out) -> None:
+        x.set(2)
+    ---
+    !go. +!go <- my.one(X); my.two(Y); .print(X, Y).
+a function that declares a value and has none fails => [4,6]
+    @internal_action
+    def find(x: int) -> int | None:
+        return x if x > 3 else None
+    ---
+    !go. +!go <- .findall(Y, .member(X, [2,4,6]) & my.find(X, Y), L); .print(L).
+arguments arrive as Python values
+=> (1, 1.5, 's', Atom('a'), [1, Atom('b')], Structure(functor='p', arguments=(1, [Atom('x')])), True)
+    @internal_action
+    def show(*values) -> str:
+        return repr(values)
+    ---
+    !go. +!go <- my.show(1, 1.5, "s", a, [1,b], p(1,[x]), true, S); .print(S).
+an unbound variable is a place for a result => 1at(2)
     @internal_action
     def fill(pair):
         first, second = pair.arguments
         first.set(1)
         second.set(Structure("at", (2,)))
-    """
-    assert said(tmp_path, "!go. +!go <- my.fill(pair(X, Y)); .print(X, Y).", python) == ["1at(2)"]
+    ---
+    !go. +!go <- my.fill(pair(X, Y)); .print(X, Y).
+the parts of a literal are available => ["bob"]
+    @internal_action
+    def who(belief: Literal) -> list[str]:
+        return sorted(belief.sources)
+    ---
+    b(1)[source(bob)]. !go. +!go : b(X)[source(S)] <- my.who(b(X)[source(S), q], L); .print(L).
+a generator gives its answers in turn => 7 | [0,2,4] | [p(0,2),p(2,0)] | 0 | 1 | 3
+    @internal_action
+    def each(n: int) -> Iterator[int]:
+        yield from range(n)
 
-
-def test_the_parts_of_a_literal_are_available(tmp_path: Path) -> None:
-    python = HEAD + (
-        "@internal_action\ndef who(belief: Literal) -> list[str]:\n    return sorted(belief.sources)\n"
-    )
-    program = "b(1)[source(bob)]. !go. +!go : b(X)[source(S)] <- my.who(b(X)[source(S), q], L); .print(L)."
-    assert said(tmp_path, program, python) == ['["bob"]']
-
-
-def test_a_generator_gives_its_answers_in_turn(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-@internal_action
-def each(n: int) -> Iterator[int]:
-    yield from range(n)
-
-@internal_action
-def split(n: int, left: Out, right: Out) -> Iterator[None]:
-    for part in range(n + 1):
-        left.set(part)
-        right.set(n - part)
-        yield
-"""
-    )
-    program = """
+    @internal_action
+    def split(n: int, left: Out, right: Out) -> Iterator[None]:
+        for part in range(n + 1):
+            left.set(part)
+            right.set(n - part)
+            yield
+    ---
     even(X) :- my.each(5, X) & X mod 2 == 0.
     !go.
     +!go : my.each(9, X) & X > 6
@@ -106,49 +70,113 @@ def split(n: int, left: Out, right: Out) -> Iterator[None]:
          .findall(p(A,B), my.split(2, A, B) & A \\== 1, M); .print(M);
          for (my.each(2, Z)) { .print(Z) };
          my.split(4, C, 1); .print(C).
-    """
-    assert said(tmp_path, program, python) == ["7", "[0,2,4]", "[p(0,2),p(2,0)]", "0", "1", "3"]
+an endless generator is asked only for what is needed => 8
+    import itertools
 
+    @internal_action
+    def naturals() -> Iterator[int]:
+        yield from itertools.count()
+    ---
+    !go. +!go : my.naturals(X) & X * X > 50 <- .print(X).
+a coroutine suspends only its intention => one | t at 5 | six
+    import asyncio
 
-def test_an_endless_generator_is_asked_only_for_what_is_needed(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-import itertools
-
-@internal_action
-def naturals() -> Iterator[int]:
-    yield from itertools.count()
-"""
-    )
-    program = "!go. +!go : my.naturals(X) & X * X > 50 <- .print(X)."
-    assert said(tmp_path, program, python) == ["8"]
-
-
-def test_a_coroutine_suspends_only_its_intention(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-import asyncio
-
-@internal_action
-async def fetch(agent: Agent, seconds: float) -> str:
-    await asyncio.sleep(seconds)
-    return f"{agent.name} at {agent.now() % 60:g}"
-"""
-    )
-    program = """
+    @internal_action
+    async def fetch(agent: Agent, seconds: float) -> str:
+        await asyncio.sleep(seconds)
+        return f"{agent.name} at {agent.now() % 60:g}"
+    ---
     !a. !b.
     +!a <- my.fetch(5, R); .print(R).
     +!b <- .wait(1000); .print(one); .wait(5000); .print(six).
-    """
-    assert said(tmp_path, program, python) == ["one", "t at 5", "six"]
+a coroutine can wait for a thread => 499500 | later
+    import asyncio
+
+    @internal_action
+    async def work(n: int) -> int:
+        return await asyncio.to_thread(lambda: sum(range(n)))
+    ---
+    !a. !b. +!a <- my.work(1000, X); .print(X). +!b <- .wait(60000); .print(later).
+a coroutine that fails fails its step
+=> 3 | 4 ia_failed internal action my.odd failed | 7 internal_action too large 5
+    import asyncio
+
+    @internal_action
+    async def odd(n: int) -> int | None:
+        await asyncio.sleep(1)
+        if n > 5:
+            raise ActionError("too large", Structure("limit", (5,)))
+        return n if n % 2 else None
+    ---
+    !go.
+    +!go <- my.odd(3, X); .print(X); !g(4); !g(7).
+    +!g(N) <- my.odd(N, X).
+    -!g(N)[error(E), error_msg(M), limit(L)] <- .print(N, " ", E, " ", M, " ", L).
+    -!g(N)[error(E), error_msg(M)] <- .print(N, " ", E, " ", M).
+a suspended intention gets the result when it is resumed => 1at3
+    import asyncio
+
+    @internal_action
+    async def nap() -> int:
+        await asyncio.sleep(1)
+        return 1
+    ---
+    !a. !b. +!a <- my.nap(X); .time(H,M,S); .print(X, at, S). +!b <- .suspend(a); .wait(3000); .resume(a).
+an argument of another kind is wrong => wrong_arguments my.half: argument 1 (x): expected a number, found a
+    @internal_action
+    def half(x: float) -> float:
+        return x / 2
+    ---
+    !go. +!go <- my.half(a, X). -!go[error(E), error_msg(M)] <- .print(E, " ", M).
+a wrong number of arguments is wrong => 4.5 3 | my.half expects 2 to 3 arguments, found 1
+    @internal_action
+    def half(x: float, by: float = 2) -> float:
+        return x / by
+    ---
+    // jacaros: ignore-file wrong-arguments
+    !go. +!go <- my.half(9, X); my.half(9, 3, Y); .print(X, " ", Y); my.half(1). -!go[error_msg(M)] <- .print(M).
+the calling agent is available => once kitchen | 1
+    @internal_action
+    def remember(agent: Agent, place: str) -> None:
+        for answer in agent.ask("seen(X)"):
+            agent.remove_belief(Literal("seen", (answer["X"],)))
+        agent.add_belief(Literal("seen", (place,)))
+        agent.achieve("tell(once)")
+
+    @internal_action
+    def none():
+        return False
+    ---
+    seen(nothing).
+    !go.
+    +!go <- my.remember(kitchen).
+    +seen(X) : my.none <- .print(X).
+    +!tell(How) : seen(X) <- .print(How, " ", X); .count(seen(_), N); .print(N).
+"""
 
 
-def test_dropping_the_intention_cancels_its_coroutine(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
+@programs(EXTENDED)
+def test_what_a_program_prints(tmp_path, program, output):
+    python, program = program.split("---\n")
+    assert said(tmp_path, program, python) == output
+
+
+@pytest.mark.parametrize(("returned", "outcome"), [("None", "yes"), ("True", "yes"), ("False", "ia_failed")])
+def test_a_function_without_value_succeeds_unless_it_returns_false(tmp_path, returned, outcome):
+    python = f"@internal_action\ndef test(x):\n    return {returned}\n"
+    program = "!go. +!go <- my.test(1); .print(yes). -!go[error(E)] <- .print(E)."
+    assert said(tmp_path, program, python) == [outcome]
+
+
+def test_an_undeclared_value_is_reported_with_help(tmp_path):
+    python = "@internal_action\ndef sum(x, y):\n    return x + y\n"
+    result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
+    assert result.of("t") == ["internal_action"]
+    assert "write 'def sum(...) -> int'" in result.errors[0]
+
+
+def test_dropping_the_intention_cancels_its_coroutine(tmp_path):
+    python = """
 import asyncio
 
 @internal_action
@@ -158,7 +186,6 @@ async def long(agent: Agent):
     finally:
         agent.print("cancelled at ", agent.now() % 60)
 """
-    )
     program = (
         "!a. !b. +!a <- my.long; .print(never). +!b <- .wait(2000); .drop_desire(a); .wait(10); .print(end)."
     )
@@ -168,10 +195,8 @@ async def long(agent: Agent):
     assert result.seconds < 10
 
 
-def test_the_end_of_a_run_cancels_coroutines(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
+def test_the_end_of_a_run_cancels_coroutines(tmp_path):
+    python = """
 import asyncio
 from pathlib import Path
 
@@ -183,69 +208,13 @@ async def long():
         await asyncio.sleep(0.1)
         Path(__file__).with_name("tidy").touch()
 """
-    )
     result = run(tmp_path, "!a. +!a <- my.long. !b. +!b <- .wait(50); .stopMAS.", python)
     assert result.errors == []
     assert (tmp_path / "tidy").exists()
 
 
-def test_a_coroutine_can_wait_for_a_thread(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-import asyncio
-
-@internal_action
-async def work(n: int) -> int:
-    return await asyncio.to_thread(lambda: sum(range(n)))
-"""
-    )
-    program = "!a. !b. +!a <- my.work(1000, X); .print(X). +!b <- .wait(60000); .print(later)."
-    assert said(tmp_path, program, python) == ["499500", "later"]
-
-
-def test_a_coroutine_that_fails_fails_its_step(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-import asyncio
-
-@internal_action
-async def odd(n: int) -> int | None:
-    await asyncio.sleep(1)
-    if n > 5:
-        raise ActionError("too large", Structure("limit", (5,)))
-    return n if n % 2 else None
-"""
-    )
-    program = """
-    !go.
-    +!go <- my.odd(3, X); .print(X); !g(4); !g(7).
-    +!g(N) <- my.odd(N, X).
-    -!g(N)[error(E), error_msg(M), limit(L)] <- .print(N, " ", E, " ", M, " ", L).
-    -!g(N)[error(E), error_msg(M)] <- .print(N, " ", E, " ", M).
-    """
-    assert said(tmp_path, program, python) == [
-        "3",
-        "4 ia_failed internal action my.odd failed",
-        "7 internal_action too large 5",
-    ]
-
-
-def test_a_suspended_intention_gets_the_result_when_it_is_resumed(tmp_path: Path) -> None:
-    python = HEAD + (
-        "import asyncio\n\n@internal_action\nasync def nap() -> int:\n    await "
-        "asyncio.sleep(1)\n    return 1\n"
-    )
-    program = (
-        "!a. !b. +!a <- my.nap(X); .time(H,M,S); .print(X, at, S). +!b <- .suspend(a); "
-        ".wait(3000); .resume(a)."
-    )
-    assert said(tmp_path, program, python) == ["1at3"]
-
-
-def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\nasync def fetch(x: int) -> int:\n    return x\n"
+def test_a_coroutine_cannot_be_a_condition(tmp_path):
+    python = "@internal_action\nasync def fetch(x: int) -> int:\n    return x\n"
     program = "!go. +!go : my.fetch(1, X) <- .print(X). +!go <- .print(other)."
     result = run(tmp_path, program, python)
     assert result.of("t") == ["other"]
@@ -253,8 +222,8 @@ def test_a_coroutine_cannot_be_a_condition(tmp_path: Path) -> None:
     assert "t.asl:1:13" in result.errors[0]
 
 
-def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path: Path) -> None:
-    python = HEAD + "\n@internal_action\ndef bad(x):\n    return 1 / x\n"
+def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path):
+    python = "\n@internal_action\ndef bad(x):\n    return 1 / x\n"
     program = """
     !go. !other.
     +!go <- my.bad(0).
@@ -269,8 +238,8 @@ def test_an_exception_fails_only_the_step_and_is_logged_with_its_line(tmp_path: 
 
 @pytest.mark.parametrize("word", ["def", "async def"])
 @pytest.mark.parametrize("what", ["sys.exit(3)", "raise asyncio.CancelledError", "raise RecursionError"])
-def test_a_system_exit_does_not_end_the_run(tmp_path: Path, word: str, what: str) -> None:
-    python = HEAD + f"import asyncio, sys\n\n@internal_action\n{word} quit():\n    {what}\n"
+def test_a_system_exit_does_not_end_the_run(tmp_path, word, what):
+    python = f"import asyncio, sys\n\n@internal_action\n{word} quit():\n    {what}\n"
     result = run(tmp_path, "!go. +!go <- my.quit. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
     assert len(result.errors) == 1
@@ -278,56 +247,15 @@ def test_a_system_exit_does_not_end_the_run(tmp_path: Path, word: str, what: str
     assert result.exit_code == 0
 
 
-def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef bad():\n    raise ValueError('no')\n"
+def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path):
+    python = "@internal_action\ndef bad():\n    raise ValueError('no')\n"
     result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
     assert result.of("t") == ["yes"]
     assert "my.py:5" in result.errors[0]
 
 
-def test_an_argument_of_another_kind_is_wrong(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef half(x: float) -> float:\n    return x / 2\n"
-    program = '!go. +!go <- my.half(a, X). -!go[error(E), error_msg(M)] <- .print(E, " ", M).'
-    assert said(tmp_path, program, python) == [
-        "wrong_arguments my.half: argument 1 (x): expected a number, found a"
-    ]
-
-
-def test_a_wrong_number_of_arguments_is_wrong(tmp_path: Path) -> None:
-    python = HEAD + "@internal_action\ndef half(x: float, by: float = 2) -> float:\n    return x / by\n"
-    program = (
-        "// jacaros: ignore-file wrong-arguments\n"
-        '!go. +!go <- my.half(9, X); my.half(9, 3, Y); .print(X, " ", Y); my.half(1). '
-        "-!go[error_msg(M)] <- .print(M)."
-    )
-    assert said(tmp_path, program, python) == ["4.5 3", "my.half expects 2 to 3 arguments, found 1"]
-
-
-def test_the_calling_agent_is_available(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
-@internal_action
-def remember(agent: Agent, place: str) -> None:
-    for answer in agent.ask("seen(X)"):
-        agent.remove_belief(Literal("seen", (answer["X"],)))
-    agent.add_belief(Literal("seen", (place,)))
-    agent.achieve("tell(once)")
-"""
-    )
-    program = """
-    seen(nothing).
-    !go.
-    +!go <- my.remember(kitchen).
-    +seen(X) : my.none <- .print(X).
-    +!tell(How) : seen(X) <- .print(How, " ", X); .count(seen(_), N); .print(N).
-    """
-    python += "\n@internal_action\ndef none():\n    return False\n"
-    assert said(tmp_path, program, python) == ["once kitchen", "1"]
-
-
-def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path: Path) -> None:
-    python = """
+def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path):
+    my = """
     from __future__ import annotations
     from typing import TYPE_CHECKING
     from jacaros import internal_action
@@ -349,10 +277,10 @@ def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path: Path) 
         yield
     """
     program = '!go. +!go <- my.hello("hi", X); .print(X); my.each(3, Y); .print(Y); my.test(1); .print(ok).'
-    assert said(tmp_path, program, python) == ["hi t", "0", "ok"]
+    assert said(write(tmp_path, my=my), program) == ["hi t", "0", "ok"]
 
 
-def test_a_package_is_searched_file_by_file(tmp_path: Path) -> None:
+def test_a_package_is_searched_file_by_file(tmp_path):
     write(
         tmp_path,
         my____init__="",
@@ -369,7 +297,7 @@ def test_a_package_is_searched_file_by_file(tmp_path: Path) -> None:
     assert said(tmp_path, '!go. +!go <- my.norm(2, X); my.shapes.area(3, Y); .print(X, " ", Y).') == ["6 9"]
 
 
-def test_artifacts_and_internal_actions_share_their_modules(tmp_path: Path) -> None:
+def test_artifacts_and_internal_actions_share_their_modules(tmp_path):
     write(
         tmp_path,
         artifacts="""
@@ -382,16 +310,16 @@ def test_artifacts_and_internal_actions_share_their_modules(tmp_path: Path) -> N
                 MEMORY.append(item)
         """,
     )
-    python = HEAD + "MEMORY = []\n\n@internal_action\ndef kept() -> list[int]:\n    return MEMORY\n"
+    python = "MEMORY = []\n\n@internal_action\ndef kept() -> list[int]:\n    return MEMORY\n"
     program = '!go. +!go <- makeArtifact(s, "Store", [], _); put(4); put(5); my.kept(L); .print(L).'
     assert said(tmp_path, program, python) == ["[4,5]"]
 
 
-def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Path) -> None:
-    result = run(tmp_path, "!go. +!go <- my.one(X); .print(", "x = 1\nimport nowhere_at_all\n")
+def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path):
+    result = run(tmp_path, "!go. +!go <- my.one(X); .print(", "import nowhere_at_all\n")
     assert result.exit_code == 1
     (told,) = result.errors
-    assert f"{tmp_path}/my.py:2: ModuleNotFoundError: No module named 'nowhere_at_all'" in told
+    assert f"{tmp_path}/my.py:3: ModuleNotFoundError: No module named 'nowhere_at_all'" in told
     assert "t.asl:1:" in told
 
 
@@ -408,8 +336,8 @@ def test_a_module_that_cannot_be_imported_is_reported_with_its_line(tmp_path: Pa
         ),
     ],
 )
-def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python: str, message: str) -> None:
-    result = run(tmp_path, "!go. +!go <- my.one.", HEAD + python)
+def test_an_invalid_declaration_is_reported_with_its_line(tmp_path, python, message):
+    result = run(tmp_path, "!go. +!go <- my.one.", python)
     assert result.exit_code == 1
     assert message in result.errors[0]
 
@@ -423,8 +351,8 @@ def test_an_invalid_declaration_is_reported_with_its_line(tmp_path: Path, python
         ("your.norm(1, X)", "write a function `norm` with @internal_action in your.py beside the project"),
     ],
 )
-def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, help: str) -> None:
-    python = HEAD + "@internal_action\ndef norm(x) -> int:\n    return x\n\ndef plain(x):\n    return x\n"
+def test_an_unknown_name_is_an_action_and_gets_help(tmp_path, call, help):
+    python = "@internal_action\ndef norm(x) -> int:\n    return x\n\ndef plain(x):\n    return x\n"
     result = run(tmp_path, f"!go. +!go <- {call}. -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["action_failed"]
     assert len(result.errors) == 1
@@ -432,7 +360,7 @@ def test_an_unknown_name_is_an_action_and_gets_help(tmp_path: Path, call: str, h
     assert f"  = help: {help}" in result.errors[0] or help in result.errors[0]
 
 
-def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:
+def test_an_agent_made_later_brings_its_modules(tmp_path):
     write(
         tmp_path,
         late_asl="!go. +!go <- more.say(X); .print(X).",
@@ -443,15 +371,15 @@ def test_an_agent_made_later_brings_its_modules(tmp_path: Path) -> None:
     assert result.errors == []
 
 
-def test_the_modules_of_two_projects_do_not_mix(tmp_path: Path) -> None:
+def test_the_modules_of_two_projects_do_not_mix(tmp_path):
     for number in ("1", "2"):
         folder = tmp_path / number
         folder.mkdir()
-        python = HEAD + f"@internal_action\ndef number() -> int:\n    return {number}\n"
+        python = f"@internal_action\ndef number() -> int:\n    return {number}\n"
         assert said(folder, "!go. +!go <- my.number(X); .print(X).", python) == [number]
 
 
-def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path: Path) -> None:
+def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path):
     write(
         tmp_path,
         sys_mas2j='MAS sys { agents: bob; aslSourcePath: "src/asl"; }',
@@ -463,10 +391,8 @@ def test_modules_beside_the_project_file_serve_programs_elsewhere(tmp_path: Path
     assert (result.lines, result.errors) == (["[bob] 1"], [])
 
 
-def test_a_result_that_contains_itself_fails_the_step(tmp_path: Path) -> None:
-    python = (
-        HEAD
-        + """
+def test_a_result_that_contains_itself_fails_the_step(tmp_path):
+    python = """
 def endless():
     found = []
     found.append(found)
@@ -480,7 +406,6 @@ def now() -> list:
 async def later() -> list:
     return endless()
 """
-    )
     program = """
     !a. !b.
     +!a <- my.now(X). -!a[error(E)] <- .print("a: ", E).

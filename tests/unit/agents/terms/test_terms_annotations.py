@@ -37,61 +37,44 @@ def unified(left: Term, right: Term) -> bool:
         (p(A), 1.0, False),
     ],
 )
-def test_the_annotations_of_the_left_are_looked_for_in_the_right(
-    left: Term, right: Term, holds: bool
-) -> None:
+def test_the_annotations_of_the_left_are_looked_for_in_the_right(left, right, holds):
     assert unified(left, right) is holds
 
 
-def test_a_variable_among_annotations_takes_the_first_that_fits() -> None:
+def test_annotations_are_taken_in_order():
     who = Var("W")
     assert unified(
         p(structure("source", who)), p(structure("other", A), structure("source", B), structure("source", C))
     )
     assert text(who) == "b"
-
-
-def test_each_way_to_match_annotations_is_found_in_order() -> None:
     who = Var("W")
     found = (structure("source", A), structure("source", B), atom("x"))
     ways = each_annotation_match((structure("source", who),), None, found, None, Trail())
     assert [text(who) for _ in ways] == ["a", "b"]
     assert who.ref is None
-
-
-def test_two_variables_take_different_annotations() -> None:
     first, second = Var("A"), Var("B")
     ways = each_annotation_match((first, second), None, (A, B), None, Trail())
     assert [text(make_list([first, second])) for _ in ways] == ["[a,b]", "[b,a]"]
 
 
-def test_a_tail_takes_the_rest_and_there_is_one_answer() -> None:
+def test_a_tail_takes_the_rest():
     rest, who = Var("R"), Var("W")
     ways = each_annotation_match((who,), rest, (A, B, C), None, Trail())
     assert [text(make_list([who, rest])) for _ in ways] == ["[a,[b,c]]"]
     assert rest.ref is None
     assert unified(p(B, tail=rest), p(A, B, C))
     assert text(rest) == "[a,c]"
-
-
-def test_a_tail_alone_takes_all() -> None:
     rest = Var("R")
     assert unified(p(tail=rest), p(A, B))
     assert text(rest) == "[a,b]"
     nothing = Var("N")
     assert unified(p(tail=nothing), p())
     assert text(nothing) == "[]"
-
-
-def test_a_tail_on_the_right_takes_what_it_lacks() -> None:
     rest = Var("R")
     pattern = p(A, tail=rest)
     assert unified(p(A, B), pattern)
     assert unified(p(A, B), pattern)
     assert (text(rest), text(pattern)) == ("[b]", "p[a,b]")
-
-
-def test_the_elements_of_a_bound_tail_are_annotations_like_the_others() -> None:
     rest = Var("R")
     assert unified(rest, make_list([C, A]))
     assert unified(p(tail=rest), p(A, B, C))
@@ -100,13 +83,10 @@ def test_the_elements_of_a_bound_tail_are_annotations_like_the_others() -> None:
     assert not unified(p(atom("d")), p(B, tail=rest))
 
 
-def test_a_variable_with_annotations_becomes_the_bare_term() -> None:
+def test_a_variable_with_annotations_has_the_bare_term_and_both():
     whole, rest = Var("X"), Var("R")
     assert unified(Annotated(whole, (A,), rest), p(A, B))
     assert (text(whole), text(rest)) == ("p", "[b]")
-
-
-def test_a_bound_variable_with_annotations_has_both() -> None:
     whole = Var("X")
     assert unified(whole, p(A))
     assert text(Annotated(whole, (B,))) == "p[a,b]"
@@ -114,24 +94,18 @@ def test_a_bound_variable_with_annotations_has_both() -> None:
     assert not unified(Annotated(whole, (B,)), p(A))
 
 
-def test_annotations_may_have_annotations() -> None:
+def test_equality_compares_sorted_sets_of_annotations():
+    assert equal(p(A, B), p(B, A))
+    assert not equal(p(A), p())
+    assert not equal(p(), p(A))
+    assert annotation_set((B, A, B, structure("source", A), 1.0)) == (1.0, A, B, structure("source", A))
+    assert annotation_set((B,)) == (B,)
+    assert annotation_set(()) == ()
+    first, second = Var("X"), Var("X")
+    assert len(annotation_set((first, second, first))) == 2
     told = Annotated(structure("source", B), (structure("source", C),))
     who = Var("W")
     assert unified(p(structure("source", B)), p(told))
     assert unified(p(Annotated(structure("source", B), (structure("source", who),))), p(told))
     assert text(who) == "c"
     assert not unified(p(told), p(structure("source", B)))
-
-
-def test_equality_compares_the_annotations_of_both_sides() -> None:
-    assert equal(p(A, B), p(B, A))
-    assert not equal(p(A), p())
-    assert not equal(p(), p(A))
-
-
-def test_annotations_are_a_sorted_set() -> None:
-    assert annotation_set((B, A, B, structure("source", A), 1.0)) == (1.0, A, B, structure("source", A))
-    assert annotation_set((B,)) == (B,)
-    assert annotation_set(()) == ()
-    first, second = Var("X"), Var("X")
-    assert len(annotation_set((first, second, first))) == 2

@@ -71,23 +71,18 @@ def warnings() -> Iterator[list[str]]:
         (-10.0, "**", 401.0, -INFINITY),
     ],
 )
-def test_operations_on_doubles(left: float, operator: str, right: float, value: float) -> None:
+def test_operations_on_doubles(left, operator, right, value):
     assert calculated(operator, left, right) == value
 
 
 @pytest.mark.parametrize(
     ("left", "operator", "right"), [(0.0, "/", 0.0), (1.0, "mod", 0.0), (-8.0, "**", 1 / 3)]
 )
-def test_operations_without_a_real_result_give_nan(left: float, operator: str, right: float) -> None:
+def test_operations_without_a_real_result_give_nan(left, operator, right):
     assert math.isnan(calculated(operator, left, right))
 
 
-def test_integer_division_by_zero_is_a_fault() -> None:
-    with pytest.raises(ArithmeticFault, match="division by zero"):
-        calculated("div", 1.0, 0.5)
-
-
-def test_expressions_are_evaluated_once_their_variables_have_values() -> None:
+def test_expressions_are_evaluated_once_their_variables_have_values():
     operand, result = Var("Z"), Var("Y")
     trail = Trail()
     assert unify(result, (BINARY["+"].functor, operand, 1.0), trail)
@@ -96,15 +91,16 @@ def test_expressions_are_evaluated_once_their_variables_have_values() -> None:
     assert resolve(result) == 3.0
     assert unify(structure("f", 3.0), structure("f", result), trail)
     assert not unify(structure("f", 4.0), structure("f", result), trail)
-
-
-def test_minus_of_terms() -> None:
     assert calculated("-", 2.0) == -2.0
     assert text(calculated("-", Var("X"))) == "(-X)"
+    product = (functor("*", 2, kind=ARITHMETIC), 2.0, 3.0)
+    assert resolve(structure("f", product)) == structure("f", 6.0)
+    with pytest.raises(ArithmeticFault, match="division by zero"):
+        calculated("div", 1.0, 0.5)
 
 
 @pytest.mark.parametrize("operand", [atom("a"), String("2"), make_list([1.0])])
-def test_an_operand_that_is_not_a_number_gives_nan_and_a_warning(operand: Term, warnings: list[str]) -> None:
+def test_an_operand_that_is_not_a_number_gives_nan_and_a_warning(operand, warnings):
     assert math.isnan(calculated("+", operand, 1.0))
     assert "`+` is not a number" in warnings[0]
 
@@ -153,7 +149,7 @@ def numbers(*values: float) -> Term:
         (".length", (MapValue({1.0: 2.0}),), 1.0),
     ],
 )
-def test_functions_of_known_arguments(name: str, arguments: tuple[Term, ...], value: float) -> None:
+def test_functions_of_known_arguments(name, arguments, value):
     assert call(name, *arguments) == value
 
 
@@ -167,32 +163,29 @@ def test_functions_of_known_arguments(name: str, arguments: tuple[Term, ...], va
         (".length", (1.0,)),
     ],
 )
-def test_functions_without_a_value_give_nan(name: str, arguments: tuple[Term, ...]) -> None:
+def test_functions_without_a_value_give_nan(name, arguments):
     assert math.isnan(call(name, *arguments))
 
 
 @pytest.mark.parametrize("name", ["math.max", "math.min", "math.average", "math.mean", "math.median"])
-def test_some_functions_need_numbers(name: str) -> None:
+def test_some_functions_need_numbers(name):
     with pytest.raises(ArithmeticFault):
         call(name, make_list([atom("a")]))
 
 
 @pytest.mark.parametrize("name", ["math.abs", "math.max", ".length"])
-def test_functions_wait_for_their_arguments(name: str) -> None:
+def test_functions_wait_for_their_arguments(name):
     waiting = call(name, Var("X"))
     assert text(waiting) == f"{name}(X)"
 
 
-def test_a_function_of_a_non_number_warns(warnings: list[str]) -> None:
+def test_unknown_functions_stay_terms_and_non_numbers_warn(warnings):
+    assert text(call("math.unknown", 1.0)) == "math.unknown(1)"
     assert math.isnan(call("math.abs", atom("a")))
     assert "is not a number" in warnings[0]
 
 
-def test_an_unknown_function_stays_a_term() -> None:
-    assert text(call("math.unknown", 1.0)) == "math.unknown(1)"
-
-
-def test_a_function_of_the_running_agent_is_called() -> None:
+def test_a_function_of_the_running_agent_is_called():
     class Doubling:
         def call_own(self, term: Term) -> Term:
             return settle(term[1]) * 2
@@ -206,8 +199,3 @@ def test_a_function_of_the_running_agent_is_called() -> None:
         assert calculated("+", (functor("my.double", 1, kind=FUNCTION), 4.0), 1.0) == 9.0
     finally:
         RUNNING.reset(before)
-
-
-def test_arithmetic_inside_terms_is_evaluated_when_they_are_resolved() -> None:
-    product = (functor("*", 2, kind=ARITHMETIC), 2.0, 3.0)
-    assert resolve(structure("f", product)) == structure("f", 6.0)

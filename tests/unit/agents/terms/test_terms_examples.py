@@ -13,7 +13,7 @@ MODULES = [each.name for each in pkgutil.iter_modules(jacaros.agents.terms.__pat
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_a_module_begins_with_an_example_that_is_true(name: str) -> None:
+def test_a_module_begins_with_an_example_that_is_true(name):
     module = import_module(f"jacaros.agents.terms.{name}")
     assert ">>> " in (module.__doc__ or ""), f"{Path(module.__file__ or name)} has no example"
     result = doctest.testmod(module)

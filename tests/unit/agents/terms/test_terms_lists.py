@@ -48,9 +48,7 @@ elements = st.recursive(
 
 
 @given(st.lists(elements, max_size=40), st.lists(elements, max_size=20), st.integers(0, 60))
-def test_a_list_in_front_of_a_tail_of_another_has_the_elements_of_both(
-    items: list[Term], more: list[Term], taken: int
-) -> None:
+def test_a_list_in_front_of_a_tail_of_another_has_the_elements_of_both(items, more, taken):
     whole = resolve(make_list(items))
     tail = whole
     for _ in range(min(taken, len(items))):
@@ -64,7 +62,7 @@ def test_a_list_in_front_of_a_tail_of_another_has_the_elements_of_both(
 
 
 @given(st.lists(st.tuples(st.integers(0, 30), st.sampled_from([1.0, 2.0, 3.0])), max_size=120))
-def test_lists_that_grow_from_the_same_list_do_not_change_each_other(steps: list[tuple[int, float]]) -> None:
+def test_lists_that_grow_from_the_same_list_do_not_change_each_other(steps):
     made: list[Any] = [numbers(2)]
     known = [[0.0, 1.0]]
     for which, item in steps:
@@ -74,7 +72,7 @@ def test_lists_that_grow_from_the_same_list_do_not_change_each_other(steps: list
     assert [list(list_items(each)) for each in made] == known
 
 
-def test_cons_tuples_that_end_in_a_list_unify_and_compare_as_the_list_does() -> None:
+def test_cons_tuples_that_end_in_a_list_unify_and_compare_as_the_list_does():
     whole = numbers(5)
     mixed = (CONS, 0.0, resolve(numbers(5).rest()))
     later = Var("T")
@@ -90,30 +88,31 @@ def test_cons_tuples_that_end_in_a_list_unify_and_compare_as_the_list_does() -> 
         assert resolve(form).__class__ is List
 
 
-def test_elements_with_annotations_unify_as_subsets_in_ground_lists() -> None:
+def test_lists_unify_by_subsets_and_open_tails():
     plain = resolve(make_list([atom("p")]))
     annotated = resolve(make_list([Annotated(atom("p"), (atom("a"),))]))
     assert unify(plain, annotated, Trail())
     assert not unify(annotated, plain, Trail())
     assert not is_key(annotated)
-
-
-def test_an_open_list_takes_the_rest_of_a_closed_one() -> None:
     tail = Var("T")
     assert unify((CONS, 0.0, (CONS, 1.0, tail)), numbers(4), Trail())
     assert text(tail) == "[2,3]"
 
 
-def test_a_long_list_is_a_key_and_one_nested_too_deeply_is_not() -> None:
+def test_a_long_list_is_a_key_and_survives_pickling():
     assert is_key(numbers(100_000))
     nested: Term = make_list([1.0])
     for _ in range(400):
         nested = make_list([nested])
     assert not is_key(resolve(nested))
     assert equal(nested, resolve(nested))
+    made = numbers(3)
+    hash(made)
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert pickle.loads(pickle.dumps(made)).hashed is None
 
 
-def test_ground_elements_are_not_checked_again() -> None:
+def test_ground_elements_are_not_checked_again_nor_found_variables():
     known = resolve(make_list([structure("f", float(i)) for i in range(50)]))
     known.stack[3] = Var("Unseen")  # what looks at it would find a variable
     longer = resolve((CONS, structure("g", 1.0), known))
@@ -122,9 +121,6 @@ def test_ground_elements_are_not_checked_again() -> None:
     assert is_ground(longer)
     assert is_key(longer)
     assert rename(longer) is longer
-
-
-def test_a_variable_in_a_list_is_found_until_it_has_a_value() -> None:
     variable = Var("X")
     open_one = resolve(make_list([1.0, variable, 2.0]))
     assert free_variables(open_one) == [variable]
@@ -134,23 +130,17 @@ def test_a_variable_in_a_list_is_found_until_it_has_a_value() -> None:
     assert text(open_one) == "[1,5,2]"
     variable.ref = None
     assert free_variables(open_one) == [variable]
-
-
-def test_arithmetic_in_a_list_is_evaluated_when_its_variables_have_values() -> None:
     variable = Var("X")
     made = resolve(make_list([(BINARY["+"].functor, variable, 1.0), 3.0]))
     variable.ref = 1.0
     assert list(list_items(resolve(made))) == [2.0, 3.0]
 
 
-def test_a_short_tail_does_not_keep_a_long_list_in_memory() -> None:
+def test_a_short_list_does_not_keep_longer_ones_in_memory():
     tail: Term = numbers(10_000)
     while list_length(tail) > 40:
         tail = tail.rest() if tail.__class__ is List else tail[2]
     assert len(resolve(tail).stack) < 1_000
-
-
-def test_a_short_list_does_not_keep_longer_ones_in_memory() -> None:
     short = numbers(3)
     grown = short
     for i in range(10_000):
@@ -159,15 +149,8 @@ def test_a_short_list_does_not_keep_longer_ones_in_memory() -> None:
     assert len(short.stack) < 100
 
 
-def test_a_list_is_the_same_after_pickling() -> None:
-    made = numbers(3)
-    hash(made)
-    assert pickle.loads(pickle.dumps(made)) == made
-    assert pickle.loads(pickle.dumps(made)).hashed is None
-
-
 @given(st.lists(elements, max_size=12))
-def test_sorting_agrees_with_comparing(items: list[Term]) -> None:
+def test_sorting_agrees_with_comparing(items):
     ordered = sorted_terms(items)
     assert all(compare(a, b) <= 0 for a, b in itertools.pairwise(ordered))
     assert sorted(map(text, ordered)) == sorted(map(text, items))

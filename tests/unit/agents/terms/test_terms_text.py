@@ -53,14 +53,14 @@ from jacaros.agents.terms.values import (
         (float("nan"), "NaN"),
     ],
 )
-def test_numbers_are_written_as_jason_does(value: float, written: str) -> None:
+def test_numbers_are_written_as_jason_does(value, written):
     assert number_text(value) == written
 
 
 @pytest.mark.parametrize(
     ("value", "written"), [(3.0, "3.0"), (0.0, "0.0"), (-0.0, "-0.0"), (1e7, "1.0E7"), (0.5, "0.5")]
 )
-def test_doubles_are_written_as_java_does(value: float, written: str) -> None:
+def test_doubles_are_written_as_java_does(value, written):
     assert double_text(value) == written
 
 
@@ -119,32 +119,20 @@ def filled(kind: type, *items: Term) -> Term:
         (step("|&|", *(make_body([step("!", atom(name))]) for name in "ab")), ".fork(and,!a,!b)"),
     ],
 )
-def test_terms_are_written_as_jason_does(term: Term, written: str) -> None:
+def test_terms_are_written_as_jason_does(term, written):
     assert text(term) == written
 
 
-def test_opaque_objects_are_written_by_number() -> None:
-    reference = Reference(object())
-    assert text(reference) == f"cobj_{reference.number}"
-
-
-def test_print_shows_strings_bare_only_at_the_top() -> None:
+def test_print_shows_top_level_strings_and_variables_in_its_own_way():
     assert display(String("x")) == "x"
     assert display(make_list([String("x")])) == '["x"]'
-
-
-def test_print_marks_variables_without_value_only_at_the_top() -> None:
     assert display(Var("X")) == "X<no-value>"
     assert display(Var("_")) == "_<no-value>"
     assert display(Annotated(Var("X"), (atom("a"),))) == "X[a]<no-value>"
     assert display(structure("f", Var("X"))) == "f(X)"
-
-
-def test_text_applies_bindings_and_evaluates() -> None:
+    reference = Reference(object())
+    assert text(reference) == f"cobj_{reference.number}"
     variable = Var("X")
     unify(variable, 2.0, Trail())
     assert text(structure("f", variable, (BINARY["+"].functor, variable, 1.0))) == "f(2,3)"
-
-
-def test_long_lists_are_written_whole() -> None:
     assert text(make_list([1.0] * 5000)).count("1") == 5000

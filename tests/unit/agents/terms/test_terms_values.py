@@ -30,7 +30,7 @@ from jacaros.agents.terms.values import (
 )
 
 
-def test_a_name_that_is_no_longer_used_is_released() -> None:
+def test_a_name_that_is_no_longer_used_is_released():
     gone = weakref.ref(atom("seen_once"))
     used = atom("in_use")
     assert gone() is None
@@ -38,7 +38,7 @@ def test_a_name_that_is_no_longer_used_is_released() -> None:
     assert atom("in_use") is used
 
 
-def test_there_is_one_functor_for_each_name_while_threads_make_and_release_it() -> None:
+def test_there_is_one_functor_for_each_name_while_threads_make_and_release_it():
     met = []
 
     def make() -> None:
@@ -58,28 +58,22 @@ def test_there_is_one_functor_for_each_name_while_threads_make_and_release_it() 
     assert all(met)
 
 
-def test_there_is_one_functor_for_each_name() -> None:
+def test_there_is_one_functor_for_each_name_copied_or_not():
     assert functor("p", 2) is functor("p", 2)
     assert functor("p", 2) is not functor("p", 3)
     assert functor("p", 2) is not functor("p", 2, negated=True)
     assert atom("p") is not atom("p", "ns")
-
-
-def test_functors_survive_copying_as_themselves() -> None:
     symbol = functor("p", 2, True, "ns")
     assert copy.deepcopy(symbol) is symbol
     assert pickle.loads(pickle.dumps(symbol)) is symbol
 
 
-def test_strings_are_not_numbers_and_are_not_added() -> None:
+def test_strings_lists_and_literals_are_read():
     with pytest.raises(TypeError, match=r"\.concat"):
         String("a") + "b"
     with pytest.raises(TypeError):
         String("a") * 2
     assert repr(String("a")) == "String('a')"
-
-
-def test_lists_are_read_up_to_their_end() -> None:
     assert list(list_items(make_list([1.0, 2.0]))) == [1.0, 2.0]
     tail = Var("T")
     assert list(list_items(make_list([1.0], tail))) == [1.0]
@@ -88,9 +82,6 @@ def test_lists_are_read_up_to_their_end() -> None:
     assert make_list(iter([])) is NIL
     assert is_list(NIL)
     assert not is_list(atom("a"))
-
-
-def test_parts_of_literals() -> None:
     literal = Annotated(structure("p", 1.0), (atom("x"),))
     variable = Var("X")
     unify(variable, literal, Trail())
@@ -102,29 +93,23 @@ def test_parts_of_literals() -> None:
 
 
 @pytest.mark.parametrize("term", [1.0, String("s"), NIL, make_list([1.0]), Var("X")])
-def test_other_terms_have_no_functor(term: object) -> None:
+def test_other_terms_have_no_functor(term):
     assert functor_of(term) is None
     assert annotations_of(term) == ()
 
 
-def test_references_are_equal_when_their_objects_are() -> None:
+def test_references_and_sets_are_equal_by_what_they_hold():
     thing = [1]
     assert Reference(thing) == Reference(thing)
     assert Reference(thing) != Reference([2])
     assert hash(Reference("x")) == hash(Reference("x"))
     assert hash(Reference(thing)) == hash(Reference(thing))
-
-
-def test_sets_are_equal_by_contents_and_can_change_as_keys() -> None:
     first, second = SetValue({atom("a"): None}), SetValue({atom("a"): None})
     table = {(functor("p", 1), first): True}
     assert first == second
     first.items[atom("b")] = None
     assert first != second
     assert table[(functor("p", 1), first)]
-
-
-def test_equal_elements_leave_a_priority_queue_in_the_order_they_came() -> None:
     queue = QueueValue(priority=True)
     items = [Annotated(atom("a"), ()), atom("a")]
     for item in items:

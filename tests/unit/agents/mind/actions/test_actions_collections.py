@@ -1,5 +1,3 @@
-from collections.abc import Callable
-
 import pytest
 from fake_context import FakeContext, term
 
@@ -16,7 +14,7 @@ def created(mind: FakeContext, kind: str, *options: object) -> Term:
 
 
 @pytest.mark.parametrize("kind", ["set", "map", "queue"])
-def test_only_an_unbound_variable_can_become_a_new_collection(mind: FakeContext, kind: str) -> None:
+def test_only_an_unbound_variable_can_become_a_new_collection(mind, kind):
     collection = created(mind, kind)
     assert not mind.succeeds(f".{kind}.create", collection)
     assert not mind.succeeds(f".{kind}.create", 1)
@@ -25,7 +23,7 @@ def test_only_an_unbound_variable_can_become_a_new_collection(mind: FakeContext,
 # sets
 
 
-def test_a_set_holds_each_element_once_and_is_read_in_order(mind: FakeContext) -> None:
+def test_a_set_holds_each_element_once_in_order_and_its_copy_is_independent(mind):
     collection = created(mind, "set")
     for item in ("b", "a", "b"):
         assert mind.succeeds(".set.add", collection, item)
@@ -34,10 +32,15 @@ def test_a_set_holds_each_element_once_and_is_read_in_order(mind: FakeContext) -
     assert mind.succeeds(".set.remove", collection, "b")
     assert mind.succeeds(".set.remove", collection, "z")
     assert text(collection) == "{a}"
+    first, copy = created(mind, "set"), Var("D")
+    mind.succeeds(".set.add", first, 1)
+    assert mind.succeeds(".set.copy", first, copy)
+    assert mind.succeeds(".set.clear", first)
+    assert (text(first), text(copy)) == ("{}", "{1}")
 
 
 @pytest.mark.parametrize("action", [".set.add_all", ".set.union"])
-def test_a_set_takes_all_elements_of_lists_sets_and_queues(mind: FakeContext, action: str) -> None:
+def test_a_set_takes_all_elements_of_lists_sets_and_queues(mind, action):
     collection, other, waiting = created(mind, "set"), created(mind, "set"), created(mind, "queue")
     mind.succeeds(".set.add", other, "z")
     mind.succeeds(".queue.add", waiting, "q")
@@ -46,7 +49,7 @@ def test_a_set_takes_all_elements_of_lists_sets_and_queues(mind: FakeContext, ac
     assert text(collection) == "{b,c,q,z}"
 
 
-def test_intersection_and_difference_change_the_first_set(mind: FakeContext) -> None:
+def test_set_operations_change_the_first_set_and_equal_sets_unify(mind):
     first = created(mind, "set")
     mind.succeeds(".set.add_all", first, [1, 2, 3])
     assert mind.succeeds(".set.intersection", first, [2, 3, 9])
@@ -55,17 +58,6 @@ def test_intersection_and_difference_change_the_first_set(mind: FakeContext) -> 
     assert text(first) == "{3}"
     assert mind.succeeds(".set.difference", first, first)
     assert text(first) == "{}"
-
-
-def test_a_copied_set_is_independent(mind: FakeContext) -> None:
-    first, copy = created(mind, "set"), Var("D")
-    mind.succeeds(".set.add", first, 1)
-    assert mind.succeeds(".set.copy", first, copy)
-    assert mind.succeeds(".set.clear", first)
-    assert (text(first), text(copy)) == ("{}", "{1}")
-
-
-def test_sets_with_the_same_elements_unify(mind: FakeContext) -> None:
     first, second = created(mind, "set"), created(mind, "set")
     mind.succeeds(".set.add_all", first, [1, 2])
     mind.succeeds(".set.add_all", second, [2, 1])
@@ -77,7 +69,7 @@ def test_sets_with_the_same_elements_unify(mind: FakeContext) -> None:
 # maps
 
 
-def test_a_map_keeps_one_value_for_each_key(mind: FakeContext) -> None:
+def test_a_map_keeps_one_value_for_each_key_and_has_defaults(mind):
     collection = created(mind, "map")
     for key, value in (("b", 1), ("a", 2), ("b", [3])):
         assert mind.succeeds(".map.put", collection, key, value)
@@ -85,14 +77,11 @@ def test_a_map_keeps_one_value_for_each_key(mind: FakeContext) -> None:
     assert mind.result(".map.get", collection, "b") == "[3]"
     assert not mind.succeeds(".map.get", collection, "b", 1)
     assert not mind.succeeds(".map.get", collection, "z", Var("V"))
-
-
-def test_a_map_gives_a_default_for_a_missing_key(mind: FakeContext) -> None:
     collection, value = created(mind, "map"), Var("V")
     assert mind.instances(".map.get", collection, "z", value, "none", of=value) == ["none"]
 
 
-def test_keys_and_values_come_in_the_order_of_the_keys(mind: FakeContext) -> None:
+def test_keys_and_values_come_in_order_and_are_removed_together(mind):
     collection, item = created(mind, "map"), Var("X")
     for key, value in (("b", 1), ("a", 2), ("c", 1)):
         mind.succeeds(".map.put", collection, key, value)
@@ -100,9 +89,6 @@ def test_keys_and_values_come_in_the_order_of_the_keys(mind: FakeContext) -> Non
     assert mind.instances(".map.value", collection, item, of=item) == ["2", "1", "1"]
     assert mind.succeeds(".map.key", collection, "b")
     assert not mind.succeeds(".map.value", collection, 9)
-
-
-def test_a_key_is_removed_with_its_value(mind: FakeContext) -> None:
     collection = created(mind, "map")
     mind.succeeds(".map.put", collection, "a", 1)
     mind.succeeds(".map.put", collection, "b", 2)
@@ -112,7 +98,7 @@ def test_a_key_is_removed_with_its_value(mind: FakeContext) -> None:
     assert text(collection) == "{}"
 
 
-def test_a_copied_map_is_independent(mind: FakeContext) -> None:
+def test_a_copied_map_is_independent(mind):
     first, copy = created(mind, "map"), Var("D")
     mind.succeeds(".map.put", first, "a", 1)
     assert mind.succeeds(".map.copy", first, copy)
@@ -123,30 +109,24 @@ def test_a_copied_map_is_independent(mind: FakeContext) -> None:
 # queues
 
 
-def test_a_queue_gives_its_elements_in_the_order_they_came(mind: FakeContext) -> None:
+def test_a_queue_gives_its_elements_in_the_order_they_came(mind):
     collection = created(mind, "queue")
     assert mind.succeeds(".queue.add_all", collection, ["c", "a"])
     assert mind.succeeds(".queue.add", collection, "b")
     assert mind.result(".queue.head", collection) == "c"
     assert mind.result(".queue.to_list", collection) == "[c,a,b]"
     assert [mind.result(".queue.remove", collection) for _ in range(3)] == ["c", "a", "b"]
-
-
-def test_an_empty_queue_has_no_next_element(mind: FakeContext) -> None:
     collection = created(mind, "queue")
     assert not mind.succeeds(".queue.head", collection, Var("X"))
     assert not mind.succeeds(".queue.remove", collection, Var("X"))
 
 
-def test_a_priority_queue_gives_its_smallest_element_first(mind: FakeContext) -> None:
+def test_a_priority_queue_gives_its_smallest_element_first_and_its_copy_is_independent(mind):
     collection = created(mind, "queue", "priority")
     mind.succeeds(".queue.add_all", collection, [("t", 5, "e"), ("t", 1, "a"), ("t", 3, "c")])
     assert text(collection) == "[t(1,a),t(3,c),t(5,e)]"
     assert mind.result(".queue.head", collection) == "t(1,a)"
     assert [mind.result(".queue.remove", collection) for _ in range(3)] == ["t(1,a)", "t(3,c)", "t(5,e)"]
-
-
-def test_a_copied_queue_is_independent(mind: FakeContext) -> None:
     first, copy = created(mind, "queue", "priority"), Var("D")
     mind.succeeds(".queue.add_all", first, [2, 1])
     assert mind.succeeds(".queue.copy", first, copy)
@@ -184,7 +164,7 @@ CHANGES = [
 ]
 
 
-def test_every_action_on_collections_is_tested_here() -> None:
+def test_every_action_on_collections_is_tested_here():
     actions = {
         name for name in STANDARD if name.split(".")[1] in ("set", "map", "queue") and name.count(".") == 2
     }
@@ -192,9 +172,7 @@ def test_every_action_on_collections_is_tested_here() -> None:
 
 
 @pytest.mark.parametrize(("action", "arguments", "made"), CHANGES)
-def test_an_unbound_variable_becomes_a_collection(
-    mind: FakeContext, action: str, arguments: tuple[object, ...], made: str
-) -> None:
+def test_an_unbound_variable_becomes_a_collection(mind, action, arguments, made):
     variable = Var("C")
     mind.succeeds(action, variable, *arguments)
     assert text(variable) == made
@@ -202,9 +180,7 @@ def test_an_unbound_variable_becomes_a_collection(
 
 @pytest.mark.parametrize(("action", "arguments", "made"), CHANGES)
 @pytest.mark.parametrize("other", [lambda: 1.0, lambda: term(["a"]), SetValue, MapValue, QueueValue])
-def test_any_other_first_argument_is_wrong(
-    mind: FakeContext, action: str, arguments: tuple[object, ...], made: str, other: Callable[[], Term]
-) -> None:
+def test_any_other_first_argument_is_wrong(mind, action, arguments, made, other):
     value = other()
     if action.startswith(f".{type(value).__name__.removesuffix('Value').lower()}."):
         return
@@ -215,6 +191,6 @@ def test_any_other_first_argument_is_wrong(
 @pytest.mark.parametrize(
     "action", [".set.add_all", ".set.union", ".set.intersection", ".set.difference", ".queue.add_all"]
 )
-def test_only_lists_sets_and_queues_have_elements(mind: FakeContext, action: str) -> None:
+def test_only_lists_sets_and_queues_have_elements(mind, action):
     with pytest.raises(WrongArguments, match="the second argument"):
         mind.succeeds(action, Var("C"), "a")

@@ -34,14 +34,14 @@ def told(message: SpeechAct) -> tuple[str, str, str, str]:
         (".broadcast(tell, p)", ["friend"]),
     ],
 )  # fmt: skip
-def test_a_message_goes_to_all_that_are_named(body: str, receivers: list[str]) -> None:
+def test_a_message_goes_to_all_that_are_named(body, receivers):
     host = sent(body)
     assert [told(message) for message in host.sent] == [("tester", name, "tell", "p") for name in receivers]
     assert host.printed == []
 
 
 @pytest.mark.parametrize("to", ["self", "tester", "me"])
-def test_a_message_to_oneself_is_from_self(to: str) -> None:
+def test_a_message_to_oneself_is_from_self(to):
     host = mind(f"me(tester). !g. +!g : me(M) <- .send({to if to != 'me' else 'M'}, achieve, h(1)). "
                 "+!h(X)[source(S)] <- .print(X, S).")  # fmt: skip
     host.run()
@@ -49,7 +49,7 @@ def test_a_message_to_oneself_is_from_self(to: str) -> None:
     assert host.printed == ["1self"]
 
 
-def test_bindings_are_applied_to_a_content_and_variables_are_new() -> None:
+def test_bindings_are_applied_to_a_content_and_variables_are_new():
     host = sent("X = 2; .send(friend, tell, p(X, X + 1, Y, Y)); Y = 7; Z = q(X); .send(friend, tell, Z)")
     first, second = (message.content for message in host.sent)
     assert first[1:3] == (2.0, 3.0)
@@ -72,30 +72,27 @@ def test_bindings_are_applied_to_a_content_and_variables_are_new() -> None:
         (".send(friend, tell, p, 1)", "wrong_arguments"),
     ],
 )
-def test_a_message_that_cannot_be_sent_fails_the_step(body: str, error: str) -> None:
+def test_a_message_that_cannot_be_sent_fails_the_step(body, error):
     host = sent(body)
     assert host.printed == [error]
     assert [message.receiver for message in host.sent] == (["ghost"] if "ghost" in body else [])
 
 
-def test_a_failed_message_leaves_the_intention_at_its_step() -> None:
+def test_a_failed_message_leaves_the_intention_at_its_step():
     host = mind("!g. +!g <- .send(ghost, tell, p); .print(never). -!g[code(C)] <- .print(C).")
     host.run()
     assert host.printed == [".send(ghost,tell,p)"]
 
 
-def test_messages_are_numbered() -> None:
+def test_messages_are_numbered_and_answers_name_their_question():
     host = sent(".send(friend, tell, p); F = friend; .send(F, tell, q); .send(friend, askOne, r, A, 10)")
     assert [message.id for message in host.sent] == ["mid1_tester", "mid2_tester", "mid3_tester"]
     assert [message.flat for message in host.sent] == [True, True, True]
-
-
-def test_an_answer_names_its_question() -> None:
     host = sent(".send(friend, tell, p(3), mid5_friend)")
     assert host.sent[0].in_reply_to == "mid5_friend"
 
 
-def test_only_constant_arguments_are_specialised() -> None:
+def test_only_constant_arguments_are_specialised():
     direct = STANDARD[".send"].direct
     assert direct is not None
     assert direct((atom("bob"), atom("tell"), None)) is not None

@@ -1,5 +1,4 @@
 import pytest
-from fake_context import FakeContext
 
 from jacaros.agents.mind.actions.internal_action import STANDARD
 
@@ -28,15 +27,15 @@ CASES = [(name, arity) for arity, names in ARITIES.items() for name in names.spl
 
 
 @pytest.mark.parametrize(("name", "arity"), CASES)
-def test_each_action_takes_its_number_of_arguments(name: str, arity: tuple[int, int | None]) -> None:
+def test_each_action_takes_its_number_of_arguments(name, arity):
     action = STANDARD[name]
     assert (action.minimum, action.maximum) == arity
 
 
-def test_actions_can_be_called_with_the_fewest_arguments(mind: FakeContext) -> None:
+def test_actions_can_be_called_with_the_fewest_arguments(mind):
     assert mind.succeeds(".print")
     assert mind.succeeds(".stopMAS")
 
 
-def test_the_mind_declares_no_actions_but_those_of_the_language() -> None:
+def test_the_mind_declares_no_actions_but_those_of_the_language():
     assert [name for name in STANDARD if not name.startswith(".")] == []

@@ -1,4 +1,4 @@
-from fake_context import FakeContext, term
+from fake_context import term
 
 from jacaros.agents.terms.plans import NO_LABEL, PLAN, make_body, trigger
 from jacaros.agents.terms.text import text
@@ -14,7 +14,7 @@ def source(name: str, *nested: Term) -> Term:
     return Annotated(told, nested) if nested else told
 
 
-def test_copies_have_new_variables(mind: FakeContext) -> None:
+def test_copies_have_new_variables_and_a_ground_term_is_its_copy(mind):
     first, second, copy = Var("A"), Var("B"), Var("C")
     for action in (".copy_term", ".rename_apart"):
         assert mind.succeeds(action, ("f", first, second, first, 1), copy)
@@ -24,61 +24,40 @@ def test_copies_have_new_variables(mind: FakeContext) -> None:
         assert text(first) == "A"
         assert text(second) == "B"
         copy = Var("D")
-
-
-def test_a_copy_of_a_ground_term_is_the_term(mind: FakeContext) -> None:
     assert mind.result(".copy_term", ("f", 1)) == "f(1)"
     assert not mind.succeeds(".copy_term", ("f", 1), ("f", 2))
 
 
-def test_add_annot_adds_to_literals(mind: FakeContext) -> None:
+def test_add_annot_adds_to_literals_and_lists(mind):
     assert mind.result(".add_annot", "a", source("jomi")) == "a[source(jomi)]"
     assert mind.result(".add_annot", annotated("a", atom("z")), "b") == "a[b,z]"
     assert mind.result(".add_annot", annotated("a", atom("b")), "b") == "a[b]"
     assert not mind.succeeds(".add_annot", "a", source("jomi"), "b")
-
-
-def test_add_annot_keeps_the_open_end_of_annotations(mind: FakeContext) -> None:
     pattern = Annotated(atom("a"), (), Var("T"))
     assert mind.result(".add_annot", pattern, "b") == "a[b|T]"
-
-
-def test_add_annot_goes_into_lists(mind: FakeContext) -> None:
     assert mind.result(".add_annot", ["a", ("f", 1), [("g", 2)]], "x") == "[a[x],f(1)[x],[g(2)[x]]]"
-
-
-def test_add_annot_leaves_other_terms_as_they_are(mind: FakeContext) -> None:
     assert mind.result(".add_annot", [1, Var("X")], "x") == "[1,X]"
-
-
-def test_the_result_of_add_annot_must_have_the_annotation(mind: FakeContext) -> None:
     assert not mind.succeeds(".add_annot", "a", "b", "a")
     assert mind.succeeds(".add_annot", "a", "b", annotated("a", atom("b"), atom("c")))
 
 
-def test_add_nested_source_puts_the_old_sources_inside(mind: FakeContext) -> None:
+def test_add_nested_source_puts_the_old_sources_inside(mind):
     assert mind.result(".add_nested_source", ("p", 1), "pluto") == "p(1)[source(pluto)]"
     told = annotated(("p", 1), source("venus"))
     assert mind.result(".add_nested_source", told, "pluto") == "p(1)[source(pluto)[source(venus)]]"
     twice = annotated("p", source("a", source("b")), atom("t"))
     assert mind.result(".add_nested_source", twice, "c") == "p[source(c)[source(a)[source(b)]],t]"
-
-
-def test_add_nested_source_goes_into_lists(mind: FakeContext) -> None:
     assert (
         mind.result(".add_nested_source", ["a", 1, [("b", 2)]], "c") == "[a[source(c)],1,[b(2)[source(c)]]]"
     )
 
 
-def test_remove_source_annot_takes_sources_away(mind: FakeContext) -> None:
+def test_remove_source_annot_takes_sources_away(mind):
     told = annotated("p", source("a"), source("b", source("c")), atom("t"))
     assert mind.result(".remove_source_annot", told) == "p[t]"
     assert mind.result(".remove_source_annot", annotated("p", source("a"))) == "p"
     assert mind.result(".remove_source_annot", "p") == "p"
     assert mind.result(".remove_source_annot", [annotated("p", source("a")), 1]) == "[p,1]"
-
-
-def test_remove_source_annot_cleans_the_label_of_a_plan(mind: FakeContext) -> None:
     body = make_body([])
     for label, kept in ((atom("l"), "@l "), (NO_LABEL, "")):
         plan = (PLAN, annotated(label, source("bob")), trigger("+!", atom("g")), TRUE, body)

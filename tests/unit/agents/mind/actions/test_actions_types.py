@@ -1,5 +1,5 @@
 import pytest
-from fake_context import FakeContext, term
+from fake_context import term
 
 from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.agents.terms.plans import RULE, make_body, step
@@ -52,29 +52,26 @@ EXAMPLES: list[tuple[Term, str]] = [
 
 
 @pytest.mark.parametrize(("value", "types"), EXAMPLES)
-def test_type_gives_every_type_in_order(mind: FakeContext, value: Term, types: str) -> None:
+def test_type_gives_every_type_in_order(mind, value, types):
     kind = Var("T")
     assert mind.instances(".type", value, kind, of=kind) == types.split()
 
 
 @pytest.mark.parametrize(("value", "types"), EXAMPLES)
 @pytest.mark.parametrize("kind", ["number", "atom", "literal", "string", "list", "structure", "ground"])
-def test_each_type_has_its_test(mind: FakeContext, value: Term, types: str, kind: str) -> None:
+def test_each_type_has_its_test(mind, value, types, kind):
     holds = kind in types.split()
     assert mind.succeeds(f".{kind}", value) is holds
     assert mind.succeeds(".type", value, kind) is holds
 
 
-def test_an_unknown_type_is_the_type_of_nothing(mind: FakeContext) -> None:
+def test_the_empty_list_is_not_an_atom_and_unknown_types_have_no_members(mind):
     assert not mind.succeeds(".type", 1, "integer")
-
-
-def test_the_empty_list_is_not_an_atom(mind: FakeContext) -> None:
     assert not mind.succeeds(".atom", [])
     assert not mind.succeeds(".literal", [])
 
 
-def test_internal_action_knows_calls(mind: FakeContext) -> None:
+def test_internal_action_knows_calls(mind):
     assert mind.succeeds(".internal_action", CALL)
     assert not mind.succeeds(".internal_action", ("print", "a"))
     assert not mind.succeeds(".internal_action", Var("X"))

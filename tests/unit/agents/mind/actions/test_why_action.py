@@ -21,5 +21,5 @@ from jacaros.agents.mind.actions.agents import written_question
         ("operation(dock)", "operation dock"),
     ],
 )
-def test_questions_are_terms(term: str, question: str) -> None:
+def test_questions_are_terms(term, question):
     assert written_question(lower_value(parse_term(term))) == question
