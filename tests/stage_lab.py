@@ -103,6 +103,12 @@ class Stage:
         call.execution = self.main.execute(request)
         return call
 
+    async def ended(self, artifact_id, operation, *args, **options):
+        """A call whose outcome has been reported."""
+        call = self.call(artifact_id, operation, *args, **options)
+        await call.wait()
+        return call
+
     def property(self, artifact_id, name):
         """Values of the first property of that name, as observers know them."""
         return next(p.values for p in self.main.properties(artifact_id) if p.name == name)

@@ -265,11 +265,5 @@ def test_asyncio_itself_waits_on_the_virtual_clock() -> None:
         return seen
 
     began = time.monotonic()
-    assert run(main, clock) == [
-        ("clock", 10),
-        ("asyncio", 15),
-        ("clock", 20),
-        ("clock", 30),
-        ("end", 3615),
-    ]
+    assert run(main, clock) == [("clock", 10), ("asyncio", 15), ("clock", 20), ("clock", 30), ("end", 3615)]
     assert time.monotonic() - began < 60

@@ -45,13 +45,7 @@ def two_drive(on_rails):
 
 
 def test_a_more_urgent_act_takes_the_wheels_and_the_other_operation_continues(two_drive):
-    assert two_drive(urgency=10) == [
-        "1 tour 1",
-        "2 flee 1",
-        "3 flee 2",
-        "4 tour 2",
-        "5 tour 3",
-    ]
+    assert two_drive(urgency=10) == ["1 tour 1", "2 flee 1", "3 flee 2", "4 tour 2", "5 tour 3"]
 
 
 @pytest.mark.parametrize(("urgency", "urgency_of_other"), [(0, 0), (5, 5), (1, 10)])

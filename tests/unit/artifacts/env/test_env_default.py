@@ -3,7 +3,6 @@
 import pytest
 
 from jacaros.artifacts import Atom, Out, Structure
-from played import played
 from stage_lab import play
 
 
@@ -18,7 +17,6 @@ def blackboard(stage):
     return call
 
 
-@played(play)
 async def test_tuples_are_read_and_taken(stage):
     do = blackboard(stage)
     do("out", "msg", 1, "one")
@@ -36,7 +34,6 @@ async def test_tuples_are_read_and_taken(stage):
     assert do("in", "msg", 3) == []
 
 
-@played(play)
 async def test_the_oldest_matching_tuple_is_taken(stage):
     do = blackboard(stage)
     for number in (5, 6):
@@ -45,7 +42,6 @@ async def test_the_oldest_matching_tuple_is_taken(stage):
     assert do("in", "job", Out(), Out()) == [6, "a"]
 
 
-@played(play)
 async def test_in_and_rd_wait_for_a_matching_tuple(stage):
     do = blackboard(stage)
     reader, taker, other = do("rd", "x", Out()), do("in", "x", Out()), do("in", "y", Out())
@@ -58,7 +54,6 @@ async def test_in_and_rd_wait_for_a_matching_tuple(stage):
     assert do("rdp", "y", Out()) == [2]
 
 
-@played(play)
 async def test_values_are_compared_as_agents_do(stage):
     do = blackboard(stage)
     do("out", "v", True)
@@ -70,7 +65,6 @@ async def test_values_are_compared_as_agents_do(stage):
     assert do("inp", "goal", Structure("at", (1, 2)), [1, "a"]) == []
 
 
-@played(play)
 async def test_the_same_variable_twice_matches_only_equal_values(stage):
     do = blackboard(stage)
     do("out", "pair", 1, 2)
@@ -79,7 +73,6 @@ async def test_the_same_variable_twice_matches_only_equal_values(stage):
     assert do("in", "pair", both, both) == [3, 3]
 
 
-@played(play)
 async def test_any_name_may_be_asked_for_and_tuples_must_be_bound(stage):
     do = blackboard(stage)
     failed = do("out", "x", Out())
@@ -103,7 +96,6 @@ def test_the_console_prints_lines_for_the_agent(operation):
     assert printed == [("bob", 'at kitchen 3[1,"a"]true'), ("eve", "")]
 
 
-@played(play)
 async def test_a_console_without_host_prints_to_the_log(stage):
     stage.call(stage.main.lookup("console"), "println", "hello")
     assert stage.lines == ["[console] hello"]

@@ -9,7 +9,6 @@ import pytest
 
 from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, internal_operation, operation
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
-from played import played
 from stage_lab import play
 
 
@@ -134,8 +133,7 @@ def test_an_operation_that_raises_anything_fails_and_is_rolled_back(op, raised, 
     async def scene(stage):
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
-        call = stage.call(it, op)
-        await call.wait()
+        call = await stage.ended(it, op)
         assert call.reason == Structure("operation_error", (f"{op}/0",))
         assert call.outcome.message == message.format(op=f"{op}/0")
         assert watcher.notes == ["+count(0) +kept(1)"]
@@ -149,11 +147,9 @@ def test_an_operation_that_raises_anything_fails_and_is_rolled_back(op, raised, 
 
 
 @pytest.mark.parametrize("op", ["now", "at_once"])
-@played(play)
 async def test_stop_iteration_fails_an_operation_too(stage, op):
     it = await stage.make(type("Bursting", (Bursting,), {"what": StopIteration("end")}))
-    call = stage.call(it, op)
-    await call.wait()
+    call = await stage.ended(it, op)
     assert call.reason == Structure("operation_error", (f"{op}/0",))
     assert "StopIteration" in call.outcome.message
 
@@ -164,8 +160,7 @@ def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(raised, m
         it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
         watcher = stage.watch(it)
         assert stage.call(it, "start_process").ok
-        waiting = stage.call(it, "until_broken")
-        await waiting.wait()
+        waiting = await stage.ended(it, "until_broken")
         assert waiting.reason == Structure("operation_error", ("until_broken/0",))
         assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
 
@@ -175,7 +170,7 @@ def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(raised, m
 
 @pytest.mark.parametrize("when", ["constructor", "init", "slow init", "awaited init"])
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_an_artifact_whose_creation_raises_anything_is_not_created(when, raised, message):
+async def test_an_artifact_whose_creation_raises_anything_is_not_created(stage, when, raised, message):
     class Unborn(Artifact):
         def __init__(self):
             if when == "constructor":
@@ -194,19 +189,16 @@ def test_an_artifact_whose_creation_raises_anything_is_not_created(when, raised,
 
     made = {"constructor": Unborn, "init": Failing, "slow init": Slow, "awaited init": Slow}[when]
 
-    async def scene(stage):
-        with pytest.raises(OperationFailed) as caught:
-            await stage.make(made)
-        assert caught.value.reason == Structure("makeArtifactFailure", ("init_failed", "it"))
-        assert type(raised).__name__ in caught.value.message
-        assert all(each.creator is None for each in stage.main.artifacts())
-        assert stage.logged("given back") == (when == "init")
-        await stage.make(Artifact)
-
-    play(scene)
+    with pytest.raises(OperationFailed) as caught:
+        await stage.make(made)
+    assert caught.value.reason == Structure("makeArtifactFailure", ("init_failed", "it"))
+    assert type(raised).__name__ in caught.value.message
+    assert all(each.creator is None for each in stage.main.artifacts())
+    assert stage.logged("given back") == (when == "init")
+    await stage.make(Artifact)
 
 
-def test_an_incomplete_failure_is_a_failure_too():
+async def test_an_incomplete_failure_is_a_failure_too(stage):
     class Odd(Artifact):
         @operation
         def homemade(self):
@@ -224,17 +216,14 @@ def test_an_incomplete_failure_is_a_failure_too():
         def empty(self):
             self.fail("no", "")
 
-    async def scene(stage):
-        odd = await stage.make(Odd)
-        homemade = stage.call(odd, "homemade")
-        assert (homemade.outcome.message, homemade.reason) == ("homemade", None)
-        assert stage.call(odd, "number").outcome.message == "42"
-        for op in ("nameless", "empty"):
-            call = stage.call(odd, op)
-            assert call.reason == Structure("operation_error", (f"{op}/0",))
-            assert "expected a functor as reason" in call.outcome.message
-
-    play(scene)
+    odd = await stage.make(Odd)
+    homemade = stage.call(odd, "homemade")
+    assert (homemade.outcome.message, homemade.reason) == ("homemade", None)
+    assert stage.call(odd, "number").outcome.message == "42"
+    for op in ("nameless", "empty"):
+        call = stage.call(odd, op)
+        assert call.reason == Structure("operation_error", (f"{op}/0",))
+        assert "expected a functor as reason" in call.outcome.message
 
 
 class Meddling(Artifact):
@@ -280,9 +269,10 @@ class Meddling(Artifact):
     async def waits(self): ...
 
 
-@played(play)
-async def test_a_guard_must_not_change_anything(stage):
-    it = await stage.make(Meddling)
+pytestmark = pytest.mark.makes(it=Meddling)
+
+
+async def test_a_guard_must_not_change_anything(stage, it):
     watcher = stage.watch(it)
     for op, said in [
         ("a", "updating property count is not possible within a guard"),
@@ -293,14 +283,13 @@ async def test_a_guard_must_not_change_anything(stage):
         ("f", "expected a function in until"),
         ("g", "expected a plain def as guard"),
     ]:
-        call = stage.call(it, op)
-        await call.wait()
+        call = await stage.ended(it, op)
         assert said in call.outcome.message
         assert call.reason == Structure("operation_error", (f"{op}/0",))
     assert watcher.notes == ["+count(0)"]
 
 
-def test_a_value_that_cannot_be_converted_rolls_back_the_step():
+async def test_a_value_that_cannot_be_converted_rolls_back_the_step(stage):
     class Odd(Artifact):
         def init(self):
             self.define_property("count", 0)
@@ -328,15 +317,12 @@ def test_a_value_that_cannot_be_converted_rolls_back_the_step():
 
             out.set(Strange())
 
-    async def scene(stage):
-        it = await stage.make(Odd)
-        watcher = stage.watch(it)
-        assert "ValueError" in stage.call(it, "endless").outcome.message
-        assert "expected a string as functor of a structure" in stage.call(it, "nameless").outcome.message
-        assert "SystemExit" in stage.call(it, "strange", Out()).outcome.message
-        assert watcher.notes == ["+count(0)"]
-
-    play(scene)
+    it = await stage.make(Odd)
+    watcher = stage.watch(it)
+    assert "ValueError" in stage.call(it, "endless").outcome.message
+    assert "expected a string as functor of a structure" in stage.call(it, "nameless").outcome.message
+    assert "SystemExit" in stage.call(it, "strange", Out()).outcome.message
+    assert watcher.notes == ["+count(0)"]
 
 
 def test_errors_of_pause_callbacks_are_the_artifacts_own():

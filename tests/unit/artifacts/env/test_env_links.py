@@ -12,8 +12,6 @@ from jacaros.artifacts import (
     link,
     operation,
 )
-from played import played
-from stage_lab import play
 
 
 class Lamp(Artifact):
@@ -109,7 +107,6 @@ async def linked(stage):
     return lamp, switch
 
 
-@played(play)
 async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_caller_ends(stage):
     lamp, switch = await linked(stage)
     stage.watch(lamp, "lamp")
@@ -125,7 +122,6 @@ async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_th
     ]
 
 
-@played(play)
 async def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(stage):
     _, first = await linked(stage)
     second = await stage.make(Switch, name="second")
@@ -149,35 +145,28 @@ async def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(stage):
     ("operation", "reason"),
     [("refuse", Structure("refused_by", ("lamp",))), ("late_refusal", Structure("late", ("lamp",)))],
 )
-@played(play)
 async def test_a_failure_passes_through_with_its_reason(stage, operation, reason):
     _, switch = await linked(stage)
-    call = stage.call(switch, "forward", operation)
-    await call.wait()
+    call = await stage.ended(switch, "forward", operation)
     assert call.reason == reason
     assert stage.property(switch, "presses") == (9,), "the call was a step boundary"
 
 
-@played(play)
 async def test_the_caller_may_handle_the_failure(stage):
     _, switch = await linked(stage)
     reason = Out()
-    call = stage.call(switch, "careful", reason)
-    await call.wait()
+    call = await stage.ended(switch, "careful", reason)
     assert call.ok
     assert reason.value == Structure("refused_by", ("lamp",))
 
 
-@played(play)
 async def test_an_unknown_linked_operation_fails_with_its_reason(stage):
     lamp, switch = await linked(stage)
-    call = stage.call(switch, "forward", "ping")
-    await call.wait()
+    call = await stage.ended(switch, "forward", "ping")
     assert call.reason == Structure("unknown_operation", (lamp, "ping"))
     assert "unknown linked operation `ping/0`" in call.outcome.message
 
 
-@played(play)
 async def test_agents_cannot_call_linked_operations_unless_they_are_operations_too(stage):
     lamp, _ = await linked(stage)
     call = stage.call(lamp, "raise", 1)
@@ -186,20 +175,16 @@ async def test_agents_cannot_call_linked_operations_unless_they_are_operations_t
     assert stage.call(lamp, "read", Out()).ok
 
 
-@played(play)
 async def test_an_unlinked_or_unknown_port_fails(stage):
     switch = await stage.make(Switch, name="switch")
-    call = stage.call(switch, "forward", "refuse")
-    await call.wait()
+    call = await stage.ended(switch, "forward", "refuse")
     assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
     assert call.outcome.message == "port out of artifact switch is not linked"
-    wrong = stage.call(switch, "wrong_port")
-    await wrong.wait()
+    wrong = await stage.ended(switch, "wrong_port")
     assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
     assert "unknown out port `in`" in wrong.outcome.message
 
 
-@played(play)
 async def test_all_artifacts_behind_a_port_are_called_and_waited_for(stage):
     lamp, switch = await linked(stage)
     second = await stage.make(Lamp, name="second")
@@ -208,13 +193,11 @@ async def test_all_artifacts_behind_a_port_are_called_and_waited_for(stage):
     power = Out()
     await stage.call(switch, "press", 5, power).wait()
     assert [stage.property(each, "power") for each in (lamp, second)] == [(5,), (5,)]
-    call = stage.call(switch, "forward", "late_refusal")
-    await call.wait()
+    call = await stage.ended(switch, "forward", "late_refusal")
     assert call.reason == Structure("late", ("lamp",)), "the first in the order of linking"
     assert stage.main.linked(switch, "out") == (lamp, second)
 
 
-@played(play)
 async def test_the_caller_is_free_for_others_while_it_waits(stage):
     _, switch = await linked(stage)
     slow = stage.call(switch, "forward_slowly", 1.0)
@@ -224,7 +207,6 @@ async def test_the_caller_is_free_for_others_while_it_waits(stage):
     assert slow.ended_at == 1.0
 
 
-@played(play)
 async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
     lamp, switch = await linked(stage)
     watcher = stage.watch(lamp)
@@ -239,7 +221,6 @@ async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
     assert stage.call(switch, "ping").ok
 
 
-@played(play)
 async def test_disposing_the_target_fails_the_caller_and_unlinks_it(stage):
     lamp, switch = await linked(stage)
     slow = stage.call(switch, "forward_slowly", 1.0)
@@ -247,12 +228,10 @@ async def test_disposing_the_target_fails_the_caller_and_unlinks_it(stage):
     stage.main.dispose_artifact(lamp)
     await slow.wait()
     assert slow.reason == Structure("artifact_disposed", ("lamp",))
-    again = stage.call(switch, "forward", "refuse")
-    await again.wait()
+    again = await stage.ended(switch, "forward", "refuse")
     assert again.reason == Structure("operation_error", ("forward/1",))
 
 
-@played(play)
 async def test_disposing_the_caller_leaves_the_other_links_alone(stage):
     lamp, switch = await linked(stage)
     other = await stage.make(Switch, name="other")
@@ -262,7 +241,6 @@ async def test_disposing_the_caller_leaves_the_other_links_alone(stage):
     assert stage.main.linked(other, "out") == (lamp,)
 
 
-@played(play)
 async def test_linking_is_checked(stage):
     lamp, switch = await linked(stage)
     with pytest.raises(
@@ -278,7 +256,6 @@ async def test_linking_is_checked(stage):
     assert gone.value.reason == Structure("artifact_not_available", ("lamp",))
 
 
-@played(play)
 async def test_links_reach_other_workspaces(stage):
     _, switch = await linked(stage)
     lab = stage.environment.create_workspace("/main/lab")
@@ -296,7 +273,7 @@ async def test_links_reach_other_workspaces(stage):
     assert stage.main.properties(far)[0].values == (3,)
 
 
-def test_a_target_that_is_disposed_during_the_call_is_not_available():
+async def test_a_target_that_is_disposed_during_the_call_is_not_available(stage):
     class Jealous(Artifact):
         @link
         def greet(self):
@@ -304,19 +281,15 @@ def test_a_target_that_is_disposed_during_the_call_is_not_available():
                 if rival is not self.id:
                     self.workspace.dispose_artifact(rival)
 
-    async def scene(stage):
-        switch = await stage.make(Switch, name="switch")
-        first, second = await stage.make(Jealous, name="first"), await stage.make(Jealous, name="second")
-        stage.main.link(switch, "out", first)
-        stage.main.link(switch, "out", second)
-        call = stage.call(switch, "forward", "greet")
-        await call.wait()
-        assert call.reason == Structure("artifact_not_available", ("second",))
-
-    play(scene)
+    switch = await stage.make(Switch, name="switch")
+    first, second = await stage.make(Jealous, name="first"), await stage.make(Jealous, name="second")
+    stage.main.link(switch, "out", first)
+    stage.main.link(switch, "out", second)
+    call = await stage.ended(switch, "forward", "greet")
+    assert call.reason == Structure("artifact_not_available", ("second",))
 
 
-def test_a_link_to_itself_does_not_block():
+async def test_a_link_to_itself_does_not_block(stage):
     class Self(Artifact):
         ports = ("me",)
 
@@ -328,13 +301,10 @@ def test_a_link_to_itself_does_not_block():
         def answer(self, answer: Out):
             answer.set(42)
 
-    async def scene(stage):
-        myself, answer = await stage.make(Self), Out()
-        stage.main.link(myself, "me", myself)
-        await stage.call(myself, "ask", answer).wait()
-        assert answer.value == 42
-
-    play(scene)
+    myself, answer = await stage.make(Self), Out()
+    stage.main.link(myself, "me", myself)
+    await stage.call(myself, "ask", answer).wait()
+    assert answer.value == 42
 
 
 class Hub(Artifact):
@@ -368,7 +338,6 @@ class Dim(Artifact):
         power.set(self.value("power"))
 
 
-@played(play)
 async def test_an_artifact_makes_and_links_another_in_its_init(stage):
     hub = await stage.make(Hub, "inner", Dim, name="hub")
     name, power = Out(), Out()
@@ -377,7 +346,6 @@ async def test_an_artifact_makes_and_links_another_in_its_init(stage):
     assert (name.value, power.value) == ("inner", 3)
 
 
-@played(play)
 async def test_without_a_port_the_first_one_is_meant(stage):
     hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
     stage.main.link(hub, None, dim)
@@ -386,7 +354,6 @@ async def test_without_a_port_the_first_one_is_meant(stage):
         stage.main.link(dim, None, hub)
 
 
-@played(play)
 async def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by_its_id(stage):
     hub = await stage.make(Hub, name="hub")
     lab = stage.environment.create_workspace("/main/lab")
@@ -395,12 +362,10 @@ async def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by
     assert (await stage.call(hub, "directly", dim, power).wait()).ok
     assert power.value == 3
     lab.dispose_artifact(dim)
-    call = stage.call(hub, "directly", dim, Out())
-    await call.wait()
+    call = await stage.ended(hub, "directly", dim, Out())
     assert call.reason == Structure("artifact_not_available", ("dim",))
 
 
-@played(play)
 async def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(stage):
     lamp, switch = await linked(stage)
     call = stage.call(switch, "forward_slowly", 5)

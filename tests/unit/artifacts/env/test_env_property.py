@@ -7,8 +7,6 @@ import pytest
 from jacaros.artifacts import Artifact, Atom, InvalidArtifact, Out, Structure, UnknownProperty, operation
 from jacaros.artifacts.env import property as properties
 from jacaros.artifacts.env.property import NO_CHANGES, PropertyStore
-from played import played
-from stage_lab import play
 
 
 def contents(store):
@@ -216,49 +214,44 @@ class Rooms(Artifact):
         rooms.set([p.values[0] for p in self.find_properties("room", None, "dirty")])
 
 
-@played(play)
-async def test_the_property_to_update_is_found_by_its_values(stage):
-    rooms = await stage.make(Rooms)
-    watcher = stage.watch(rooms)
+pytestmark = pytest.mark.makes(it=Rooms)
+
+
+async def test_the_property_to_update_is_found_by_its_values(stage, it):
+    watcher = stage.watch(it)
     names = Out()
-    assert stage.call(rooms, "clean", "hall").ok
-    assert stage.call(rooms, "dirty", names).ok
+    assert stage.call(it, "clean", "hall").ok
+    assert stage.call(it, "dirty", names).ok
     assert names.value == ["kitchen"]
-    assert stage.call(rooms, "clean_value", "kitchen").ok
+    assert stage.call(it, "clean_value", "kitchen").ok
     assert watcher.notes[1:] == [
         "-room('hall','dirty') +room('hall','clean')",
         "-room('kitchen','dirty') +room('kitchen','clean')",
     ]
-    call = stage.call(rooms, "clean", "cellar")
+    call = stage.call(it, "clean", "cellar")
     assert "no property room has the values ('cellar', None)" in call.outcome.message
 
 
-@played(play)
-async def test_one_of_several_values_is_updated(stage):
-    rooms = await stage.make(Rooms)
-    watcher = stage.watch(rooms)
-    assert stage.call(rooms, "turn", 1, 7.5).ok
+async def test_one_of_several_values_is_updated(stage, it):
+    watcher = stage.watch(it)
+    assert stage.call(it, "turn", 1, 7.5).ok
     assert watcher.notes[1:] == ["-pose(1,2) +pose(1,7.5)"]
-    assert "IndexError" in stage.call(rooms, "turn", 2, 7.5).outcome.message
+    assert "IndexError" in stage.call(it, "turn", 2, 7.5).outcome.message
 
 
-@played(play)
-async def test_more_values_and_fewer_values_than_before(stage):
-    rooms = await stage.make(Rooms)
-    watcher = stage.watch(rooms)
+async def test_more_values_and_fewer_values_than_before(stage, it):
+    watcher = stage.watch(it)
     for values in [(1, 2, 3), (1,), ()]:
-        assert stage.call(rooms, "grow", *values).ok
+        assert stage.call(it, "grow", *values).ok
     assert watcher.notes[1:] == ["-pose(1,2) +pose(1,2,3)", "-pose(1,2,3) +pose(1)", "-pose(1) +pose"]
 
 
-@played(play)
-async def test_annotations_are_added_once_and_a_later_update_is_not_lost(stage):
-    rooms = await stage.make(Rooms)
-    watcher = stage.watch(rooms)
+async def test_annotations_are_added_once_and_a_later_update_is_not_lost(stage, it):
+    watcher = stage.watch(it)
     seen = Structure("seen", (1,))
-    assert stage.call(rooms, "note", seen, Atom("big")).ok
-    assert stage.call(rooms, "note", Atom("big")).ok
-    assert stage.call(rooms, "note_and_clean", seen).ok
+    assert stage.call(it, "note", seen, Atom("big")).ok
+    assert stage.call(it, "note", Atom("big")).ok
+    assert stage.call(it, "note_and_clean", seen).ok
     changes = [change for each in watcher.observations for change in each.changed]
     assert [(new.values, new.annotations) for _, new in changes] == [
         (("hall", "dirty"), (seen, "big")),
@@ -267,19 +260,17 @@ async def test_annotations_are_added_once_and_a_later_update_is_not_lost(stage):
     ]
 
 
-@played(play)
-async def test_properties_of_every_artifact_can_be_read_without_focus(stage):
-    rooms = await stage.make(Rooms)
+async def test_properties_of_every_artifact_can_be_read_without_focus(stage, it):
     out = Out()
-    assert stage.call(rooms, "observeProperty", "pose", out).ok
-    assert stage.call(rooms, "turn", 1, 7.5).ok
+    assert stage.call(it, "observeProperty", "pose", out).ok
+    assert stage.call(it, "turn", 1, 7.5).ok
     assert out.value == Structure("pose", (1, 2)), "it is the value of that moment"
-    call = stage.call(rooms, "observeProperty", "posse", Out())
+    call = stage.call(it, "observeProperty", "posse", Out())
     assert (call.outcome.message, call.reason) == (
         "Property not found posse",
         Structure("unknown_property", ("posse",)),
     )
-    assert "observeProperty" not in stage.call(rooms, "fly").outcome.message, "lists show what is its own"
+    assert "observeProperty" not in stage.call(it, "fly").outcome.message, "lists show what is its own"
 
 
 FIRST_VALUES = (*range(30), 2.0, 2.5, True, False, "a", Atom("a"), [1], Structure("p", (1,)), float("nan"))

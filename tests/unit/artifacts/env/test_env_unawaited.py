@@ -1,7 +1,8 @@
 """Errors with ``await`` and ``return`` that Python itself does not report."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, internal_operation, operation
-from played import played
 from stage_lab import play
 
 
@@ -58,6 +59,9 @@ class Forgetful(Artifact):
         self.sleep(1)
 
 
+pytestmark = pytest.mark.makes(it=Forgetful)
+
+
 def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created():
     async def scene(stage):
         for name in ("a", "b"):
@@ -78,9 +82,7 @@ def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(
     assert "self.until(lambda: False) has no effect" in found[2]
 
 
-@played(play)
-async def test_a_coroutine_that_is_awaited_later_has_its_effect(stage):
-    it = await stage.make(Forgetful)
+async def test_a_coroutine_that_is_awaited_later_has_its_effect(stage, it):
     assert (await stage.call(it, "thrice").wait()).ok
     assert stage.property(it, "count") == (5,)
     assert stage.elapsed == 3

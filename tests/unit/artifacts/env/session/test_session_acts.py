@@ -6,11 +6,8 @@ import pytest
 from session_lab import Counter, Wheels, session_in
 
 from jacaros.artifacts import Atom, OperationFailed, Out, Structure, WorkspaceError
-from played import played
-from stage_lab import play
 
 
-@played(play)
 async def test_an_operation_is_awaited_and_its_result_is_seen(stage):
     session = session_in(stage)
     counter = await session.make_artifact("counter", Counter, [1])
@@ -21,7 +18,6 @@ async def test_an_operation_is_awaited_and_its_result_is_seen(stage):
     assert counter.creator == "painter"
 
 
-@played(play)
 async def test_types_are_found_by_name(stage):
     stage.types["Counter"] = Counter
     session = session_in(stage)
@@ -34,7 +30,6 @@ async def test_types_are_found_by_name(stage):
     assert raised.value.reason == Structure("makeArtifactFailure", ("unknown_artifact_template", "Countr"))
 
 
-@played(play)
 async def test_values_of_out_arguments_are_returned(stage):
     session = session_in(stage)
     await session.make_artifact("wheels", Wheels)
@@ -45,7 +40,6 @@ async def test_values_of_out_arguments_are_returned(stage):
         await session.act("x", Out)
 
 
-@played(play)
 async def test_a_failure_is_raised_with_its_reason(stage):
     session = session_in(stage)
     await session.make_artifact("counter", Counter)
@@ -66,7 +60,6 @@ async def test_a_failure_is_raised_with_its_reason(stage):
     assert raised.value.reason.functor == "wrong_op_arguments"
 
 
-@played(play)
 async def test_own_artifacts_come_before_focused_ones_and_those_before_others(stage):
     first = await stage.make(Counter, name="first", creator="other")
     second = await stage.make(Counter, name="second", creator="other")
@@ -82,7 +75,6 @@ async def test_own_artifacts_come_before_focused_ones_and_those_before_others(st
     assert stage.property(own, "count") == (1,)
 
 
-@played(play)
 async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage):
     session = session_in(stage)
     stage.environment.create_workspace("/main/lab")
@@ -101,7 +93,6 @@ async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage):
     assert session.value("count") == 11
 
 
-@played(play)
 async def test_a_closed_session_holds_nothing_and_does_nothing(stage):
     with session_in(stage) as session:
         wheels = session.focus(await session.make_artifact("wheels", Wheels))
@@ -141,7 +132,6 @@ class Books:
         self.passive -= 1
 
 
-@played(play)
 async def test_waits_are_counted(stage):
     books = Books()
     with session_in(stage, account=books) as session:

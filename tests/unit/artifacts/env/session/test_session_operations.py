@@ -6,11 +6,8 @@ import pytest
 from session_lab import Counter, Wheels, session_in
 
 from jacaros.artifacts import Atom, OperationFailed, Structure
-from played import played
-from stage_lab import play
 
 
-@played(play)
 async def test_a_handle_is_paused_resumed_and_awaited(stage):
     session = session_in(stage)
     session.focus(await session.make_artifact("wheels", Wheels))
@@ -31,7 +28,6 @@ async def test_a_handle_is_paused_resumed_and_awaited(stage):
     assert 10 < stage.elapsed < 12
 
 
-@played(play)
 async def test_a_cancelled_operation_ends_at_once_and_its_finally_runs(stage):
     session = session_in(stage)
     session.focus(await session.make_artifact("wheels", Wheels))
@@ -50,7 +46,6 @@ async def test_a_cancelled_operation_ends_at_once_and_its_finally_runs(stage):
     assert session.value("pose") == 0.2
 
 
-@played(play)
 async def test_a_cancelled_task_cancels_the_operation_that_it_awaits(stage):
     session = session_in(stage)
     session.focus(await session.make_artifact("wheels", Wheels))
@@ -64,7 +59,6 @@ async def test_a_cancelled_task_cancels_the_operation_that_it_awaits(stage):
     assert session.value("speed") == 0.0
 
 
-@played(play)
 async def test_an_operation_may_take_so_long(stage):
     session = session_in(stage)
     session.focus(await session.make_artifact("wheels", Wheels))
@@ -77,7 +71,6 @@ async def test_an_operation_may_take_so_long(stage):
     assert session.value("pose") == 0.3
 
 
-@played(play)
 async def test_an_operation_that_cannot_begin_has_failed(stage):
     session = session_in(stage)
     operation = session.begin("fly")
@@ -90,7 +83,6 @@ async def test_an_operation_that_cannot_begin_has_failed(stage):
     )
 
 
-@played(play)
 async def test_a_disposed_artifact_fails_what_waits_and_its_properties_are_gone(stage):
     session = session_in(stage)
     wheels = session.focus(await session.make_artifact("wheels", Wheels))

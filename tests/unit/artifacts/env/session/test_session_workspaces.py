@@ -6,11 +6,8 @@ import pytest
 from session_lab import Counter, session_in
 
 from jacaros.artifacts import OperationFailed, Structure, UnknownWorkspace
-from played import played
-from stage_lab import play
 
 
-@played(play)
 async def test_workspaces_are_joined_and_left(stage):
     session = session_in(stage)
     stage.environment.create_workspace("/main/lab")
@@ -32,7 +29,6 @@ async def test_workspaces_are_joined_and_left(stage):
         session.focus("/main/lab/counter")
 
 
-@played(play)
 async def test_a_session_begins_in_its_home(stage):
     stage.environment.create_workspace("/main/lab")
     with pytest.raises(UnknownWorkspace):
@@ -40,7 +36,6 @@ async def test_a_session_begins_in_its_home(stage):
     assert session_in(stage, home="/main/lab").joined == ("/main/lab",)
 
 
-@played(play)
 async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage):
     session = session_in(stage)
     stage.environment.create_workspace("/main/lab")
@@ -53,7 +48,6 @@ async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage):
     assert session.value("count") == 1
 
 
-@played(play)
 async def test_what_was_quit_cannot_be_quit_again(stage):
     session = session_in(stage)
     session.quit("main")
@@ -62,7 +56,6 @@ async def test_what_was_quit_cannot_be_quit_again(stage):
     assert failure.value.reason == Structure("workspace_not_joined", ("main",))
 
 
-@played(play)
 async def test_outside_all_workspaces_nothing_can_be_done_but_join(stage):
     session = session_in(stage)
     await session.make_artifact("counter", Counter)
@@ -74,7 +67,6 @@ async def test_outside_all_workspaces_nothing_can_be_done_but_join(stage):
     await session.act("inc")
 
 
-@played(play)
 async def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(stage):
     session = session_in(stage)
     stage.environment.create_workspace("/main/lab")
@@ -84,7 +76,6 @@ async def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_
     assert failure.value.reason == Structure("workspace_not_joined", ("/main/lab",))
 
 
-@played(play)
 async def test_waiting_for_an_artifact_fails_when_its_workspace_was_quit(stage):
     session = session_in(stage)
     stage.environment.create_workspace("/main/lab")
