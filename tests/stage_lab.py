@@ -109,6 +109,11 @@ class Stage:
         await call.wait()
         return call
 
+    async def after(self, seconds, act, *args):
+        """Let time pass, then do something."""
+        await self.clock.sleep(seconds)
+        act(*args)
+
     def property(self, artifact_id, name):
         """Values of the first property of that name, as observers know them."""
         return next(p.values for p in self.main.properties(artifact_id) if p.name == name)

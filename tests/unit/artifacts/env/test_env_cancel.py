@@ -68,6 +68,11 @@ class Robot(Artifact):
             self.commands.append("dropped")
 
     @operation
+    def drop_me_now(self):
+        self.current.cancel()
+        self.update_property("units", 1)
+
+    @operation
     def ping(self):
         self.commands.append("ping")
 
@@ -79,8 +84,9 @@ def state(stage, robot):
     return stage.property(robot, "moving")[0], stage.property(robot, "units")[0]
 
 
-async def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(stage, it, made):
-    watcher = stage.watch(it)
+async def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(
+    stage, it, watcher, made
+):
     move = stage.call(it, "move", 10)
     await stage.clock.sleep(2.5)
     watcher.take()
@@ -98,11 +104,9 @@ async def test_cancelling_twice_or_after_the_end_has_no_effect(stage, it):
     move = await stage.ended(it, "move", 1)
     move.execution.cancel()
     second = stage.call(it, "slow_end")
-    await stage.clock.sleep(1.0)
+    await stage.after(1.0, second.execution.cancel)
     second.execution.cancel()
-    second.execution.cancel()
-    await stage.clock.sleep(0.1)
-    second.execution.cancel()
+    await stage.after(0.1, second.execution.cancel)
     await stage.clock.sleep(1.0)
     assert state(stage, it) == (False, 2), "finally has run"
     ping = stage.call(it, "ping")
@@ -110,20 +114,17 @@ async def test_cancelling_twice_or_after_the_end_has_no_effect(stage, it):
     assert ping.ok
 
 
-async def test_an_operation_cancelled_before_its_first_step_never_begins(stage, it, made):
+async def test_an_operation_cancelled_before_its_first_step_or_in_the_queue_never_begins(stage, it, made):
     move = stage.call(it, "move", 1)
     move.execution.cancel()
     await stage.clock.sleep(5.0)
     assert (made.commands, move.outcome) == ([], None)
     assert move.execution.ended
-    assert stage.call(it, "ping").ok
-
-
-async def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begins(stage, it, made):
     stage.call(it, "hold", 1.0)
     move, ping = stage.call(it, "move", 1), stage.call(it, "ping")
     move.execution.cancel()
     await ping.wait()
+    assert ping.ok
     await stage.clock.sleep(3.0)
     assert made.commands == ["released", "ping"]
     assert move.outcome is None
@@ -131,8 +132,7 @@ async def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begin
 
 async def test_the_step_in_which_it_is_cancelled_is_rolled_back(stage, it, made):
     hold = stage.call(it, "hold", 10.0)
-    await stage.clock.sleep(1.0)
-    hold.execution.cancel()
+    await stage.after(1.0, hold.execution.cancel)
     await stage.clock.sleep(1.0)
     assert state(stage, it) == (False, 0)
     assert made.commands == ["released"]
@@ -143,8 +143,7 @@ async def test_finally_waits_for_its_turn_before_all_others(stage, it, made):
     move = stage.call(it, "move", 10)
     await stage.clock.sleep(0.5)
     hold, ping = stage.call(it, "hold", 1.0), stage.call(it, "ping")
-    await stage.clock.sleep(0.1)
-    move.execution.cancel()
+    await stage.after(0.1, move.execution.cancel)
     await ping.wait()
     assert made.commands == ["go", "released", "stop", "ping"]
     assert hold.ok
@@ -155,11 +154,9 @@ async def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and
     move = stage.call(it, "move", 10)
     await stage.clock.sleep(0.5)
     stage.call(it, "hold", 2.0)
-    await stage.clock.sleep(1.0)
-    move.execution.cancel()
+    await stage.after(1.0, move.execution.cancel)
     move.execution.task.cancel()
-    await stage.clock.sleep(0.5)
-    move.execution.task.cancel()
+    await stage.after(0.5, move.execution.task.cancel)
     assert made.commands == ["go"]
     await stage.clock.sleep(1.0)
     assert made.commands == ["go", "released", "stop"]
@@ -184,16 +181,14 @@ async def test_it_is_cancelled_while_it_gets_its_turn(stage, it, made):
 
 async def test_a_waiting_condition_is_cancelled(stage, it, made):
     wait = stage.call(it, "wait")
-    await stage.clock.sleep(1.0)
-    wait.execution.cancel()
+    await stage.after(1.0, wait.execution.cancel)
     assert stage.call(it, "ping").ok
     await stage.clock.sleep(1.0)
     assert made.commands == ["ping", "waited"]
     assert wait.outcome is None
 
 
-async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage, it):
-    watcher = stage.watch(it)
+async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage, it, watcher):
     call = stage.call(it, "slow_end")
     await stage.clock.sleep(1.0)
     watcher.take()
@@ -205,14 +200,16 @@ async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage, it):
 
 async def test_a_failure_in_finally_is_undone_and_logged(stage, it):
     call = stage.call(it, "bad_end")
-    await stage.clock.sleep(1.0)
-    call.execution.cancel()
+    await stage.after(1.0, call.execution.cancel)
     await stage.clock.sleep(1.0)
     assert state(stage, it) == (False, 0)
     assert stage.lines == ["[it] operation bad_end/0 failed: cannot stop"]
 
 
-async def test_an_operation_may_cancel_itself(stage, it, made):
+async def test_an_operation_may_cancel_itself_and_ends_without_an_outcome(stage, it, made):
+    call = stage.call(it, "drop_me_now")
+    assert (call.outcome, call.execution.ended) == (None, True)
+    assert state(stage, it) == (False, 1)
     call = stage.call(it, "drop_me")
     await stage.clock.sleep(2.0)
     assert made.commands == ["dropped"]
@@ -223,8 +220,7 @@ async def test_an_operation_may_cancel_itself(stage, it, made):
 
 async def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_usable(stage, it, made):
     move = stage.call(it, "move", 10)
-    await stage.clock.sleep(0.5)
-    move.execution.task.cancel()
+    await stage.after(0.5, move.execution.task.cancel)
     await stage.clock.sleep(0.1)
     assert move.execution.task.cancelled()
     assert made.commands == ["go", "stop"]
@@ -271,22 +267,6 @@ async def test_observers_may_cancel_an_operation_while_they_are_notified(stage, 
     assert state(stage, it) == (False, 1)
 
 
-async def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome(stage):
-    class Plain(Artifact):
-        def init(self):
-            self.define_property("n", 0)
-
-        @operation
-        def drop_me(self):
-            self.current.cancel()
-            self.update_property("n", 1)
-
-    plain = await stage.make(Plain)
-    call = stage.call(plain, "drop_me")
-    assert (call.outcome, call.execution.ended) == (None, True)
-    assert stage.property(plain, "n") == (1,)
-
-
 async def test_one_of_several_waiting_operations_is_cancelled(stage, it):
     stage.call(it, "hold", 1.0)
     first, second, third = (stage.call(it, "ping") for _ in range(3))
@@ -299,8 +279,7 @@ async def test_one_of_several_waiting_operations_is_cancelled(stage, it):
 
 async def test_an_abandoned_coroutine_does_not_wait_for_its_turn(stage, it, made):
     move = stage.call(it, "move", 1)
-    await stage.clock.sleep(0.5)
-    stage.main.dispose_artifact(it)
+    await stage.after(0.5, stage.main.dispose_artifact, it)
     move.execution.task.get_coro().close()
     move.execution.task.cancel()
     await stage.clock.sleep(1.0)

@@ -59,8 +59,7 @@ async def test_a_slow_init_that_fails_leaves_nothing_behind(stage):
 
 async def test_creation_can_be_cancelled_and_leaves_nothing_behind(stage):
     making = asyncio.ensure_future(stage.make(Slow))
-    await stage.clock.sleep(0.5)
-    making.cancel()
+    await stage.after(0.5, making.cancel)
     await stage.clock.sleep(0.1)
     assert making.cancelled()
     assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
@@ -84,8 +83,7 @@ async def test_a_name_can_be_reused_while_a_cancelled_creation_ends(stage):
                 await self.sleep(1.0)
 
     first = stage.main.create("it", Lingering)
-    await stage.clock.sleep(0.5)
-    first.cancel()
+    await stage.after(0.5, first.cancel)
     await stage.clock.sleep(0.1)
     assert (await why(stage.make(Counter)))[0] == "artifact_already_present"
     await stage.clock.sleep(2.0)
@@ -103,8 +101,7 @@ async def test_a_creation_that_is_ended_twice_ends_once(stage):
     making = asyncio.ensure_future(stage.make(Lingering))
     await stage.clock.sleep(0.5)
     closing = asyncio.ensure_future(stage.environment.close())
-    await stage.clock.sleep(0.1)
-    making.cancel()
+    await stage.after(0.1, making.cancel)
     counter = await stage.make(Counter)
     await closing
     assert making.cancelled()
@@ -162,7 +159,6 @@ async def test_the_id_of_a_cancelled_creation_has_no_artifact(stage):
 
     keep = []
     execution = stage.main.create("slow", Slow, (keep,))
-    await stage.clock.sleep(1)
-    execution.cancel()
+    await stage.after(1, execution.cancel)
     await stage.clock.sleep(1)
     assert stage.call(keep[0], "x").reason == Structure("artifact_not_available", ("slow",))

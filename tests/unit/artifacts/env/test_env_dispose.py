@@ -127,8 +127,7 @@ async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(
 
 async def test_the_hook_waits_for_the_last_operation_to_end(stage, it, made):
     call = stage.call(it, "run_long")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(it)
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     await stage.clock.sleep(0.5)
     assert (made.events, call.outcome) == ([], None)
     await stage.clock.sleep(1.0)
@@ -138,8 +137,7 @@ async def test_the_hook_waits_for_the_last_operation_to_end(stage, it, made):
 
 async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(stage, it):
     call = stage.call(it, "stubborn")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(it)
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     await call.wait()
     assert call.reason == Structure("artifact_disposed", ("it",))
     assert stage.logged("will not stop")
@@ -147,8 +145,7 @@ async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(sta
 
 async def test_processes_are_stopped(stage, it, made):
     stage.call(it, "startProcess")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(it)
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     await stage.clock.sleep(1.0)
     assert made.events[0] == "process stopped"
     assert stage.lines == []
@@ -186,12 +183,11 @@ async def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artif
     assert not stage.call(it, "ping").ok
 
 
-async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage, it, made):
-    watcher = stage.watch(it)
+async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage, it, watcher, made):
     call = stage.call(it, "disposeMe")
     assert call.ok
     assert made.events[:2] == ["still here", "dispose"]
-    assert watcher.notes[1:] == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
+    assert watcher.notes == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
 
 
 async def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(stage, it, made):
@@ -248,8 +244,7 @@ async def test_closing_the_environment_ends_everything_and_waits_for_it(stage, i
 
 async def test_closing_waits_for_artifacts_that_are_ending_already(stage, it, made):
     stage.call(it, "run_long")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(it)
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     other = await stage.make(Thing, name="other")
     stage.call(other, "ping")
     await stage.clock.sleep(0.5)
@@ -262,8 +257,7 @@ async def test_cancelling_one_wait_for_the_end_does_not_affect_others(stage, it)
     stage.call(it, "run_long")
     await stage.clock.sleep(1.0)
     first, second = (asyncio.ensure_future(stage.environment.close()) for _ in range(2))
-    await stage.clock.sleep(0.5)
-    first.cancel()
+    await stage.after(0.5, first.cancel)
     await second
     assert stage.elapsed == 2.0
 
@@ -339,10 +333,8 @@ async def test_a_paused_operation_fails_too(stage):
     it = await stage.make(Resting)
     call = stage.call(it, "rest")
     call.execution.pause()
-    await stage.clock.sleep(5.0)
-    call.execution.pause()
-    await stage.clock.sleep(5.0)
-    stage.main.dispose_artifact(it)
+    await stage.after(5.0, call.execution.pause)
+    await stage.after(5.0, stage.main.dispose_artifact, it)
     await call.wait()
     assert (stage.elapsed, call.reason) == (10.0, Structure("artifact_disposed", ("it",)))
 

@@ -338,8 +338,7 @@ def test_errors_of_pause_callbacks_are_the_artifacts_own():
 
     async def scene(stage):
         call = stage.call(await stage.make(Resting), "rest")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
+        await stage.after(0.5, call.execution.pause)
         call.execution.resume()
         assert (await call.wait()).ok
 

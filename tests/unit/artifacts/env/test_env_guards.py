@@ -47,6 +47,13 @@ class Store(Artifact):
     def broken(self):
         raise KeyError("guard")
 
+    @operation(guard="is_owner")
+    def use(self):
+        self.log(self.caller)
+
+    def is_owner(self):
+        return self.caller == "owner"
+
     @operation(guard="broken_later")
     def wrong_later(self):
         self.log("never")
@@ -69,11 +76,7 @@ async def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_beco
     stage.call(it, "fill", 2)
     assert take.ok
     assert level(stage, it) == 1
-
-
-async def test_a_guard_that_is_true_at_once_does_not_delay(stage, it):
-    stage.call(it, "fill", 2)
-    assert stage.call(it, "take", 2).ok
+    assert stage.call(it, "take", 1).ok, "a guard that is true at once does not delay"
 
 
 async def test_a_step_completes_before_the_operations_that_it_enables(stage, it):
@@ -89,16 +92,14 @@ async def test_a_step_completes_before_the_operations_that_it_enables(stage, it)
     ]
 
 
-async def test_waiting_operations_are_served_in_the_order_of_arrival(stage, it):
+async def test_waiting_operations_are_served_in_the_order_of_arrival_if_they_are_enabled(stage, it):
     takes = [stage.call(it, "take", 2, agent=name) for name in ("a", "b", "c")]
+    small = stage.call(it, "take", 1)
     stage.call(it, "fill", 4)
     assert [take.ok for take in takes] == [True, True, False]
-
-
-async def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(stage, it):
-    big, small = stage.call(it, "take", 5), stage.call(it, "take", 1)
+    assert not small.ok
     stage.call(it, "fill", 1)
-    assert (big.ok, small.ok) == (False, True)
+    assert (takes[2].ok, small.ok) == (False, True), "it does not wait for a blocked one before it"
 
 
 async def test_a_bounded_buffer_loses_nothing(stage, it):
@@ -144,46 +145,19 @@ async def test_an_error_in_a_guard_fails_the_operation_now_or_later(stage, it):
     assert not any(line.endswith("never") for line in stage.lines)
 
 
-async def test_a_guard_can_read_the_caller(stage):
-    kept = []
-
-    class Private(Artifact):
-        @operation(guard="is_owner")
-        def use(self):
-            kept.append(self.caller)
-
-        def is_owner(self):
-            return self.caller == "owner"
-
-    private = await stage.make(Private)
-    stage.call(private, "use", agent="thief")
-    stage.call(private, "use", agent="owner")
-    assert kept == ["owner"]
+async def test_a_guard_can_read_the_caller(stage, it):
+    stage.call(it, "use", agent="thief")
+    stage.call(it, "use", agent="owner")
+    assert stage.lines == ["[it] owner"]
 
 
-async def test_guards_are_evaluated_on_arrival_and_after_each_step_only(stage):
-    checked = []
-
-    class Watched(Artifact):
-        @operation(guard="check")
-        def wait(self):
-            pass
-
-        def check(self):
-            checked.append(self.clock.now())
-            return False
-
-        @operation
-        def nothing(self):
-            pass
-
-    watched = await stage.make(Watched)
-    stage.call(watched, "wait")
+async def test_guards_are_evaluated_on_arrival_and_after_each_step_only(stage, it, made):
+    stage.call(it, "take", agent="a")
     await stage.clock.sleep(1.0)
-    assert len(checked) == 1
-    stage.call(watched, "nothing")
-    stage.call(watched, "nothing")
-    assert len(checked) == 3
+    assert made.checks == [("a", 1)]
+    stage.call(it, "close", True)
+    stage.call(it, "close", False)
+    assert made.checks == [("a", 1)] * 3
 
 
 async def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(stage, it):
@@ -197,7 +171,6 @@ async def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(sta
                 stage.call(it, "fill")
 
     stage.main.focus(it, Refill())
-    chain_first = chain[0]
     stage.call(it, "fill")
-    assert chain_first.ok
+    assert chain[0].ok
     assert chain[-1].ok

@@ -85,6 +85,26 @@ class Clock(Artifact):
     def has_ticks(self):
         return self.value("ticks") > 0
 
+    def on_sample(self, sample):
+        self.start(self.receive, sample)
+
+    @internal_operation
+    def receive(self, sample: int):
+        self.update_property("ticks", sample)
+
+    @operation
+    async def hold(self):
+        await self.clock.sleep(1.0)
+
+    @operation
+    def note(self):
+        self.update_property("ticks", self.value("ticks") + 1)
+
+    @operation
+    def note_later(self):
+        self.start(self.note)
+        self.start("note")
+
     @operation(name="startGuarded")
     def start_guarded(self):
         self.start(self.guarded)
@@ -93,11 +113,10 @@ class Clock(Artifact):
 pytestmark = pytest.mark.makes(it=Clock)
 
 
-async def test_a_process_continues_after_the_operation_that_started_it(stage, it):
-    watcher = stage.watch(it)
+async def test_a_process_continues_after_the_operation_that_started_it(stage, it, watcher):
     assert stage.call(it, "start", 3).ok
     await stage.clock.sleep(1.0)
-    assert watcher.notes[1:] == [
+    assert watcher.notes == [
         "-running('no') +running('yes')",
         "~tick(1)",
         "~tick(2)",
@@ -106,8 +125,7 @@ async def test_a_process_continues_after_the_operation_that_started_it(stage, it
     ]
 
 
-async def test_the_artifact_can_be_used_meanwhile(stage, it):
-    watcher = stage.watch(it)
+async def test_the_artifact_can_be_used_meanwhile(stage, it, watcher):
     stage.call(it, "start", 1000)
     await stage.clock.sleep(0.25)
     assert stage.call(it, "stop").ok
@@ -148,8 +166,7 @@ async def test_a_failing_process_is_rolled_back_and_logged_without_other_effects
     assert stage.logged("[it] operation refuses/0 failed: no way")
 
 
-async def test_a_guarded_process_waits(stage, it):
-    watcher = stage.watch(it)
+async def test_a_guarded_process_waits(stage, it, watcher):
     stage.call(it, "startGuarded")
     watcher.take()
     stage.call(it, "twice")
@@ -194,41 +211,23 @@ async def test_a_process_started_in_init_begins_when_the_artifact_exists(stage):
     assert stage.lines == []
 
 
-async def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(stage):
-    kept = []
-
-    class Sensor(Artifact):
-        def init(self):
-            self.define_property("sample", 0)
-            kept.append(self)
-
-        def on_sample(self, sample):
-            self.start(self.receive, sample)
-
-        @internal_operation
-        def receive(self, sample):
-            self.update_property("sample", sample)
-
-        @operation
-        async def hold(self):
-            await self.clock.sleep(1.0)
-
-    sensor = await stage.make(Sensor)
-    kept[0].on_sample(7)
-    assert stage.property(sensor, "sample") == (7,)
-    stage.call(sensor, "hold")
+async def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(
+    stage, it, made, watcher
+):
+    made.on_sample(7)
+    assert stage.property(it, "ticks") == (7,)
+    stage.call(it, "hold")
     await stage.clock.sleep(0.5)
-    kept[0].on_sample(8)
-    kept[0].on_sample(9)
-    assert stage.property(sensor, "sample") == (7,)
-    watcher = stage.watch(sensor)
+    made.on_sample(8)
+    made.on_sample(9)
+    assert stage.property(it, "ticks") == (7,)
     await stage.clock.sleep(1.0)
-    assert watcher.notes == ["+sample(7)", "-sample(7) +sample(8)", "-sample(8) +sample(9)"]
-    stage.main.dispose_artifact(sensor)
-    kept[0].on_sample(10)
-    kept[0].start("receive", 11, cause=Cause(1, 0, "sample", "late"))
+    assert watcher.notes == ["-ticks(0) +ticks(7)", "-ticks(7) +ticks(8)", "-ticks(8) +ticks(9)"]
+    stage.main.dispose_artifact(it)
+    made.on_sample(10)
+    made.start("receive", 11, cause=Cause(1, 0, "sample", "late"))
     with pytest.raises(InvalidArtifact, match="unknown internal operation `receive/0`"):
-        kept[0].start("receive")
+        made.start("receive")
 
 
 async def test_an_overridden_process_is_found_by_its_method(stage):
@@ -253,20 +252,6 @@ async def test_an_overridden_process_is_found_by_its_method(stage):
     assert stage.property(new, "p") == ("new",)
 
 
-async def test_an_artifact_may_start_its_ordinary_operations_too(stage):
-    class Both(Artifact):
-        def init(self):
-            self.define_property("n", 0)
-
-        @operation
-        def inc(self):
-            self.update_property("n", self.value("n") + 1)
-
-        @operation
-        def later(self):
-            self.start(self.inc)
-            self.start("inc")
-
-    both = await stage.make(Both)
-    stage.call(both, "later")
-    assert stage.property(both, "n") == (2,)
+async def test_an_artifact_may_start_its_ordinary_operations_too(stage, it):
+    stage.call(it, "note_later")
+    assert stage.property(it, "ticks") == (2,)

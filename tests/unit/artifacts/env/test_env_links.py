@@ -212,8 +212,7 @@ async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
     watcher = stage.watch(lamp)
     slow = stage.call(switch, "forward_slowly", 1.0)
     waiting = stage.call(switch, "forward", "when_on")
-    await stage.clock.sleep(0.5)
-    slow.execution.cancel()
+    await stage.after(0.5, slow.execution.cancel)
     waiting.execution.cancel()
     await stage.clock.sleep(5.0)
     assert watcher.notes == ["+power(0)", "~ended"]
@@ -224,8 +223,7 @@ async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
 async def test_disposing_the_target_fails_the_caller_and_unlinks_it(stage):
     lamp, switch = await linked(stage)
     slow = stage.call(switch, "forward_slowly", 1.0)
-    await stage.clock.sleep(0.5)
-    stage.main.dispose_artifact(lamp)
+    await stage.after(0.5, stage.main.dispose_artifact, lamp)
     await slow.wait()
     assert slow.reason == Structure("artifact_disposed", ("lamp",))
     again = await stage.ended(switch, "forward", "refuse")
@@ -369,8 +367,7 @@ async def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by
 async def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(stage):
     lamp, switch = await linked(stage)
     call = stage.call(switch, "forward_slowly", 5)
-    await stage.clock.sleep(0.1)
-    stage.main.dispose_artifact(switch)
+    await stage.after(0.1, stage.main.dispose_artifact, switch)
     await call.wait()
     assert call.reason == Structure("artifact_disposed", ("switch",))
     assert stage.main.pending(lamp) == (), "the linked operation is dropped with its caller"

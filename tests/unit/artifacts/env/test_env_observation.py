@@ -197,8 +197,7 @@ async def test_signal_names_begin_with_a_lower_case_letter(stage):
     assert "lower-case" in call.outcome.message
 
 
-async def test_annotations_of_a_property_are_published(stage, it):
-    watcher = stage.watch(it)
+async def test_annotations_of_a_property_are_published(stage, it, watcher):
     stage.call(it, "annotate")
     assert watcher.observations[-1].added[0].annotations == (Structure("frame", ("map",)),)
 

@@ -90,8 +90,7 @@ def units(stage, robot):
 
 async def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(stage, it, made):
     move = stage.call(it, "move", 5)
-    await stage.clock.sleep(1.5)
-    move.execution.pause()
+    await stage.after(1.5, move.execution.pause)
     assert move.execution.paused
     assert made.commands == [("halt", 1.5)]
     await stage.clock.sleep(10.0)
@@ -107,20 +106,16 @@ async def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(sta
 
 async def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(stage, it, made):
     move = stage.call(it, "move", 2)
-    await stage.clock.sleep(0.2)
-    move.execution.pause()
-    await stage.clock.sleep(0.3)
-    move.execution.resume()
+    await stage.after(0.2, move.execution.pause)
+    await stage.after(0.3, move.execution.resume)
     await move.wait()
     assert made.commands == [("halt", 0.2), ("lost", 0.3)]
 
 
 async def test_pausing_again_before_it_continues_keeps_it_paused(stage, it, made):
     move = stage.call(it, "move", 2)
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
-    await stage.clock.sleep(1.0)
-    move.execution.resume()
+    await stage.after(0.5, move.execution.pause)
+    await stage.after(1.0, move.execution.resume)
     move.execution.pause()
     await stage.clock.sleep(5.0)
     assert units(stage, it) == 1
@@ -132,8 +127,7 @@ async def test_pausing_again_before_it_continues_keeps_it_paused(stage, it, made
 async def test_pause_and_resume_are_idempotent(stage, it, made):
     move = stage.call(it, "move", 1)
     move.execution.resume()
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
+    await stage.after(0.5, move.execution.pause)
     move.execution.pause()
     move.execution.resume()
     move.execution.resume()
@@ -179,31 +173,32 @@ async def test_an_operation_paused_before_it_begins_does_not_begin_before_resume
 
 async def test_a_paused_operation_can_be_cancelled(stage, it, made):
     move = stage.call(it, "move", 5)
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
-    await stage.clock.sleep(5.0)
-    move.execution.cancel()
+    await stage.after(0.5, move.execution.pause)
+    await stage.after(5.0, move.execution.cancel)
     await stage.clock.sleep(1.0)
     assert move.execution.ended
     assert made._motion is None
     assert move.outcome is None
 
 
-async def test_an_operation_may_wait_for_resume_itself(stage, it, made):
-    call = stage.call(it, "waits_itself")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+async def test_an_operation_may_wait_for_resume_itself_unless_it_is_cancelled(stage, it, made):
+    first, second = stage.call(it, "waits_itself"), stage.call(it, "waits_itself")
+    await stage.after(0.5, first.execution.pause)
+    second.execution.pause()
     await stage.clock.sleep(2.0)
     assert made.commands == []
-    call.execution.resume()
-    await call.wait()
-    assert (made.commands, call.ended_at) == (["resumed"], 2.5)
+    first.execution.task.cancel()
+    first.execution.resume()
+    second.execution.resume()
+    await second.wait()
+    assert (made.commands, second.ended_at) == (["resumed"], 2.5)
+    await stage.clock.sleep(1.0)
+    assert (made.commands, first.outcome) == (["resumed"], None)
 
 
 async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stage, it):
     call = stage.call(it, "broken_callback")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+    await stage.after(0.5, call.execution.pause)
     assert call.execution.paused
     assert stage.logged("ZeroDivisionError")
     await stage.clock.sleep(5.0)
@@ -215,48 +210,29 @@ async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stag
 
 async def test_a_callback_registered_while_paused_is_called_at_once(stage, it, made):
     call = stage.call(it, "late_callback")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+    await stage.after(0.5, call.execution.pause)
     await call.wait()
     assert made.commands == ["told at once"]
 
 
-async def test_a_pause_goes_through_links(stage, it, made):
+@pytest.mark.parametrize(
+    ("operation", "target", "before"),
+    [
+        pytest.param("send", 2, 1, id="called before"),
+        pytest.param("send_later", 1, 0, id="called while paused, paused from the beginning"),
+    ],
+)
+async def test_a_pause_goes_through_links(stage, it, made, operation, target, before):
     boss = await stage.make(Boss, name="boss")
     stage.main.link(boss, "robot", it)
-    send = stage.call(boss, "send", 2)
-    await stage.clock.sleep(0.5)
-    send.execution.pause()
+    send = stage.call(boss, operation, target)
+    await stage.after(0.5, send.execution.pause)
     await stage.clock.sleep(10.0)
     assert made.commands == ["linked halt"]
-    assert units(stage, it) == 1
+    assert units(stage, it) == before
     send.execution.resume()
     await send.wait()
     assert send.ended_at == 11.5
-
-
-async def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(stage, it):
-    boss = await stage.make(Boss, name="boss")
-    stage.main.link(boss, "robot", it)
-    send = stage.call(boss, "send_later", 1)
-    await stage.clock.sleep(0.5)
-    send.execution.pause()
-    await stage.clock.sleep(10.0)
-    assert units(stage, it) == 0
-    send.execution.resume()
-    await send.wait()
-    assert send.ended_at == 11.5
-
-
-async def test_a_cancelled_wait_does_not_prevent_the_resume(stage, it, made):
-    call = stage.call(it, "waits_itself")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
-    await stage.clock.sleep(2.0)
-    call.execution.task.cancel()
-    call.execution.resume()
-    await stage.clock.sleep(1.0)
-    assert (made.commands, call.outcome) == ([], None)
 
 
 async def test_observers_may_pause_an_operation_while_they_are_notified(stage, it):
@@ -286,9 +262,5 @@ async def test_a_refused_request_can_be_treated_like_any_other(stage, it):
     refused.on_pause(lambda: None)
     refused.resume()
     refused.cancel()
-    assert (refused.ended, refused.paused, refused.pausable, refused.take_paused_time()) == (
-        True,
-        False,
-        False,
-        0.0,
-    )
+    assert (refused.ended, refused.paused, refused.pausable) == (True, False, False)
+    assert refused.take_paused_time() == 0.0

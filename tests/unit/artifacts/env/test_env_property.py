@@ -217,14 +217,13 @@ class Rooms(Artifact):
 pytestmark = pytest.mark.makes(it=Rooms)
 
 
-async def test_the_property_to_update_is_found_by_its_values(stage, it):
-    watcher = stage.watch(it)
+async def test_the_property_to_update_is_found_by_its_values(stage, it, watcher):
     names = Out()
     assert stage.call(it, "clean", "hall").ok
     assert stage.call(it, "dirty", names).ok
     assert names.value == ["kitchen"]
     assert stage.call(it, "clean_value", "kitchen").ok
-    assert watcher.notes[1:] == [
+    assert watcher.notes == [
         "-room('hall','dirty') +room('hall','clean')",
         "-room('kitchen','dirty') +room('kitchen','clean')",
     ]
@@ -232,18 +231,16 @@ async def test_the_property_to_update_is_found_by_its_values(stage, it):
     assert "no property room has the values ('cellar', None)" in call.outcome.message
 
 
-async def test_one_of_several_values_is_updated(stage, it):
-    watcher = stage.watch(it)
+async def test_one_of_several_values_is_updated(stage, it, watcher):
     assert stage.call(it, "turn", 1, 7.5).ok
-    assert watcher.notes[1:] == ["-pose(1,2) +pose(1,7.5)"]
+    assert watcher.notes == ["-pose(1,2) +pose(1,7.5)"]
     assert "IndexError" in stage.call(it, "turn", 2, 7.5).outcome.message
 
 
-async def test_more_values_and_fewer_values_than_before(stage, it):
-    watcher = stage.watch(it)
+async def test_more_values_and_fewer_values_than_before(stage, it, watcher):
     for values in [(1, 2, 3), (1,), ()]:
         assert stage.call(it, "grow", *values).ok
-    assert watcher.notes[1:] == ["-pose(1,2) +pose(1,2,3)", "-pose(1,2,3) +pose(1)", "-pose(1) +pose"]
+    assert watcher.notes == ["-pose(1,2) +pose(1,2,3)", "-pose(1,2,3) +pose(1)", "-pose(1) +pose"]
 
 
 async def test_annotations_are_added_once_and_a_later_update_is_not_lost(stage, it):

@@ -84,6 +84,16 @@ class Lane(Artifact):
         raise RuntimeError("boom")
 
     @operation
+    def sleep_in_a_plain_operation(self):
+        self.sleep(1.0).send(None)
+
+    @operation
+    async def await_a_cancelled_future(self):
+        future = asyncio.get_running_loop().create_future()
+        future.cancel()
+        await self.step(future)
+
+    @operation
     async def at_once(self):
         self._append("at once")
 
@@ -106,8 +116,7 @@ async def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(
     assert (b.ended_at, a.ended_at) == (0.93, 1.2)
 
 
-async def test_a_pause_publishes_the_changes_so_far(stage, it):
-    watcher = stage.watch(it)
+async def test_a_pause_publishes_the_changes_so_far(stage, it, watcher):
     stage.call(it, "run", "a", 2, 0.1)
     await stage.clock.sleep(0.05)
     assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
@@ -201,65 +210,39 @@ async def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(stage, i
     assert watcher.notes[-1] == "-trace([]) +trace(['a begins', 'a ends'])"
 
 
-async def test_only_a_coroutine_may_end_its_step_in_the_middle(stage):
-    kept = []
-
-    class Plain(Artifact):
-        @operation
-        def run(self):
-            kept.append(self.sleep(1.0))
-            kept[0].send(None)
-
-    call = stage.call(await stage.make(Plain), "run")
-    assert call.reason == Structure("operation_error", ("run/0",))
+async def test_only_a_coroutine_may_end_its_step_in_the_middle(stage, it):
+    call = stage.call(it, "sleep_in_a_plain_operation")
+    assert call.reason == Structure("operation_error", ("sleep_in_a_plain_operation/0",))
     assert "async def" in call.outcome.message
 
 
-async def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(stage):
-    class Held(Artifact):
-        def init(self):
-            self.define_property("p", 0)
-            kept.append(self)
-
-        @operation
-        async def hold(self):
-            await self.clock.sleep(1.0)
-
-    kept = []
-
-    held = await stage.make(Held)
-    stage.call(held, "hold")
+async def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(stage, it, made):
+    stage.call(it, "hold", "a", 1.0)
     await stage.clock.sleep(0.5)
     with pytest.raises(InvalidArtifact, match=r"self\.start"):
-        kept[0].update_property("p", 1)
+        made.update_property("trace", 1)
     with pytest.raises(InvalidArtifact, match=r"self\.start"):
-        await kept[0].sleep(1.0)
+        await made.sleep(1.0)
     with pytest.raises(InvalidArtifact, match=r"self\.start"):
-        await kept[0].step(asyncio.get_running_loop().create_future())
+        await made.step(asyncio.get_running_loop().create_future())
 
 
-async def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(stage):
-    class Waiting(Artifact):
-        @operation
-        async def wait(self):
-            future = asyncio.get_running_loop().create_future()
-            future.cancel()
-            await self.step(future)
-
-    call = await stage.ended(await stage.make(Waiting), "wait")
-    assert call.reason == Structure("operation_error", ("wait/0",))
+async def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(stage, it):
+    call = await stage.ended(it, "await_a_cancelled_future")
+    assert call.reason == Structure("operation_error", ("await_a_cancelled_future/0",))
 
 
 def test_many_operations_on_many_artifacts_run_in_the_same_order_each_time():
-    def once():
-        async def scene(stage):
-            lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]
-            for number in range(20):
-                for index, lane in enumerate(lanes):
-                    stage.call(lane, "run", f"{index}.{number}.", 3, 0.01 * (number % 7 + 1))
-            await stage.clock.sleep(10.0)
-            stage.result = [trace(stage, lane) for lane in lanes]
+    traces = []
 
-        return play(scene).result
+    async def scene(stage):
+        lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]
+        for number in range(20):
+            for index, lane in enumerate(lanes):
+                stage.call(lane, "run", f"{index}.{number}.", 3, 0.01 * (number % 7 + 1))
+        await stage.clock.sleep(10.0)
+        traces.append([trace(stage, lane) for lane in lanes])
 
-    assert once() == once()
+    play(scene)
+    play(scene)
+    assert traces[0] == traces[1]

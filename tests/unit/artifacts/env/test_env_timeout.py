@@ -62,13 +62,12 @@ async def test_an_operation_that_ends_in_time_succeeds(stage, it):
     assert stage.clock.pending() == [], "no timer is left behind"
 
 
-async def test_one_that_takes_longer_is_stopped_and_its_finally_runs(stage, it):
-    watcher = stage.watch(it)
+async def test_one_that_takes_longer_is_stopped_and_its_finally_runs(stage, it, watcher):
     call = await stage.ended(it, "work", 60, timeout=0.5)
     assert stage.elapsed == 0.5
     assert call.reason == Structure("operation_timeout", ("work/1", 500.0))
     assert call.outcome.message == "operation work/1 of artifact it did not end within 500 ms"
-    assert watcher.notes[1:] == ["-state('idle') +state('working')", "-state('working') +state('stopped')"]
+    assert watcher.notes == ["-state('idle') +state('working')", "-state('working') +state('stopped')"]
     assert call.execution.ended
     assert stage.clock.pending() == []
 
@@ -97,11 +96,9 @@ async def test_a_linked_call_is_stopped_with_its_caller(stage):
 async def test_cancelled_and_disposed_before_the_time_limit(stage, it):
     dropped, waiting = stage.call(it, "work", 60, timeout=5), stage.call(it, "guarded", timeout=5)
     gone = stage.call(it, "work", 60, timeout=5)
-    await stage.clock.sleep(1)
-    dropped.execution.cancel()
+    await stage.after(1, dropped.execution.cancel)
     waiting.execution.cancel()
-    await stage.clock.sleep(1)
-    stage.main.dispose_artifact(it)
+    await stage.after(1, stage.main.dispose_artifact, it)
     await gone.wait()
     assert gone.reason == Structure("artifact_disposed", ("it",))
     assert (dropped.outcome, waiting.outcome) == (None, None)
