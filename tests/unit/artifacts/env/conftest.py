@@ -1,7 +1,8 @@
 """A test of this folder that is a coroutine plays on a stage.
 
 Its parameters may be the ``stage``; ``it``, an artifact of the class in the mark ``makes``; ``made``, this artifact as
-its own code knows it; and ``watcher``, which observes it and has taken the first note.
+its own code knows it; and ``watcher``, which observes it and has taken the first note. Or a ``session``, and the
+``counter`` and the ``wheels`` that it has made and focuses on.
 """
 
 import inspect
@@ -21,7 +22,7 @@ def stage():
     """The place of what is made in the loop of the test."""
 
 
-it = made = watcher = stage
+it = made = watcher = session = counter = wheels = stage
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -39,6 +40,13 @@ def pytest_pyfunc_call(pyfuncitem):
         if "watcher" in names:
             given["watcher"] = stage.watch(given["it"])
             given["watcher"].take()
+        if "session" in names:
+            from session_lab import Counter, Wheels, session_in
+
+            given["session"] = session = session_in(stage)
+            for name, kind in (("wheels", Wheels), ("counter", Counter)):
+                if name in names:
+                    given[name] = session.focus(await session.make_artifact(name, kind))
         await test(**{name: given[name] for name in names})
 
     play(scene, expect_defects=pyfuncitem.get_closest_marker("expects_defects") is not None)

@@ -8,8 +8,7 @@ from session_lab import Counter, Wheels, session_in
 from jacaros.artifacts import Atom, OperationFailed, Out, Structure, WorkspaceError
 
 
-async def test_an_operation_is_awaited_and_its_result_is_seen(stage):
-    session = session_in(stage)
+async def test_an_operation_is_awaited_and_its_result_is_seen(session):
     counter = await session.make_artifact("counter", Counter, [1])
     session.focus(counter)
     assert session.value("count") == 1
@@ -30,8 +29,7 @@ async def test_types_are_found_by_name(stage):
     assert raised.value.reason == Structure("makeArtifactFailure", ("unknown_artifact_template", "Countr"))
 
 
-async def test_values_of_out_arguments_are_returned(stage):
-    session = session_in(stage)
+async def test_values_of_out_arguments_are_returned(session):
     await session.make_artifact("wheels", Wheels)
     assert await session.act("getCurrentPose", Out(), Out()) == (0.0, 0.0)
     assert await session.act("x", Out()) == 0.0
@@ -40,8 +38,7 @@ async def test_values_of_out_arguments_are_returned(stage):
         await session.act("x", Out)
 
 
-async def test_a_failure_is_raised_with_its_reason(stage):
-    session = session_in(stage)
+async def test_a_failure_is_raised_with_its_reason(session):
     await session.make_artifact("counter", Counter)
     with pytest.raises(OperationFailed, match="it never works") as raised:
         await session.act("never")
@@ -75,8 +72,7 @@ async def test_own_artifacts_come_before_focused_ones_and_those_before_others(st
     assert stage.property(own, "count") == (1,)
 
 
-async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage):
-    session = session_in(stage)
+async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage, session):
     stage.environment.create_workspace("/main/lab")
     await session.make_artifact("counter", Counter)
     session.join("lab")
