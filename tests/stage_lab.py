@@ -2,7 +2,7 @@
 
 import asyncio
 
-from jacaros.artifacts import Environment, OperationRequest, UnknownArtifactType
+from jacaros.artifacts import Environment, OperationRequest, Out, UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -108,6 +108,13 @@ class Stage:
         call = self.call(artifact_id, operation, *args, **options)
         await call.wait()
         return call
+
+    async def output(self, artifact_id, operation, *args, **options):
+        """The output, its last argument, of an operation that succeeds."""
+        out = Out()
+        call = await self.ended(artifact_id, operation, *args, out, **options)
+        assert call.ok, call.outcome
+        return out.value
 
     async def after(self, seconds, act, *args):
         """Let time pass, then do something."""

@@ -5,10 +5,12 @@ its own code knows it; and ``watcher``, which observes it and has taken the firs
 ``counter`` and the ``wheels`` that it has made and focuses on.
 """
 
+import importlib
 import inspect
 
 import pytest
 
+from jacaros.artifacts import Session
 from stage_lab import play
 
 
@@ -30,23 +32,21 @@ def pytest_pyfunc_call(pyfuncitem):
     test = pyfuncitem.obj
     if not inspect.iscoroutinefunction(test):
         return None
-    names = inspect.signature(test).parameters
+    names = inspect.signature(test).parameters.keys()
 
     async def scene(stage):
         given = {name: pyfuncitem.funcargs[name] for name in names} | {"stage": stage}
-        if not names.keys().isdisjoint(("it", "made", "watcher")):
+        if not names.isdisjoint(("it", "made", "watcher")):
             given["it"] = await stage.make(pyfuncitem.get_closest_marker("makes").kwargs["it"])
             given["made"] = stage.environment.artifact(given["it"])
         if "watcher" in names:
             given["watcher"] = stage.watch(given["it"])
             given["watcher"].take()
         if "session" in names:
-            from session_lab import Counter, Wheels, session_in
-
-            given["session"] = session = session_in(stage)
-            for name, kind in (("wheels", Wheels), ("counter", Counter)):
-                if name in names:
-                    given[name] = session.focus(await session.make_artifact(name, kind))
+            given["session"] = Session(stage.environment, "painter")
+        for name in [each for each in ("wheels", "counter") if each in names]:
+            kind = getattr(importlib.import_module("session_lab"), name.title())
+            given[name] = given["session"].focus(await given["session"].make_artifact(name, kind))
         await test(**{name: given[name] for name in names})
 
     play(scene, expect_defects=pyfuncitem.get_closest_marker("expects_defects") is not None)

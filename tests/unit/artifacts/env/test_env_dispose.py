@@ -8,7 +8,6 @@ import pytest
 from jacaros.artifacts import (
     Artifact,
     OperationRequest,
-    Session,
     Structure,
     UnknownArtifact,
     internal_operation,
@@ -81,6 +80,30 @@ class Thing(Artifact):
         await self.sleep(1.0)
         self.events.append("still here")
 
+    @operation
+    def leave(self):
+        self.define_property("last", 1)
+        self.workspace.dispose_artifact(self.id)
+        self.start(self.process)
+
+    @operation
+    async def leave_slowly(self):
+        self.workspace.dispose_artifact(self.id)
+        await self.sleep(1)
+        await self.until(lambda: False)
+
+    @operation(pausable=True)
+    async def rest(self):
+        while True:
+            await self.sleep(1.0)
+            await self.pause_point()
+
+    @operation
+    async def ignore_the_end(self):
+        while self.clock.now() < self.clock.start + 1000:
+            with suppress(asyncio.CancelledError):
+                await self.sleep(1.0)
+
     @operation(name="startProcess")
     def start_process(self):
         self.start(self.process)
@@ -94,13 +117,16 @@ class Thing(Artifact):
 
 
 pytestmark = pytest.mark.makes(it=Thing)
+HOOKS = ["dispose", "last registered", "first registered"]
+DISPOSED = Structure("artifact_disposed", ("it",))
+GONE = Structure("artifact_not_available", ("it",))
 
 
 async def test_observers_lose_all_properties(stage, it, made):
     watcher = stage.watch(it)
     stage.main.dispose_artifact(it)
     assert watcher.notes == ["+level(0) +mode('idle')", "-level(0) -mode('idle')"]
-    assert made.events == ["dispose", "last registered", "first registered"]
+    assert made.events == HOOKS
 
 
 async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage, it, made):
@@ -112,16 +138,16 @@ async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage, 
     stage.main.dispose_artifact(it)
     await stage.clock.sleep(1.0)
     assert stage.story[0] == ("main", "-level(0) -mode('idle')"), "observers first, as they knew it"
-    assert [call.reason for call in calls] == [Structure("artifact_disposed", ("it",))] * 5
+    assert [call.reason for call in calls] == [DISPOSED] * 5
     assert "was disposed before run/0 ended" in calls[0].outcome.message
-    assert made.events == ["run stopped", "run stopped", "dispose", "last registered", "first registered"]
+    assert made.events == ["run stopped", "run stopped", *HOOKS]
 
 
 async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(stage, it, made):
     call = stage.call(it, "run")
     stage.main.dispose_artifact(it)
     await call.wait()
-    assert call.reason == Structure("artifact_disposed", ("it",))
+    assert call.reason == DISPOSED
     assert "run stopped" not in made.events
 
 
@@ -139,7 +165,7 @@ async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(sta
     call = stage.call(it, "stubborn")
     await stage.after(1.0, stage.main.dispose_artifact, it)
     await call.wait()
-    assert call.reason == Structure("artifact_disposed", ("it",))
+    assert call.reason == DISPOSED
     assert stage.logged("will not stop")
 
 
@@ -154,7 +180,7 @@ async def test_processes_are_stopped(stage, it, made):
 async def test_new_operations_fail_with_artifact_not_available(stage, it):
     stage.main.dispose_artifact(it)
     call = stage.call(it, "ping")
-    assert call.reason == Structure("artifact_not_available", ("it",))
+    assert call.reason == GONE
     call.execution.cancel()
     call.execution.pause()
     call.execution.resume()
@@ -172,7 +198,7 @@ async def test_requests_to_a_disposed_artifact_are_refused(stage, it):
     ):
         with pytest.raises(UnknownArtifact) as caught:
             use()
-        assert caught.value.reason == Structure("artifact_not_available", ("it",))
+        assert caught.value.reason == GONE
 
 
 async def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(stage, it):
@@ -191,11 +217,10 @@ async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(s
 
 
 async def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(stage, it, made):
-    run, call = stage.call(it, "run"), stage.call(it, "disposeMeLater")
-    await call.wait()
+    run, call = stage.call(it, "run"), await stage.ended(it, "disposeMeLater")
     assert call.ok
     assert (run.ended_at, call.ended_at) == (1.0, 2.0)
-    assert made.events == ["run stopped", "still here", "dispose", "last registered", "first registered"]
+    assert made.events == ["run stopped", "still here", *HOOKS]
 
 
 async def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run(stage):
@@ -207,7 +232,7 @@ async def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run(stage):
     kept = stage.environment.artifact(bad)
     stage.main.dispose_artifact(bad)
     assert stage.logged("RuntimeError: hook")
-    assert kept.events == ["last registered", "first registered"]
+    assert kept.events == HOOKS[1:]
 
 
 async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage, it):
@@ -218,7 +243,7 @@ async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage, i
 
     stage.main.execute(OperationRequest(it, "wait", (), "main", None, again))
     stage.main.dispose_artifact(it)
-    assert second[0].reason == Structure("artifact_not_available", ("it",))
+    assert second[0].reason == GONE
 
 
 async def test_closing_the_environment_ends_everything_and_waits_for_it(stage, it):
@@ -233,13 +258,7 @@ async def test_closing_the_environment_ends_everything_and_waits_for_it(stage, i
     assert stage.main.artifacts() == ()
     assert stage.elapsed == 3.0, "one workspace after the other, one second each"
     for thing in kept:
-        assert thing.events == [
-            "process stopped",
-            "run stopped late",
-            "dispose",
-            "last registered",
-            "first registered",
-        ]
+        assert thing.events == ["process stopped", "run stopped late", *HOOKS]
 
 
 async def test_closing_waits_for_artifacts_that_are_ending_already(stage, it, made):
@@ -262,17 +281,11 @@ async def test_cancelling_one_wait_for_the_end_does_not_affect_others(stage, it)
     assert stage.elapsed == 2.0
 
 
-async def test_processes_started_after_the_end_do_not_begin(stage):
-    class Late(Thing):
-        @operation
-        def end(self):
-            self.workspace.dispose_artifact(self.id)
-            self.start(self.process)
-
-    late = await stage.make(Late)
-    assert stage.call(late, "end").ok
+async def test_processes_started_after_the_end_do_not_begin(stage, it, made):
+    assert stage.call(it, "leave").ok
     await stage.clock.sleep(1.0)
     assert stage.main.artifacts()[-1].name == "workspace"
+    assert made.events == HOOKS
 
 
 def test_closing_ends_the_artifacts_made_last_first():
@@ -298,76 +311,43 @@ async def test_an_artifact_can_be_disposed_through_any_workspace(stage):
         lab.lookup("it")
 
 
-async def test_an_operation_that_ignores_cancellation_is_abandoned(stage):
-    class Stubborn(Artifact):
-        @operation
-        async def go_on(self):
-            while self.clock.now() < self.clock.start + 1000:
-                with suppress(asyncio.CancelledError):
-                    await self.sleep(1.0)
-
-        def dispose(self):
-            self.log("given back")
-
-    call = stage.call(await stage.make(Stubborn), "go_on")
+async def test_an_operation_that_ignores_cancellation_is_abandoned(stage, it, made):
+    call = stage.call(it, "ignore_the_end")
     await stage.clock.sleep(1.0)
     await stage.environment.close()
     assert stage.elapsed == 21.0
-    assert call.reason == Structure("artifact_disposed", ("it",))
+    assert call.reason == DISPOSED
     assert stage.lines == [
-        "[it] operation go_on/0 did not stop within 20 s of its artifact's disposal; abandoning it",
-        "[it] given back",
+        "[it] operation ignore_the_end/0 did not stop within 20 s of its artifact's disposal; abandoning it"
     ]
+    assert made.events == HOOKS
     await stage.environment.close()
     await stage.clock.sleep(2000)
 
 
-async def test_a_paused_operation_fails_too(stage):
-    class Resting(Artifact):
-        @operation(pausable=True)
-        async def rest(self):
-            while True:
-                await self.sleep(1.0)
-                await self.pause_point()
-
-    it = await stage.make(Resting)
+async def test_a_paused_operation_fails_too(stage, it):
     call = stage.call(it, "rest")
     call.execution.pause()
     await stage.after(5.0, call.execution.pause)
     await stage.after(5.0, stage.main.dispose_artifact, it)
     await call.wait()
-    assert (stage.elapsed, call.reason) == (10.0, Structure("artifact_disposed", ("it",)))
+    assert (stage.elapsed, call.reason) == (10.0, DISPOSED)
 
 
-class Farewell(Artifact):
-    """Says something, and is gone."""
-
-    @operation
-    def leave(self):
-        self.define_property("last", 1)
-        self.workspace.dispose_artifact(self.id)
-
-
-async def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(stage):
-    it = await stage.make(Farewell)
+async def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(stage, session, it):
     seen = []
-    with Session(stage.environment, "s") as session:
-        session.focus(it)
-        session.on_change(lambda change: seen.append((change.before, change.now)))
-        await session.act("leave")
-        assert seen == [(None, (1,)), ((1,), None)]
-        assert session.focused == ()
+    session.focus(it)
+    session.on_change(lambda change: seen.append((change.name, change.before, change.now)))
+    await session.act("leave")
+    assert seen == [
+        ("last", None, (1,)),
+        ("level", (0,), None),
+        ("mode", ("idle",), None),
+        ("last", (1,), None),
+    ]
+    assert session.focused == ()
 
 
-class Lonely(Artifact):
-    @operation
-    async def leave(self):
-        self.workspace.dispose_artifact(self.id)
-        await self.sleep(1)
-        await self.until(lambda: False)
-
-
-async def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(stage):
-    outcome = await stage.call(await stage.make(Lonely), "leave").wait()
-    assert outcome.reason == Structure("artifact_disposed", ("it",))
-    assert stage.elapsed == 1
+async def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(stage, it):
+    call = await stage.ended(it, "leave_slowly")
+    assert (call.reason, stage.elapsed) == (DISPOSED, 1)

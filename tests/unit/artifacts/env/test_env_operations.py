@@ -2,14 +2,22 @@
 
 import pytest
 
-from jacaros.artifacts import UNSET, Artifact, Atom, InvalidArtifact, Out, Structure, operation
+from jacaros.artifacts import (
+    UNSET,
+    Artifact,
+    Atom,
+    InvalidArtifact,
+    OperationRequest,
+    Out,
+    Structure,
+    operation,
+)
 from jacaros.runtime.errors import InternalError
 
 
 class Counter(Artifact):
     def init(self, start: int = 0):
         self.define_property("count", start)
-        self.plain_attribute = 0
 
     @operation
     def inc(self, by: int = 1):
@@ -63,17 +71,15 @@ class Counter(Artifact):
         pass
 
     @operation
+    def greet(self, name: str, greeting: str = "hello", *more: str):
+        self.log(" ".join([greeting, name, *more]))
+
+    @operation
     def who(self, agent: Out):
         agent.set(self.caller)
 
 
 pytestmark = pytest.mark.makes(it=Counter)
-
-
-class Show(Artifact):
-    @operation
-    def greet(self, name: str, greeting: str = "hello", *more: str):
-        self.log(" ".join([greeting, name, *more]))
 
 
 async def test_a_plain_operation_has_ended_when_execute_returns(stage):
@@ -82,6 +88,8 @@ async def test_a_plain_operation_has_ended_when_execute_returns(stage):
     assert call.ok
     assert call.execution.ended
     assert stage.property(counter, "count") == (6,)
+    stage.call(counter, "inc", 10)
+    assert stage.property(counter, "count") == (16,), "default values give several arities"
 
 
 async def test_observers_are_notified_before_the_caller(stage, it):
@@ -91,38 +99,29 @@ async def test_observers_are_notified_before_the_caller(stage, it):
     assert stage.story == [("main", "-count(0) +count(1)"), ("inc", "ok")]
 
 
-async def test_default_values_of_parameters_give_several_arities(stage, it):
-    stage.call(it, "inc")
-    stage.call(it, "inc", 10)
-    assert stage.property(it, "count") == (11,)
-
-
 async def test_outputs_count_in_the_arity_and_are_set(stage, it):
-    quotient, remainder = Out(), Out()
-    assert stage.call(it, "divmod", 17, 5, quotient, remainder).ok
-    assert (quotient.value, remainder.value) == (3, 2)
+    quotient = Out()
+    assert await stage.output(it, "divmod", 17, 5, quotient) == 2
+    assert quotient.value == 3
     left = Out()
     assert stage.call(it, "unset", left).ok
     assert left.value is UNSET
     assert not left.is_set
+    assert await stage.output(it, "who", agent="bob") == "bob"
 
 
-async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage):
-    show = await stage.make(Show)
-    assert stage.call(show, "greet", "bob").ok
-    assert stage.call(show, "greet", "bob", "hi", "and", "bye").ok
-    call = stage.call(show, "greet")
-    assert call.reason == Structure("unknown_operation", (show, "greet"))
+async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage, it):
+    assert stage.call(it, "greet", "bob").ok
+    assert stage.call(it, "greet", "bob", "hi", "and", "bye").ok
+    call = stage.call(it, "greet")
+    assert call.reason == Structure("unknown_operation", (it, "greet"))
     assert "greet/any" in call.outcome.message
     assert stage.lines == ["[it] hello bob", "[it] hi bob and bye"]
 
 
 async def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(stage, it):
-    result = Out()
-    assert stage.call(it, "half", 8.0, result).ok
-    assert result.value == 4.0
-    assert stage.call(it, "root", 2, Atom("label"), result).ok
-    assert result.value == ["float", "label"]
+    assert await stage.output(it, "half", 8.0) == 4.0
+    assert await stage.output(it, "root", 2, Atom("label")) == ["float", "label"]
 
 
 @pytest.mark.parametrize(
@@ -145,30 +144,27 @@ async def test_a_wrong_argument_fails_and_is_named(stage, it, operation, argumen
     assert f"found {got}" in call.outcome.message
 
 
-async def test_an_unknown_operation_fails_with_a_suggestion(stage, it):
-    call = stage.call(it, "incc")
-    assert call.reason == Structure("unknown_operation", (it, "incc"))
-    assert "did you mean `inc`?" in call.outcome.message
-    assert "inc/0, inc/1, half/2" in call.outcome.message
+@pytest.mark.parametrize(
+    ("name", "arguments", "parts"),
+    [
+        ("incc", (), ("did you mean `inc`?", "inc/0, inc/1, half/2")),
+        ("inc", (1, 2, 3), ("unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1",)),
+    ],
+)
+async def test_an_unknown_operation_fails_with_a_suggestion(stage, it, name, arguments, parts):
+    call = stage.call(it, name, *arguments)
+    assert call.reason == Structure("unknown_operation", (it, name))
+    assert [part for part in parts if part not in call.outcome.message] == []
     assert call.execution.ended
 
 
-async def test_the_error_for_a_wrong_arity_lists_the_known_ones(stage, it):
-    call = stage.call(it, "inc", 1, 2, 3)
-    assert call.reason == Structure("unknown_operation", (it, "inc"))
-    assert "unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1" in call.outcome.message
-
-
-async def test_a_failing_operation_has_a_message_and_a_reason(stage, it):
+async def test_a_failing_operation_has_a_message_and_perhaps_a_reason(stage, it):
     call = stage.call(it, "refuse", "wrong_key", 3)
     assert call.outcome.message == "refused"
     assert call.reason == Structure("wrong_key", (3, "text", True))
-
-
-async def test_a_reason_without_arguments_is_an_atom_and_a_failure_may_have_no_reason(stage, it):
     plain = stage.call(it, "plain").reason
     assert plain == Atom("plain")
-    assert isinstance(plain, Atom)
+    assert isinstance(plain, Atom), "a reason without arguments"
     jam = stage.call(it, "jam")
     assert (jam.outcome.message, jam.reason) == ("jammed", None)
 
@@ -209,52 +205,33 @@ async def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(sta
     assert "write async def" in call.outcome.message
 
 
-async def test_the_caller_is_the_agent_that_asked(stage, it):
-    name = Out()
-    stage.call(it, "who", name, agent="bob")
-    assert name.value == "bob"
-
-
-async def test_properties_cannot_be_changed_outside_of_operations(stage):
-    kept = []
-
-    class Leaky(Artifact):
-        def init(self):
-            self.define_property("p", 1)
-            kept.append(self)
-
-    await stage.make(Leaky)
-    leaky = kept[0]
+async def test_properties_cannot_be_changed_outside_of_operations(made):
     for misuse in (
-        lambda: leaky.update_property("p", 2),
-        lambda: leaky.define_property("q", 2),
-        lambda: leaky.remove_property("p"),
-        lambda: leaky.signal("s"),
-        leaky.commit,
-        lambda: leaky.current,
+        lambda: made.update_property("count", 2),
+        lambda: made.define_property("q", 2),
+        lambda: made.remove_property("count"),
+        lambda: made.signal("s"),
+        made.commit,
+        lambda: made.current,
     ):
         with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):
             misuse()
-    assert leaky.value("p") == 1, "reading is allowed"
-    assert leaky.values("p") == (1,)
-    assert leaky.has_property("p", 1)
-    assert not leaky.has_property("p", 2)
-    assert leaky.caller is None
+    assert made.value("count") == 0, "reading is allowed"
+    assert made.values("count") == (0,)
+    assert made.has_property("count", 0)
+    assert not made.has_property("count", 2)
+    assert made.caller is None
 
 
 @pytest.mark.expects_defects
 async def test_an_error_in_the_callers_callback_is_reported_without_other_effects(stage, it):
-    call = stage.call(it, "inc")
-    call.execution.request.on_done = None
-
     def broken(outcome):
         raise ValueError("broken caller")
 
-    request = call.execution.request
-    request.on_done = broken
-    stage.main.execute(request)
+    stage.main.execute(OperationRequest(it, "inc", on_done=broken))
     assert [str(error) for error in stage.defects] == ["broken caller"]
     assert stage.call(it, "inc").ok
+    assert stage.property(it, "count") == (2,)
 
 
 async def test_a_call_from_a_callback_is_served_after_waiting_ones(stage, it):
