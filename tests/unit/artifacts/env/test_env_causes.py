@@ -94,18 +94,9 @@ async def test_the_chain_goes_through_links(stage):
     ]
 
 
-async def test_a_process_started_by_a_callback_is_caused_by_its_sample(stage):
-    kept = []
-
-    class Sensor(Lamp):
-        def init(self):
-            super().init()
-            kept.append(self)
-
-    sensor = await stage.make(Sensor)
-    watcher = stage.watch(sensor)
+async def test_a_process_started_by_a_callback_is_caused_by_its_sample(made, watcher):
     sample = Cause(1, 0, "sample", "/power")
-    kept[0].start(kept[0].sample, 7, cause=sample)
+    made.start(made.sample, 7, cause=sample)
     assert watcher.observations[-1].cause == sample
 
 

@@ -129,19 +129,17 @@ class Bursting(Artifact):
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
 @pytest.mark.parametrize("op", ["now", "at_once", "later", "within", "guarded"])
-def test_an_operation_that_raises_anything_fails_and_is_rolled_back(op, raised, message):
-    async def scene(stage):
-        it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
-        watcher = stage.watch(it)
-        call = await stage.ended(it, op)
-        assert call.reason == Structure("operation_error", (f"{op}/0",))
-        assert call.outcome.message == message.format(op=f"{op}/0")
-        assert watcher.notes == ["+count(0) +kept(1)"]
-        assert stage.call(it, "inc").ok, "the artifact goes on"
-        assert watcher.notes[1:] == ["-count(0) +count(1)"]
-
-    stage = play(scene)
+async def test_an_operation_that_raises_anything_fails_and_is_rolled_back(stage, op, raised, message):
+    it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
+    watcher = stage.watch(it)
+    call = await stage.ended(it, op)
+    assert call.reason == Structure("operation_error", (f"{op}/0",))
+    assert call.outcome.message == message.format(op=f"{op}/0")
+    assert watcher.notes == ["+count(0) +kept(1)"]
+    assert stage.call(it, "inc").ok, "the artifact goes on"
+    assert watcher.notes[1:] == ["-count(0) +count(1)"]
     assert stage.logged(f"[it] error in operation {op}/0; its step is rolled back:")
+    await stage.environment.close()
     assert not stage.logged("must not run")
     assert stage.logged("error while disposing"), "errors of dispose are the artifact's too"
 
@@ -155,16 +153,13 @@ async def test_stop_iteration_fails_an_operation_too(stage, op):
 
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(raised, message):
-    async def scene(stage):
-        it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
-        watcher = stage.watch(it)
-        assert stage.call(it, "start_process").ok
-        waiting = await stage.ended(it, "until_broken")
-        assert waiting.reason == Structure("operation_error", ("until_broken/0",))
-        assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
-
-    stage = play(scene)
+async def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(stage, raised, message):
+    it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
+    watcher = stage.watch(it)
+    assert stage.call(it, "start_process").ok
+    waiting = await stage.ended(it, "until_broken")
+    assert waiting.reason == Structure("operation_error", ("until_broken/0",))
+    assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
     assert stage.logged("[it] error in operation process/0; its step is rolled back:")
 
 
@@ -325,7 +320,7 @@ async def test_a_value_that_cannot_be_converted_rolls_back_the_step(stage):
     assert watcher.notes == ["+count(0)"]
 
 
-def test_errors_of_pause_callbacks_are_the_artifacts_own():
+async def test_errors_of_pause_callbacks_are_the_artifacts_own(stage):
     class Resting(Artifact):
         @operation(pausable=True)
         async def rest(self):
@@ -336,13 +331,10 @@ def test_errors_of_pause_callbacks_are_the_artifacts_own():
             await self.sleep(1)
             await self.pause_point()
 
-    async def scene(stage):
-        call = stage.call(await stage.make(Resting), "rest")
-        await stage.after(0.5, call.execution.pause)
-        call.execution.resume()
-        assert (await call.wait()).ok
-
-    stage = play(scene)
+    call = stage.call(await stage.make(Resting), "rest")
+    await stage.after(0.5, call.execution.pause)
+    call.execution.resume()
+    assert (await call.wait()).ok
     assert stage.logged("a pause callback of rest failed")
 
 
@@ -377,23 +369,18 @@ def test_a_ctrl_c_in_the_middle_of_a_coroutine_ends_the_run():
     signal.signal(signal.SIGINT, Handling().handler)
 
     class Busy(Artifact):
-        def init(self):
-            self.define_property("count", 0)
-
         @operation
         async def work(self):
-            self.update_property("count", 1)
+            self.define_property("count", 1)
             signal.raise_signal(signal.SIGINT)
 
+    async def interrupted(stage):
+        await stage.ended(await stage.make(Busy), "work")
+
     with pytest.raises(KeyboardInterrupt):
-        play(lambda stage: interrupted(stage, Busy))
+        play(interrupted)
     # asyncio reports the lost task when it is collected. In the middle of a later ast.parse, that makes CPython 3.11 fail.
     gc.collect()
-
-
-async def interrupted(stage, kind):
-    await stage.call(await stage.make(kind), "work").wait()
-    await stage.clock.sleep(1)
 
 
 def test_exceptions_are_described_in_words():

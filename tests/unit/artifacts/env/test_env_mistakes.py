@@ -5,7 +5,6 @@ import asyncio
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, Out, internal_operation, operation
-from stage_lab import play
 
 
 def made(**members):
@@ -82,17 +81,13 @@ pytestmark = pytest.mark.makes(it=Careless)
         ("undefined", (), 'add it with self.define_property("on", ...)'),
     ],
 )
-async def test_an_error_of_an_author_is_reported_with_a_fix(stage, operation_name, arguments, told):
-    call = stage.call(await stage.make(Careless), operation_name, *arguments)
-    assert told in call.outcome.message
+async def test_an_error_of_an_author_is_reported_with_a_fix(stage, it, operation_name, arguments, told):
+    assert told in stage.call(it, operation_name, *arguments).outcome.message
 
 
-def test_an_operation_called_without_await_is_reported():
-    async def scene(stage):
-        careless = await stage.make(Careless)
-        assert (await stage.call(careless, "rest").wait()).ok
-
-    assert play(scene).logged("self.rest() has no effect without await")
+async def test_an_operation_called_without_await_is_reported(stage, it):
+    assert (await stage.call(it, "rest").wait()).ok
+    assert stage.logged("self.rest() has no effect without await")
 
 
 async def test_a_signal_without_an_agent_is_reported(stage, it):
