@@ -57,6 +57,14 @@ async def test_a_slow_init_that_fails_leaves_nothing_behind(stage):
     await stage.make(Counter)
 
 
+class Lingering(Artifact):
+    async def init(self):
+        try:
+            await self.sleep(100.0)
+        finally:
+            await self.sleep(1.0)
+
+
 async def test_creation_can_be_cancelled_and_leaves_nothing_behind(stage):
     making = asyncio.ensure_future(stage.make(Slow))
     await stage.after(0.5, making.cancel)
@@ -75,13 +83,6 @@ async def test_closing_during_a_creation_cancels_it(stage):
 
 
 async def test_a_name_can_be_reused_while_a_cancelled_creation_ends(stage):
-    class Lingering(Artifact):
-        async def init(self):
-            try:
-                await self.sleep(100.0)
-            finally:
-                await self.sleep(1.0)
-
     first = stage.main.create("it", Lingering)
     await stage.after(0.5, first.cancel)
     await stage.clock.sleep(0.1)
@@ -91,13 +92,6 @@ async def test_a_name_can_be_reused_while_a_cancelled_creation_ends(stage):
 
 
 async def test_a_creation_that_is_ended_twice_ends_once(stage):
-    class Lingering(Artifact):
-        async def init(self):
-            try:
-                await self.sleep(100.0)
-            finally:
-                await self.sleep(1.0)
-
     making = asyncio.ensure_future(stage.make(Lingering))
     await stage.clock.sleep(0.5)
     closing = asyncio.ensure_future(stage.environment.close())

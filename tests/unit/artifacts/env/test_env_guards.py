@@ -69,16 +69,6 @@ def level(stage, store):
     return stage.property(store, "level")[0]
 
 
-async def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_becomes_true(stage, it):
-    take = stage.call(it, "take", 3)
-    stage.call(it, "fill", 2)
-    assert take.outcome is None
-    stage.call(it, "fill", 2)
-    assert take.ok
-    assert level(stage, it) == 1
-    assert stage.call(it, "take", 1).ok, "a guard that is true at once does not delay"
-
-
 async def test_a_step_completes_before_the_operations_that_it_enables(stage, it):
     stage.watch(it)
     stage.call(it, "take", 1)
@@ -90,16 +80,6 @@ async def test_a_step_completes_before_the_operations_that_it_enables(stage, it)
         ("main", "-level(1) +level(0)"),
         ("take", "ok"),
     ]
-
-
-async def test_waiting_operations_are_served_in_the_order_of_arrival_if_they_are_enabled(stage, it):
-    takes = [stage.call(it, "take", 2, agent=name) for name in ("a", "b", "c")]
-    small = stage.call(it, "take", 1)
-    stage.call(it, "fill", 4)
-    assert [take.ok for take in takes] == [True, True, False]
-    assert not small.ok
-    stage.call(it, "fill", 1)
-    assert (takes[2].ok, small.ok) == (False, True), "it does not wait for a blocked one before it"
 
 
 async def test_a_bounded_buffer_loses_nothing(stage, it):

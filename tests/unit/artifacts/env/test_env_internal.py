@@ -113,18 +113,6 @@ class Clock(Artifact):
 pytestmark = pytest.mark.makes(it=Clock)
 
 
-async def test_a_process_continues_after_the_operation_that_started_it(stage, it, watcher):
-    assert stage.call(it, "start", 3).ok
-    await stage.clock.sleep(1.0)
-    assert watcher.notes == [
-        "-running('no') +running('yes')",
-        "~tick(1)",
-        "~tick(2)",
-        "~tick(3)",
-        "-running('yes') +running('no')",
-    ]
-
-
 async def test_the_artifact_can_be_used_meanwhile(stage, it, watcher):
     stage.call(it, "start", 1000)
     await stage.clock.sleep(0.25)

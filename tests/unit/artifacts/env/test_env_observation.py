@@ -120,15 +120,6 @@ async def test_focusing_an_artifact_without_properties_is_silent(stage):
     assert stage.watch(await stage.make(Artifact)).notes == []
 
 
-async def test_each_observer_gets_every_change_in_one_order(stage, it):
-    alice, bob = stage.watch(it, "alice"), stage.watch(it, "bob")
-    stage.call(it, "inc", agent="alice")
-    stage.main.stop_focus(it, bob)
-    stage.call(it, "inc", agent="bob")
-    assert alice.notes == ["+count(0)", "-count(0) +count(1)", "-count(1) +count(2)"]
-    assert bob.notes == ["+count(0)", "-count(0) +count(1)", "-count(1)"]
-
-
 async def test_a_property_added_and_removed_in_one_step_is_not_published(stage, it, watcher):
     stage.call(it, "flash")
     stage.call(it, "quiet")

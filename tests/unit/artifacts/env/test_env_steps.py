@@ -105,17 +105,6 @@ def trace(stage, lane):
     return stage.property(lane, "trace")[0]
 
 
-async def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(stage, it):
-    a = stage.call(it, "run", "a", 3, 0.4)
-    await stage.clock.sleep(0.13)
-    b = stage.call(it, "run", "b", 2, 0.4)
-    await stage.clock.sleep(0.13)
-    assert stage.call(it, "mark", "x").ok
-    await a.wait()
-    assert trace(stage, it) == ["a1", "b1", "x", "a2", "b2", "a3"]
-    assert (b.ended_at, a.ended_at) == (0.93, 1.2)
-
-
 async def test_a_pause_publishes_the_changes_so_far(stage, it, watcher):
     stage.call(it, "run", "a", 2, 0.1)
     await stage.clock.sleep(0.05)
