@@ -50,13 +50,6 @@ async def test_an_asynchronous_init_makes_the_artifact_available_at_its_end(stag
     assert stage.property(slow, "ready") == (True,)
 
 
-async def test_a_slow_init_that_fails_leaves_nothing_behind(stage):
-    assert (await why(stage.make(Slow, True)))[:2] == ("init_failed", "it")
-    await stage.clock.sleep(1.0)
-    assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
-    await stage.make(Counter)
-
-
 class Lingering(Artifact):
     async def init(self):
         try:
@@ -65,11 +58,16 @@ class Lingering(Artifact):
             await self.sleep(1.0)
 
 
-async def test_creation_can_be_cancelled_and_leaves_nothing_behind(stage):
-    making = asyncio.ensure_future(stage.make(Slow))
-    await stage.after(0.5, making.cancel)
-    await stage.clock.sleep(0.1)
-    assert making.cancelled()
+@pytest.mark.parametrize("end", ["fails", "is cancelled"])
+async def test_a_slow_creation_that_does_not_succeed_leaves_nothing_behind(stage, end):
+    making = asyncio.ensure_future(stage.make(Slow, end == "fails"))
+    await stage.clock.sleep(0.5)
+    if end == "fails":
+        assert (await why(making))[:2] == ("init_failed", "it")
+    else:
+        making.cancel()
+    await stage.clock.sleep(1.0)
+    assert making.cancelled() == (end == "is cancelled")
     assert sorted(stage.lines) == ["[it] cleaned", "[it] process stopped"]
     await stage.make(Counter)
 

@@ -47,26 +47,19 @@ async def test_the_cause_of_the_creation_is_that_of_its_processes(stage):
     assert watcher.observations[0].cause == why
 
 
-async def test_the_creator_is_the_caller_in_init(stage):
-    class Curious(Artifact):
-        def init(self):
-            self.define_property("maker", self.caller)
-
-    assert stage.property(await stage.make(Curious, creator="bob"), "maker") == ("bob",)
-
-
 def test_artifacts_know_their_workspace_in_init():
     class Curious(Artifact):
         def init(self):
-            self.define_property(
-                "told", self.name, self.workspace.path, self.workspace.name, self.clock.virtual
-            )
+            workspace = self.workspace
+            self.define_property("told", self.name, workspace.path, workspace.name, self.clock.virtual)
             self.define_property("lent", self.resources["lent"])
+            self.define_property("maker", self.caller)
 
     async def scene(stage):
-        curious = await stage.make(Curious)
+        curious = await stage.make(Curious, creator="bob")
         assert stage.property(curious, "told") == ("it", "/main", "main", True)
         assert stage.property(curious, "lent") == ("this",)
+        assert stage.property(curious, "maker") == ("bob",)
 
     play(scene, lent="this")
 
@@ -91,9 +84,17 @@ async def test_an_artifact_can_make_others(stage):
     assert held.ok
 
 
-async def test_init_cannot_be_called_by_agents(stage):
+async def test_init_cannot_be_called_by_agents_unless_it_is_an_operation_too(stage):
+    class Restart(Artifact):
+        @operation
+        def init(self, start: int):
+            self.define_property("start", start)
+
     counter = await stage.make(Counter)
     assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
+    restart = await stage.make(Restart, 1, name="restart")
+    assert stage.call(restart, "init", 2).ok
+    assert len(stage.main.properties(restart)) == 2
 
 
 class Several(Artifact):
@@ -138,17 +139,6 @@ def test_two_inits_with_the_same_arity_are_an_error():
 
             @initializer
             def again(self, start): ...
-
-
-async def test_an_init_that_is_an_operation_too_can_be_called_by_agents(stage):
-    class Restart(Artifact):
-        @operation
-        def init(self, start: int):
-            self.define_property("start", start)
-
-    it = await stage.make(Restart, 1)
-    assert stage.call(it, "init", 2).ok
-    assert len(stage.main.properties(it)) == 2
 
 
 async def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones(stage):

@@ -64,20 +64,15 @@ async def test_a_workspace_that_exists_or_has_no_parent_is_refused(stage):
         stage.environment.workspace("/main/lab")
 
 
-async def test_each_workspace_has_names_of_its_own(stage):
+async def test_each_workspace_has_names_of_its_own_and_ids_are_valid_in_the_whole_environment(stage):
     lab = stage.environment.create_workspace("/main/lab")
     here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
     assert stage.main.lookup("it") is here
     assert lab.lookup("it") is there
     assert (here.path, there.path) == ("/main/it", "/main/lab/it")
-
-
-async def test_ids_are_valid_in_the_whole_environment(stage):
-    lab = stage.environment.create_workspace("/main/lab")
-    there = await lab.make_artifact("it", Counter)
     watcher = stage.watch(there)
     assert stage.call(there, "inc").ok
-    assert watcher.notes[-1] == "-count(0) +count(1)"
+    assert watcher.notes[-1] == "-count(100) +count(101)"
     assert stage.main.observers(there) == (watcher,)
 
 
