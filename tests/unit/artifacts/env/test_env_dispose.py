@@ -13,7 +13,6 @@ from jacaros.artifacts import (
     internal_operation,
     operation,
 )
-from stage_lab import play
 
 
 class Thing(Artifact):
@@ -151,14 +150,16 @@ async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(
     assert "run stopped" not in made.events
 
 
-async def test_the_hook_waits_for_the_last_operation_to_end(stage, it, made):
+async def test_processes_are_stopped_and_the_hook_waits_for_the_last_operation_to_end(stage, it, made):
     call = stage.call(it, "run_long")
+    stage.call(it, "startProcess")
     await stage.after(1.0, stage.main.dispose_artifact, it)
     await stage.clock.sleep(0.5)
-    assert (made.events, call.outcome) == ([], None)
+    assert (made.events, call.outcome) == (["process stopped"], None)
     await stage.clock.sleep(1.0)
-    assert made.events[:2] == ["run stopped late", "dispose"]
+    assert made.events == ["process stopped", "run stopped late", *HOOKS]
     assert call.ended_at == 2.0
+    assert stage.lines == []
 
 
 async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(stage, it):
@@ -169,25 +170,13 @@ async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(sta
     assert stage.logged("will not stop")
 
 
-async def test_processes_are_stopped(stage, it, made):
-    stage.call(it, "startProcess")
-    await stage.after(1.0, stage.main.dispose_artifact, it)
-    await stage.clock.sleep(1.0)
-    assert made.events[0] == "process stopped"
-    assert stage.lines == []
-
-
-async def test_new_operations_fail_with_artifact_not_available(stage, it):
+async def test_a_disposed_artifact_is_not_available_and_its_name_can_be_reused(stage, it):
     stage.main.dispose_artifact(it)
     call = stage.call(it, "ping")
     assert call.reason == GONE
     call.execution.cancel()
     call.execution.pause()
     call.execution.resume()
-
-
-async def test_requests_to_a_disposed_artifact_are_refused(stage, it):
-    stage.main.dispose_artifact(it)
     for use in (
         lambda: stage.main.dispose_artifact(it),
         lambda: stage.watch(it),
@@ -199,14 +188,10 @@ async def test_requests_to_a_disposed_artifact_are_refused(stage, it):
         with pytest.raises(UnknownArtifact) as caught:
             use()
         assert caught.value.reason == GONE
-
-
-async def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(stage, it):
-    stage.main.dispose_artifact(it)
     new = await stage.make(Thing)
     assert stage.main.lookup("it") is new
     assert stage.call(new, "ping").ok
-    assert not stage.call(it, "ping").ok
+    assert not stage.call(it, "ping").ok, "the old id does not mean the new artifact"
 
 
 async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage, it, watcher, made):
@@ -246,10 +231,15 @@ async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage, i
     assert second[0].reason == GONE
 
 
-async def test_closing_the_environment_ends_everything_and_waits_for_it(stage, it):
+async def test_an_artifact_is_disposed_through_any_workspace_and_closing_the_environment_waits_for_all(
+    stage, it
+):
     lab = stage.environment.create_workspace("/main/lab")
-    second = await lab.make_artifact("it", Thing)
+    second, third = await lab.make_artifact("it", Thing), await lab.make_artifact("third", Thing)
     kept = [stage.environment.artifact(artifact) for artifact in (it, second)]
+    stage.main.dispose_artifact(third)
+    with pytest.raises(UnknownArtifact):
+        lab.lookup("third")
     for artifact in (it, second):
         stage.call(artifact, "run_long")
         stage.call(artifact, "startProcess")
@@ -288,27 +278,15 @@ async def test_processes_started_after_the_end_do_not_begin(stage, it, made):
     assert made.events == HOOKS
 
 
-def test_closing_ends_the_artifacts_made_last_first():
-    order = []
-
+async def test_closing_ends_the_artifacts_made_last_first(stage):
     class Ordered(Artifact):
         def dispose(self):
-            order.append(self.name)
+            self.log("disposed")
 
-    async def scene(stage):
-        for name in ("a", "b", "c"):
-            await stage.make(Ordered, name=name)
-
-    play(scene)
-    assert order == ["c", "b", "a"]
-
-
-async def test_an_artifact_can_be_disposed_through_any_workspace(stage):
-    lab = stage.environment.create_workspace("/main/lab")
-    thing = await lab.make_artifact("it", Thing)
-    stage.main.dispose_artifact(thing)
-    with pytest.raises(UnknownArtifact):
-        lab.lookup("it")
+    for name in ("a", "b", "c"):
+        await stage.make(Ordered, name=name)
+    await stage.environment.close()
+    assert stage.lines == ["[c] disposed", "[b] disposed", "[a] disposed"]
 
 
 async def test_an_operation_that_ignores_cancellation_is_abandoned(stage, it, made):

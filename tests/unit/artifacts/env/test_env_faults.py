@@ -221,65 +221,54 @@ async def test_an_incomplete_failure_is_a_failure_too(stage):
         assert "expected a functor as reason" in call.outcome.message
 
 
-class Meddling(Artifact):
-    def init(self):
-        self.define_property("count", 0)
-
-    @operation(guard="updating")
-    def a(self): ...
-
-    @operation(guard="signalling")
-    async def b(self): ...
-
-    @operation(guard="defining")
-    def c(self): ...
-
-    @operation(guard="waiting")
-    def d(self): ...
-
-    @operation
-    async def e(self):
-        await self.until(self.updating)
-
-    @operation
-    async def f(self):
-        await self.until(True)
-
-    @operation
-    async def g(self):
-        await self.until(self.waits)
-
-    def updating(self):
-        self.update_property("count", 1)
-
-    def signalling(self):
-        self.signal("tick")
-
-    def defining(self):
-        self.define_property("more", 1)
-
-    def waiting(self):
-        return self.waits()
-
-    async def waits(self): ...
+async def waits(artifact): ...
 
 
-pytestmark = pytest.mark.makes(it=Meddling)
+def meddling(look):
+    class Meddling(Artifact):
+        def init(self):
+            self.define_property("count", 0)
+
+        @operation(guard="look")
+        def guarded(self): ...
+
+        @operation(guard="look")
+        async def guarded_coroutine(self): ...
+
+        @operation
+        async def waiting(self):
+            await self.until(self.look)
+
+        @operation
+        async def waiting_for_a_value(self):
+            await self.until(True)
+
+        def look(self):
+            return look(self)
+
+    return Meddling
 
 
-async def test_a_guard_must_not_change_anything(stage, it):
+@pytest.mark.parametrize(
+    ("look", "said"),
+    [
+        (lambda it: it.update_property("count", 1), "updating property count is not possible within a guard"),
+        (lambda it: it.signal("tick"), "the signal tick is not possible within a guard"),
+        (lambda it: it.define_property("more", 1), "defining property more is not possible within a guard"),
+        (waits, "expected a plain def as guard"),
+    ],
+)
+async def test_a_guard_must_not_change_anything(stage, look, said):
+    it = await stage.make(meddling(look))
     watcher = stage.watch(it)
-    for op, said in [
-        ("a", "updating property count is not possible within a guard"),
-        ("b", "the signal tick is not possible within a guard"),
-        ("c", "defining property more is not possible within a guard"),
-        ("d", "expected a plain def as guard"),
-        ("e", "updating property count is not possible within a guard"),
-        ("f", "expected a function in until"),
-        ("g", "expected a plain def as guard"),
+    for op, told in [
+        ("guarded", said),
+        ("guarded_coroutine", said),
+        ("waiting", said),
+        ("waiting_for_a_value", "expected a function in until"),
     ]:
         call = await stage.ended(it, op)
-        assert said in call.outcome.message
+        assert told in call.outcome.message
         assert call.reason == Structure("operation_error", (f"{op}/0",))
     assert watcher.notes == ["+count(0)"]
 

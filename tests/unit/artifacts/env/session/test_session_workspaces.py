@@ -26,13 +26,9 @@ async def test_workspaces_are_joined_and_left(stage, session):
     assert raised.value.reason == Structure("workspace_not_joined", ("lab",))
     with pytest.raises(OperationFailed, match="/main/lab has not been joined"):
         session.focus("/main/lab/counter")
-
-
-async def test_a_session_begins_in_its_home(stage):
-    stage.environment.create_workspace("/main/lab")
     with pytest.raises(UnknownWorkspace):
         session_in(stage, home="/main/lob")
-    assert session_in(stage, home="/main/lab").joined == ("/main/lab",)
+    assert session_in(stage, home="/main/lab").joined == ("/main/lab",), "it begins in its home"
 
 
 async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage, session):
@@ -46,16 +42,12 @@ async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage, session):
     assert session.value("count") == 1
 
 
-async def test_what_was_quit_cannot_be_quit_again(session):
+async def test_outside_all_workspaces_nothing_can_be_done_but_join(session):
+    await session.make_artifact("counter", Counter)
     session.quit("main")
     with pytest.raises(OperationFailed) as failure:
         session.quit("main")
     assert failure.value.reason == Structure("workspace_not_joined", ("main",))
-
-
-async def test_outside_all_workspaces_nothing_can_be_done_but_join(session):
-    await session.make_artifact("counter", Counter)
-    session.quit("main")
     for request in (session.act("inc"), session.act("inc", artifact="counter")):
         with pytest.raises(OperationFailed, match="workspace /main has not been joined; join it first"):
             await request
