@@ -35,7 +35,7 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 def test_importing_the_package_imports_nothing_else_of_it() -> None:
     code = "import sys, jacaros; print(sorted(m for m in sys.modules if m.startswith('jacaros')))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "['jacaros', 'jacaros.runtime.exports']"
+    assert done.stdout.strip() == "['jacaros', 'jacaros.runtime', 'jacaros.runtime.exports']"
 
 
 def test_a_program_without_python_code_does_not_import_the_extension() -> None:
