@@ -2,7 +2,7 @@
 
 import asyncio
 
-from jacaros.artifacts import Environment, OperationRequest, UnknownArtifactType
+from jacaros.artifacts import Environment, OperationRequest, Out, UnknownArtifactType
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -102,6 +102,24 @@ class Stage:
         request = OperationRequest(artifact_id, operation, args, agent, cause, call.on_done, timeout)
         call.execution = self.main.execute(request)
         return call
+
+    async def ended(self, artifact_id, operation, *args, **options):
+        """A call whose outcome has been reported."""
+        call = self.call(artifact_id, operation, *args, **options)
+        await call.wait()
+        return call
+
+    async def output(self, artifact_id, operation, *args, **options):
+        """The output, its last argument, of an operation that succeeds."""
+        out = Out()
+        call = await self.ended(artifact_id, operation, *args, out, **options)
+        assert call.ok, call.outcome
+        return out.value
+
+    async def after(self, seconds, act, *args):
+        """Let time pass, then do something."""
+        await self.clock.sleep(seconds)
+        act(*args)
 
     def property(self, artifact_id, name):
         """Values of the first property of that name, as observers know them."""

@@ -93,6 +93,16 @@ def pair(graph: Any, _pairs: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
     return _pairs[id(graph)]
 
 
+@pytest.fixture
+def left(pair: tuple[Any, Any]) -> Any:
+    return pair[0]
+
+
+@pytest.fixture
+def right(pair: tuple[Any, Any]) -> Any:
+    return pair[1]
+
+
 @pytest.fixture(scope="session")
 def _uses() -> Counter[str]:
     return Counter()

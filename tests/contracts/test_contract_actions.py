@@ -31,7 +31,13 @@ def serving(graph: Any, pair: Pair, name: str, behaviour: str = "count", **polic
     return left, right
 
 
-def test_a_goal_gives_feedback_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
+def under_way(graph, client, name, key=None):
+    """Send a goal that lasts, and wait until its code runs."""
+    client.send_goal(key or name, name, SLOW, timeout=60)
+    graph.wait_until(lambda: client.feedback(key or name), "the goal is under way")
+
+
+def test_a_goal_gives_feedback_and_a_result(graph, pair, topic):
     left, right = serving(graph, pair, topic)
     goal_id = left.send_goal(topic, topic, {"target": 3, "period": 0.05}, timeout=60)
     assert goal_id
@@ -47,7 +53,7 @@ def test_a_goal_gives_feedback_and_a_result(graph: Any, pair: Pair, topic: str) 
     assert told == [], "the topics of an action carry what they should"
 
 
-def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph: Any, pair: Pair, topic: str) -> None:
+def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph, pair, topic):
     left, _ = serving(graph, pair, topic)
     left.send_goal(topic, topic, {"target": 2, "period": 0.1}, timeout=60)
     for waiter in ("a", "b"):
@@ -57,15 +63,14 @@ def test_the_outcome_is_known_to_all_who_wait_and_who_ask_later(graph: Any, pair
     assert [end["result"]["last"] for end in ends] == [2, 2, 2]
 
 
-def test_no_result_means_the_defaults(graph: Any, pair: Pair, topic: str) -> None:
+def test_no_result_means_the_defaults(graph, pair, topic):
     left, _ = serving(graph, pair, topic, "nothing")
     left.send_goal(topic, topic, None, timeout=60)
     end = left.outcome(topic, timeout=60)
     assert end == {"status": "succeeded", "result": {"last": 0, "message": ""}, "text": ""}
 
 
-def test_each_node_serves_the_other_and_itself(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_each_node_serves_the_other_and_itself(graph, left, right, topic):
     serving(graph, (left, right), topic + "/right")
     serving(graph, (right, left), topic + "/left")
     for client, name in ((left, "/right"), (right, "/left"), (left, "/left")):
@@ -75,7 +80,7 @@ def test_each_node_serves_the_other_and_itself(graph: Any, pair: Pair, topic: st
         assert client.outcome(key, timeout=60)["result"]["last"] == 1
 
 
-def test_several_goals_run_concurrently(graph: Any, pair: Pair, topic: str) -> None:
+def test_several_goals_run_concurrently(graph, pair, topic):
     left, right = serving(graph, pair, topic, "count_together")
     for target in (4, 3, 2):
         left.send_goal(f"{topic}{target}", topic, {"target": target, "period": 0.1}, timeout=60)
@@ -86,7 +91,7 @@ def test_several_goals_run_concurrently(graph: Any, pair: Pair, topic: str) -> N
     assert [deed[0] for deed in right.deeds(topic)] == ["begin"] * 3 + ["end"] * 3
 
 
-def test_two_clients_get_what_is_theirs(graph: Any, pair: Pair, topic: str) -> None:
+def test_two_clients_get_what_is_theirs(graph, pair, topic):
     left, right = serving(graph, pair, topic)
     graph.wait_until(lambda: right.action_ready(topic), "the action is found by its own node")
     left.send_goal(topic, topic, {"target": 3, "period": 0.1}, timeout=60)
@@ -98,10 +103,9 @@ def test_two_clients_get_what_is_theirs(graph: Any, pair: Pair, topic: str) -> N
     assert (left.feedback(topic), right.feedback(topic)) == ([1, 2, 3], [1, 2])
 
 
-def test_a_goal_can_be_cancelled(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_goal_can_be_cancelled(graph, pair, topic):
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
+    under_way(graph, left, topic)
     assert left.cancel_goal(topic, timeout=60) is True
     end = left.outcome(topic, timeout=60)
     assert (end["status"], end["result"]["last"]) == ("canceled", 0)
@@ -110,7 +114,7 @@ def test_a_goal_can_be_cancelled(graph: Any, pair: Pair, topic: str) -> None:
     assert left.cancel_goal(topic, timeout=60) is False  # it is over
 
 
-def test_a_cancelled_goal_may_have_a_result(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_cancelled_goal_may_have_a_result(graph, pair, topic):
     left, _ = serving(graph, pair, topic, "count_and_tell_where")
     left.send_goal(topic, topic, SLOW, timeout=60)
     graph.wait_until(lambda: len(left.feedback(topic)) >= 2, "the goal is under way")
@@ -121,7 +125,7 @@ def test_a_cancelled_goal_may_have_a_result(graph: Any, pair: Pair, topic: str) 
 
 
 @pytest.mark.needs("refusing goals")
-def test_a_server_may_refuse_to_cancel(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_server_may_refuse_to_cancel(graph, pair, topic):
     left, _ = serving(graph, pair, topic, may_cancel=False)
     left.send_goal(topic, topic, {"target": 8, "period": 0.1}, timeout=60)
     graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
@@ -129,10 +133,9 @@ def test_a_server_may_refuse_to_cancel(graph: Any, pair: Pair, topic: str) -> No
     assert left.outcome(topic, timeout=60)["status"] == "succeeded"
 
 
-def test_a_newer_goal_takes_over_where_goals_preempt(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_newer_goal_takes_over_where_goals_preempt(graph, pair, topic):
     left, right = serving(graph, pair, topic, "count_and_tell_where", preempt=True)
-    left.send_goal(topic + "old", topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
+    under_way(graph, left, topic, topic + "old")
     left.send_goal(topic + "new", topic, {"target": 1, "period": 0.05}, timeout=60)
     old, new = left.outcome(topic + "old", timeout=60), left.outcome(topic + "new", timeout=60)
     assert (old["status"], old["result"]["message"]) == ("aborted", "stopped")
@@ -141,12 +144,9 @@ def test_a_newer_goal_takes_over_where_goals_preempt(graph: Any, pair: Pair, top
     assert right.deeds(topic) == [["begin", 500], ["end", 500, False], ["begin", 1], ["end", 1, False]]
 
 
-def test_a_goal_is_sent_when_the_cancelled_one_before_it_has_ended(
-    graph: Any, pair: Pair, topic: str
-) -> None:
+def test_a_goal_is_sent_when_the_cancelled_one_before_it_has_ended(graph, pair, topic):
     left, right = serving(graph, pair, topic, "stop_slowly")
-    left.send_goal(topic + "old", topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
+    under_way(graph, left, topic, topic + "old")
     assert left.cancel_goal(topic + "old", timeout=60) is True
     left.send_goal(topic + "new", topic, {"target": 1, "period": 0.05}, timeout=60)
     assert left.outcome(topic + "old", timeout=60)["status"] == "canceled"
@@ -154,8 +154,7 @@ def test_a_goal_is_sent_when_the_cancelled_one_before_it_has_ended(
     assert right.deeds(topic) == [["begin", 500], ["end", 500, True], ["begin", 1], ["end", 1, False]]
 
 
-def test_goals_that_wait_for_their_server_arrive_in_their_order(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_goals_that_wait_for_their_server_arrive_in_their_order(graph, left, right, topic):
     targets = [1, 2, 3, 4, 5]
     for target in targets:
         left.begin_send(f"{topic}{target}", topic, {"target": target, "period": 0.01}, timeout=LOST)
@@ -166,10 +165,9 @@ def test_goals_that_wait_for_their_server_arrive_in_their_order(graph: Any, pair
     assert [deed[1] for deed in right.deeds(topic) if deed[0] == "begin"] == targets
 
 
-def test_a_preempted_goal_says_why(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_preempted_goal_says_why(graph, pair, topic):
     left, _ = serving(graph, pair, topic, preempt=True)
-    left.send_goal(topic + "old", topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic + "old"), "the old goal is under way")
+    under_way(graph, left, topic, topic + "old")
     left.send_goal(topic + "new", topic, {"target": 1}, timeout=60)
     old = left.outcome(topic + "old", timeout=60)
     assert (old["status"], old["text"]) == ("aborted", "preempted by a newer goal")
@@ -177,14 +175,14 @@ def test_a_preempted_goal_says_why(graph: Any, pair: Pair, topic: str) -> None:
 
 
 @pytest.mark.needs("refusing goals")
-def test_a_goal_can_be_rejected(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_goal_can_be_rejected(graph, pair, topic):
     left, right = serving(graph, pair, topic)
     with pytest.raises(GoalRejected, match=topic):
         left.send_goal(topic, topic, {"target": -1}, timeout=60)
     assert right.deeds(topic) == []
 
 
-def test_aborting_sends_a_text_and_a_result(graph: Any, pair: Pair, topic: str) -> None:
+def test_aborting_sends_a_text_and_a_result(graph, pair, topic):
     left, _ = serving(graph, pair, topic, "give_up")
     left.send_goal(topic, topic, {"target": 3}, timeout=60)
     assert left.outcome(topic, timeout=60) == {
@@ -194,7 +192,7 @@ def test_aborting_sends_a_text_and_a_result(graph: Any, pair: Pair, topic: str) 
     }
 
 
-def test_aborting_needs_no_result(graph: Any, pair: Pair, topic: str) -> None:
+def test_aborting_needs_no_result(graph, pair, topic):
     left, _ = serving(graph, pair, topic, "give_up_without_a_result")
     left.send_goal(topic, topic, {"target": 3}, timeout=60)
     end = left.outcome(topic, timeout=60)
@@ -209,9 +207,7 @@ def test_aborting_needs_no_result(graph: Any, pair: Pair, topic: str) -> None:
         ("tell_wrongly", "no field 'currant'"),
     ],
 )
-def test_code_that_fails_aborts_its_goal(
-    graph: Any, pair: Pair, topic: str, behaviour: str, said: str
-) -> None:
+def test_code_that_fails_aborts_its_goal(graph, pair, topic, behaviour, said):
     topic = f"{topic}/{behaviour}"
     left, right = serving(graph, pair, topic, behaviour)
     left.send_goal(topic, topic, {"target": 1}, timeout=60)
@@ -224,7 +220,7 @@ def test_code_that_fails_aborts_its_goal(
     assert left.outcome(topic + "again", timeout=60)["status"] == "aborted"
 
 
-def test_waiting_for_the_outcome_can_time_out_without_harm(graph: Any, pair: Pair, topic: str) -> None:
+def test_waiting_for_the_outcome_can_time_out_without_harm(graph, pair, topic):
     left, _ = serving(graph, pair, topic)
     left.send_goal(topic, topic, SLOW, timeout=60)
     with pytest.raises(CallTimedOut, match=r"still active after 0\.3 s"):
@@ -233,16 +229,14 @@ def test_waiting_for_the_outcome_can_time_out_without_harm(graph: Any, pair: Pai
     assert left.outcome(topic, timeout=60)["status"] == "canceled"
 
 
-def test_a_missing_server_is_unavailable_after_the_time_out(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_missing_server_is_unavailable_after_the_time_out(graph, left, topic):
     assert left.action_ready(topic) is False
     with pytest.raises(ServerUnavailable, match=rf"{topic}.*within 0\.3 s"):
         left.send_goal(topic, topic, {"target": 1}, timeout=0.3)
     assert f"waiting for the action {topic} (jacaros_interfaces/action/Count)" in left.log()
 
 
-def test_a_server_that_comes_late_gets_the_goal(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_server_that_comes_late_gets_the_goal(graph, left, right, topic):
     left.begin_send(topic, topic, {"target": 2, "period": 0.01}, timeout=60)
     graph.pass_time(0.2)
     right.serve_action(topic)
@@ -250,8 +244,7 @@ def test_a_server_that_comes_late_gets_the_goal(graph: Any, pair: Pair, topic: s
     assert left.outcome(topic, timeout=60)["result"]["last"] == 2
 
 
-def test_sending_can_be_cancelled_while_waiting_for_the_server(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_sending_can_be_cancelled_while_waiting_for_the_server(graph, left, right, topic):
     left.begin_send(topic, topic, SLOW)
     graph.pass_time(0.1)
     assert left.give_up_send(topic) is True
@@ -262,7 +255,7 @@ def test_sending_can_be_cancelled_while_waiting_for_the_server(graph: Any, pair:
     assert [deed[:2] for deed in right.deeds(topic)] == [["begin", 1], ["end", 1]]
 
 
-def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, topic: str) -> None:
+def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph, pair, topic):
     left, right = serving(graph, pair, topic)
     left.begin_send(topic, topic, SLOW)
     if not left.give_up_send(topic):  # it was accepted before that, as it happens
@@ -279,10 +272,9 @@ def test_giving_up_a_goal_that_was_just_sent_cancels_it(graph: Any, pair: Pair, 
     graph.wait_until(none_is_under_way, "the abandoned goal is not active")
 
 
-def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, topic: str) -> None:
+def test_closing_the_server_aborts_what_is_under_way(graph, pair, topic):
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
+    under_way(graph, left, topic)
     right.unserve_action(topic)
     end = left.outcome(topic, timeout=60)
     assert (end["status"], end["text"]) == ("aborted", "the server was closed")
@@ -292,10 +284,9 @@ def test_closing_the_server_aborts_what_is_under_way(graph: Any, pair: Pair, top
         left.send_goal(topic, topic, SLOW, timeout=0.3)
 
 
-def test_closing_the_client_cancels_its_goals(graph: Any, pair: Pair, topic: str) -> None:
+def test_closing_the_client_cancels_its_goals(graph, pair, topic):
     left, right = serving(graph, pair, topic)
-    left.send_goal(topic, topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
+    under_way(graph, left, topic)
     left.begin_outcome(topic)
     left.close_action_client(topic)
     with pytest.raises(CallFailed, match="closed"):
@@ -304,12 +295,10 @@ def test_closing_the_client_cancels_its_goals(graph: Any, pair: Pair, topic: str
 
 
 @pytest.mark.needs("dying servers")
-def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_server_that_dies_is_lost(graph, left, topic):
     mortal = graph.peer("mortal_server")
     serving(graph, (left, mortal), topic)
-    left.send_goal(topic, topic, SLOW, timeout=60)
-    graph.wait_until(lambda: left.feedback(topic), "the goal is under way")
+    under_way(graph, left, topic)
     left.begin_outcome(topic)
     graph.kill(mortal)
     graph.wait_until(lambda: left.outcome_known(topic), "the loss is noticed", LOST)
@@ -326,8 +315,7 @@ def test_a_server_that_dies_is_lost(graph: Any, pair: Pair, topic: str) -> None:
     assert left.outcome(topic + "again", timeout=60)["status"] == "succeeded"
 
 
-def test_a_client_that_dies_does_the_server_no_harm(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_client_that_dies_does_the_server_no_harm(graph, left, right, topic):
     mortal = graph.peer("mortal_client")
     serving(graph, (mortal, right), topic)
     mortal.send_goal(topic, topic, {"target": 5, "period": 0.1}, timeout=60)
@@ -338,8 +326,7 @@ def test_a_client_that_dies_does_the_server_no_harm(graph: Any, pair: Pair, topi
     assert left.outcome(topic, timeout=60)["status"] == "succeeded"
 
 
-def test_names_are_resolved(graph: Any, pair: Pair) -> None:
-    _, right = pair
+def test_names_are_resolved(graph, right):
     robot = graph.peer("counting_brain", namespace="counting_robot")
     assert robot.serve_action("count") == "/counting_robot/count"
     graph.wait_until(lambda: right.action_ready("/counting_robot/count"), "the action is found")
@@ -347,8 +334,7 @@ def test_names_are_resolved(graph: Any, pair: Pair) -> None:
     assert right.outcome("names", timeout=60)["status"] == "succeeded"
 
 
-def test_goals_are_checked_before_they_are_sent(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_goals_are_checked_before_they_are_sent(graph, left, topic):
     assert left.goal_message(topic, target=7) == {"target": 7, "period": 0.0}
     with pytest.raises(MessageMismatch, match="no field 'goal'"):
         left.send_goal(topic, topic, {"goal": 7}, timeout=1)
@@ -356,16 +342,14 @@ def test_goals_are_checked_before_they_are_sent(graph: Any, pair: Pair, topic: s
         left.send_goal(topic, topic, {"target": 1.5}, timeout=1)
 
 
-def test_an_unknown_action_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_an_unknown_action_type_is_refused(graph, left, right, topic):
     with pytest.raises(UnknownInterface, match="no_actions/action/Nothing"):
         right.serve_action(topic, type_name="no_actions/action/Nothing")
     with pytest.raises(UnknownInterface, match="no_actions/action/Nothing"):
         left.action_ready(topic, "no_actions/action/Nothing")
 
 
-def test_a_server_of_another_type_is_not_used(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_server_of_another_type_is_not_used(graph, left, right, topic):
     right.serve_action(topic, "nothing", "nav2_msgs/action/NavigateToPose")
     graph.pass_time(0.5)
     with pytest.raises(ServiceError, match=topic):

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-Pair = tuple[Any, Any]
 TWIST = "geometry_msgs/msg/Twist"
 FAST = {"linear": {"x": 0.5}}
 STOP = {"linear": {"x": 0.0}, "angular": {"z": 0.125}}  # the mark tells it from other zeros
@@ -46,66 +45,58 @@ def assert_stopped(graph: Any, watcher: Any, topic: str) -> None:
     assert is_stop(messages[-1]), "the stop is the last word"
 
 
-def test_closing_stops_the_robot(graph: Any, pair: Pair, topic: str) -> None:
-    _, watcher = pair
-    driver = driving(graph, watcher, topic)
+def test_closing_stops_the_robot(graph, right, topic):
+    driver = driving(graph, right, topic)
     driver.close()
-    assert_stopped(graph, watcher, topic)
+    assert_stopped(graph, right, topic)
 
 
-def test_a_failing_hook_keeps_no_other_back(graph: Any, pair: Pair, topic: str) -> None:
-    _, watcher = pair
+def test_a_failing_hook_keeps_no_other_back(graph, right, topic):
     driver = graph.peer("driver_with_a_broken_hook")
     driver.advertise(topic, TWIST)
-    watcher.subscribe(topic, TWIST)
+    right.subscribe(topic, TWIST)
     graph.wait_until(lambda: driver.subscription_count(topic) == 1, "they know each other")
-    graph.wait_until(lambda: watcher.publisher_count(topic) == 1, "they know each other")
+    graph.wait_until(lambda: right.publisher_count(topic) == 1, "they know each other")
     driver.failing_hook()
     driver.hook(topic, STOP)
     driver.close()
-    assert_stopped(graph, watcher, topic)
+    assert_stopped(graph, right, topic)
     assert "an exit hook failed: ValueError: this hook is broken" in driver.log()
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 @pytest.mark.parametrize("how", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_signal_stops_the_robot(graph: Any, pair: Pair, topic: str, how: str) -> None:
-    _, watcher = pair
-    driver = driving(graph, watcher, f"{topic}/{how}")
+def test_a_signal_stops_the_robot(graph, right, topic, how):
+    driver = driving(graph, right, f"{topic}/{how}")
     driver.signal(signal.Signals[how])
     code = driver.wait()
-    assert_stopped(graph, watcher, f"{topic}/{how}")
+    assert_stopped(graph, right, f"{topic}/{how}")
     assert code == {"SIGINT": -2, "SIGTERM": 143, "SIGHUP": 129}[how]
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
 @pytest.mark.parametrize(("how", "code"), [("exception", 1), ("exit", 7), ("return", 0)])
-def test_the_end_of_the_program_stops_the_robot(
-    graph: Any, pair: Pair, topic: str, how: str, code: int
-) -> None:
-    _, watcher = pair
-    driver = driving(graph, watcher, f"{topic}/{how}")
+def test_the_end_of_the_program_stops_the_robot(graph, right, topic, how, code):
+    driver = driving(graph, right, f"{topic}/{how}")
     getattr(driver, how)()
     assert driver.wait() == code
-    assert_stopped(graph, watcher, f"{topic}/{how}")
+    assert_stopped(graph, right, f"{topic}/{how}")
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
-def test_a_busy_program_stops_the_robot_at_a_signal(graph: Any, pair: Pair, topic: str) -> None:
-    _, watcher = pair
-    driver = driving(graph, watcher, topic)
+def test_a_busy_program_stops_the_robot_at_a_signal(graph, right, topic):
+    driver = driving(graph, right, topic)
     driver.busy()
     driver.signal(signal.SIGTERM)
     assert driver.wait() == 143
-    assert_stopped(graph, watcher, topic)
+    assert_stopped(graph, right, topic)
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
-def test_a_closed_node_costs_nothing(graph: Any, pair: Pair, topic: str) -> None:
-    _, watcher = pair
+def test_a_closed_node_costs_nothing(graph, right, topic):
     node = graph.peer("resting")
     node.advertise(topic, TWIST)
-    watcher.subscribe(topic, TWIST)
+    right.subscribe(topic, TWIST)
     graph.wait_until(lambda: node.subscription_count(topic) == 1, "they know each other")
     node.close()
     graph.pass_time(0.3)  # the ends of its threads
@@ -115,38 +106,34 @@ def test_a_closed_node_costs_nothing(graph: Any, pair: Pair, topic: str) -> None
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
-def test_the_last_message_reaches_a_late_receiver_although_its_publisher_is_closed(
-    graph: Any, pair: Pair, topic: str
-) -> None:
-    left, watcher = pair
-    watcher.subscribe(topic, TWIST)
+def test_the_last_message_reaches_a_late_receiver_although_its_publisher_is_closed(graph, left, right, topic):
+    right.subscribe(topic, TWIST)
     for number in range(1, 6):  # whether it is lost otherwise is a race in the receiver
         left.advertise(topic, TWIST)
         graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")
         left.publish(topic, FAST, times=2)
         last = {"linear": {"x": 0.0}, "angular": {"z": float(number)}}
-        with late(graph, watcher):
+        with late(graph, right):
             left.publish(topic, last)
             left.unadvertise(topic)
         graph.wait_until(
-            lambda last=last: last["angular"]["z"] in [m["angular"]["z"] for m in watcher.received(topic)],
+            lambda last=last: last["angular"]["z"] in [m["angular"]["z"] for m in right.received(topic)],
             f"message {number} arrives",
         )
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
-def test_a_signal_stops_a_robot_that_receives_late(graph: Any, pair: Pair, topic: str) -> None:
-    _, watcher = pair
+def test_a_signal_stops_a_robot_that_receives_late(graph, right, topic):
     for name in ("first", "second", "third"):
-        driver = driving(graph, watcher, f"{topic}/{name}")
-        with late(graph, watcher):
+        driver = driving(graph, right, f"{topic}/{name}")
+        with late(graph, right):
             driver.signal(signal.SIGTERM)
         assert driver.wait() == 143
-        assert_stopped(graph, watcher, f"{topic}/{name}")
+        assert_stopped(graph, right, f"{topic}/{name}")
 
 
 @pytest.mark.only("ros1", "ros2", "rosbridge-ros2")
-def test_a_signal_cancels_goals_of_a_server_that_receives_late(graph: Any, topic: str) -> None:
+def test_a_signal_cancels_goals_of_a_server_that_receives_late(graph, topic):
     server = graph.peer("late_server")
     server.serve_action(topic)
     for target in (1001, 1002, 1003):
@@ -160,18 +147,17 @@ def test_a_signal_cancels_goals_of_a_server_that_receives_late(graph: Any, topic
 
 
 @pytest.mark.only("ros2")
-def test_the_last_line_of_the_log_reaches_a_late_receiver(graph: Any, pair: Pair) -> None:
-    _, watcher = pair
-    watcher.subscribe("/rosout", "rcl_interfaces/msg/Log", depth=1000, durability="transient_local")
+def test_the_last_line_of_the_log_reaches_a_late_receiver(graph, right):
+    right.subscribe("/rosout", "rcl_interfaces/msg/Log", depth=1000, durability="transient_local")
 
     def heard(text: str) -> bool:
-        return any(message["msg"] == text for message in watcher.received("/rosout"))
+        return any(message["msg"] == text for message in right.received("/rosout"))
 
     for number in range(3):
         speaker = graph.peer(f"speaker_{number}")
         speaker.rosout("info", f"first line {number}")
         graph.wait_until(lambda number=number: heard(f"first line {number}"), "they know each other")
-        with late(graph, watcher):
+        with late(graph, right):
             speaker.rosout("info", f"last line {number}")
             speaker.signal(signal.SIGTERM)
         assert speaker.wait() == 143

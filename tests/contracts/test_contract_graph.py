@@ -7,19 +7,16 @@ from expected import CAPABILITIES
 
 from jacaros.robots.ros.errors import RosError
 
-Pair = tuple[Any, Any]
 ADD = "example_interfaces/srv/AddTwoInts"
 COUNT = "jacaros_interfaces/action/Count"
 
 
-def test_the_capabilities_are_those_that_were_promised(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_the_capabilities_are_those_that_were_promised(graph, left):
     assert set(left.capabilities()) == CAPABILITIES[graph.kind]
 
 
 @pytest.mark.needs("contents")
-def test_topics_are_seen_with_their_types_and_ends(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_topics_are_seen_with_their_types_and_ends(graph, left, right, topic):
     left.advertise(topic, "sensor_msgs/msg/LaserScan", reliability="best_effort", depth=3)
     right.subscribe(topic, "sensor_msgs/msg/LaserScan", reliability="best_effort", depth=7)
 
@@ -42,8 +39,7 @@ def test_topics_are_seen_with_their_types_and_ends(graph: Any, pair: Pair, topic
 
 
 @pytest.mark.needs("contents")
-def test_a_topic_without_endpoints_is_gone(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_topic_without_endpoints_is_gone(graph, left, right, topic):
     left.advertise(topic, "std_msgs/msg/Int32")
     graph.wait_until(lambda: right.contents()["topics"].get(topic, {}).get("publishers"), "the topic is seen")
     left.unadvertise(topic)
@@ -53,16 +49,14 @@ def test_a_topic_without_endpoints_is_gone(graph: Any, pair: Pair, topic: str) -
 
 
 @pytest.mark.needs("contents", "services")
-def test_services_are_seen(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_services_are_seen(graph, left, right, topic):
     right.serve(topic)
     graph.wait_until(lambda: topic in left.contents()["services"], "the service is seen")
     assert left.contents()["services"][topic] in (ADD, "jacaros_interfaces/srv/AddTwoInts", "")
 
 
 @pytest.mark.needs("contents", "actions")
-def test_actions_are_seen_but_not_what_they_are_made_of(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_actions_are_seen_but_not_what_they_are_made_of(graph, left, right, topic):
     right.serve_action(topic)
     graph.wait_until(lambda: left.contents()["actions"].get(topic) == COUNT, "the action is seen")
     seen = left.contents()
@@ -73,8 +67,7 @@ def test_actions_are_seen_but_not_what_they_are_made_of(graph: Any, pair: Pair, 
 
 
 @pytest.mark.needs("contents")
-def test_nodes_are_seen(graph: Any, pair: Pair) -> None:
-    left, right = pair
+def test_nodes_are_seen(graph, left, right):
     graph.wait_until(
         lambda: {graph.node_of(left), graph.node_of(right)} <= set(left.contents()["nodes"]),
         "both nodes are seen",
@@ -84,8 +77,7 @@ def test_nodes_are_seen(graph: Any, pair: Pair) -> None:
 
 
 @pytest.mark.needs("contents", "rosout")
-def test_internal_topics_are_omitted(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_internal_topics_are_omitted(graph, left):
     left.rosout("info", "plumbing")
     seen = left.contents()
     assert not {"/rosout", "/parameter_events"} & set(seen["topics"])
@@ -94,8 +86,7 @@ def test_internal_topics_are_omitted(graph: Any, pair: Pair) -> None:
 
 
 @pytest.mark.needs("rosout")
-def test_lines_reach_the_log_of_the_graph(graph: Any, pair: Pair) -> None:
-    left, right = pair
+def test_lines_reach_the_log_of_the_graph(graph, left, right):
     ros1 = left.ros_version() == 1
     right.subscribe("/rosout", "rosgraph_msgs/msg/Log" if ros1 else "rcl_interfaces/msg/Log", depth=1000)
     numbers = (1, 2, 4, 8, 16) if ros1 else (10, 20, 30, 40, 50)

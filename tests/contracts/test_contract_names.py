@@ -1,13 +1,9 @@
 """Contract: names, namespaces, capabilities, messages and transforms."""
 
-from typing import Any
-
 import pytest
 
-Pair = tuple[Any, Any]
 
-
-def test_names_are_resolved_in_the_namespace(graph: Any) -> None:
+def test_names_are_resolved_in_the_namespace(graph):
     robot = graph.peer("brain", namespace="robot1", remap={"scan": "/front/scan", "~x": "y"})
     assert robot.node_name() == "/robot1/brain"
     assert robot.resolve("odom") == "/robot1/odom"
@@ -18,8 +14,7 @@ def test_names_are_resolved_in_the_namespace(graph: Any) -> None:
 
 
 @pytest.mark.needs("services")
-def test_namespaces_reach_the_graph(graph: Any, pair: Pair, own_name: str) -> None:
-    _, right = pair
+def test_namespaces_reach_the_graph(graph, right, own_name):
     robot = graph.peer("brain2", namespace=f"/{own_name}", remap={"scan": f"/other/{own_name}"})
     assert robot.advertise("odom", "std_msgs/msg/Int32") == f"/{own_name}/odom"
     assert robot.advertise("scan", "std_msgs/msg/Int32") == f"/other/{own_name}"
@@ -33,7 +28,7 @@ def test_namespaces_reach_the_graph(graph: Any, pair: Pair, own_name: str) -> No
     assert right.call(f"/{own_name}/brain2/add", {"a": 1, "b": 2}, timeout=60) == {"sum": 3}
 
 
-def test_two_robots_do_not_receive_each_others_messages(graph: Any, own_name: str) -> None:
+def test_two_robots_do_not_receive_each_others_messages(graph, own_name):
     one = graph.peer("one", namespace=f"{own_name}/r1")
     two = graph.peer("two", namespace=f"{own_name}/r2")
     for robot in (one, two):
@@ -47,14 +42,12 @@ def test_two_robots_do_not_receive_each_others_messages(graph: Any, own_name: st
     assert two.received("cmd") == [{"data": "two"}]
 
 
-def test_a_started_node_is_connected(pair: Pair) -> None:
-    left, _ = pair
+def test_a_started_node_is_connected(left):
     assert left.connected() is True
     assert left.connection() == [True]
 
 
-def test_fields_are_described_alike_everywhere(pair: Pair) -> None:
-    left, _ = pair
+def test_fields_are_described_alike_everywhere(left):
     assert left.fields("geometry_msgs/Twist") == {
         "linear": "geometry_msgs/msg/Vector3",
         "angular": "geometry_msgs/msg/Vector3",
@@ -71,16 +64,14 @@ def test_fields_are_described_alike_everywhere(pair: Pair) -> None:
     assert left.fields("std_msgs/msg/Empty") == {}
 
 
-def test_messages_are_made_without_a_topic(pair: Pair) -> None:
-    left, _ = pair
+def test_messages_are_made_without_a_topic(left):
     message = left.message("geometry_msgs/PoseStamped", header={"stamp": 1.5}, pose={"position": {"x": 1}})
     assert message["header"]["stamp"] == {"sec": 1, "nanosec": 500_000_000}
     assert message["pose"]["position"] == {"x": 1.0, "y": 0.0, "z": 0.0}
     assert message["pose"]["orientation"]["w"] == 1.0
 
 
-def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
-    left, right = pair
+def test_transforms_are_broadcast(graph, left, right):
     right.subscribe("/tf", "tf2_msgs/msg/TFMessage")
 
     def arrives() -> bool:
@@ -93,8 +84,7 @@ def test_transforms_are_broadcast(graph: Any, pair: Pair) -> None:
     assert transform["transform"]["rotation"]["w"] == 1.0
 
 
-def test_static_transforms_wait_for_late_receivers(graph: Any, pair: Pair) -> None:
-    left, right = pair
+def test_static_transforms_wait_for_late_receivers(graph, left, right):
     left.broadcast("laser", static=True)
     left.broadcast("camera", static=True)
     right.subscribe("/tf_static", "tf2_msgs/msg/TFMessage", durability="transient_local", depth=1)

@@ -12,7 +12,6 @@ import pytest
 
 from jacaros.robots.ros.errors import CallTimedOut
 
-Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros1", "ros2")
 
 
@@ -41,8 +40,7 @@ def native(graph: Any) -> Iterator[None]:
         process.stdout.close()
 
 
-def test_a_plain_node_echoes_our_message(graph: Any, pair: Pair, native: None) -> None:
-    left, _ = pair
+def test_a_plain_node_echoes_our_message(graph, left, native):
     left.advertise("/native/in", "nav_msgs/msg/Odometry")
     left.subscribe("/native/out", "nav_msgs/msg/Odometry")
     graph.wait_until(lambda: left.subscription_count("/native/in") == 1, "the plain node listens")
@@ -58,24 +56,19 @@ def test_a_plain_node_echoes_our_message(graph: Any, pair: Pair, native: None) -
     assert message["header"]["stamp"] == {"sec": 7, "nanosec": 250_000_000}
 
 
-def test_a_plain_nodes_latched_map_reaches_us(graph: Any, pair: Pair, native: None) -> None:
-    _, right = pair
+def test_a_plain_nodes_latched_map_reaches_us(graph, right, native):
     right.subscribe("/native/map", "nav_msgs/msg/OccupancyGrid", durability="transient_local", depth=1)
     graph.wait_until(lambda: right.received("/native/map"), "the map arrives")
     assert right.received("/native/map")[0]["data"] == [0, 100, -1]
 
 
-def test_a_plain_nodes_map_reaches_a_subscription_that_asks_for_what_is_available(
-    graph: Any, pair: Pair, native: None
-) -> None:
-    _, right = pair
+def test_a_plain_nodes_map_reaches_a_subscription_that_asks_for_what_is_available(graph, right, native):
     right.subscribe("/native/map", "nav_msgs/msg/OccupancyGrid", durability="best_available")
     graph.wait_until(lambda: right.received("/native/map"), "the map arrives")
     assert right.received("/native/map")[0]["data"] == [0, 100, -1]
 
 
-def test_we_call_a_plain_nodes_service(graph: Any, pair: Pair, native: None) -> None:
-    left, _ = pair
+def test_we_call_a_plain_nodes_service(graph, left, native):
     answers: list[Any] = []
 
     def answered() -> bool:
@@ -88,8 +81,7 @@ def test_we_call_a_plain_nodes_service(graph: Any, pair: Pair, native: None) -> 
     assert answers == [{"sum": 42}]
 
 
-def test_a_plain_node_calls_our_service(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_plain_node_calls_our_service(graph, left, topic):
     left.serve(topic)
     answer = subprocess.run(
         [*program(graph), topic],

@@ -6,7 +6,6 @@ import pytest
 
 from jacaros.robots.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServiceError
 
-Pair = tuple[Any, Any]
 pytestmark = pytest.mark.needs("parameters")
 
 
@@ -38,10 +37,7 @@ def name(own_name: str) -> str:
         ("bools", [True, False], [True]),
     ],
 )
-def test_a_parameter_is_read_and_changed_by_others(
-    graph: Any, pair: Pair, name: str, kind: str, first: Any, second: Any
-) -> None:
-    left, right = pair
+def test_a_parameter_is_read_and_changed_by_others(graph, left, right, name, kind, first, second):
     having(right, f"{name}_{kind}", first)
     node = right.node_name()
     assert left.get_parameter(f"{name}_{kind}", node, timeout=60) == first
@@ -51,8 +47,7 @@ def test_a_parameter_is_read_and_changed_by_others(
 
 
 @pytest.mark.needs("own parameters")
-def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> None:
-    left, _ = pair
+def test_a_node_reads_and_changes_its_own(graph, left, name):
     having(left, name, 1)
     left.set_parameter(name, 2, timeout=60)
     assert left.get_parameter(name, timeout=60) == 2
@@ -60,8 +55,7 @@ def test_a_node_reads_and_changes_its_own(graph: Any, pair: Pair, name: str) -> 
 
 
 @pytest.mark.needs("own parameters")
-def test_names_are_reported(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_names_are_reported(graph, left, right, name):
     for ending in ("b", "a"):
         having(right, f"{name}_{ending}", 1)
     names = left.parameter_names(right.node_name(), timeout=60)
@@ -70,8 +64,7 @@ def test_names_are_reported(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_an_unknown_parameter_is_reported(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_an_unknown_parameter_is_reported(graph, left, right, name):
     with pytest.raises(ParameterUnknown, match=f"{right.node_name()}.*{name}"):
         left.get_parameter(name, right.node_name(), timeout=60)
     with pytest.raises(ParameterUnknown, match=name):
@@ -79,8 +72,7 @@ def test_an_unknown_parameter_is_reported(graph: Any, pair: Pair, name: str) -> 
 
 
 @pytest.mark.needs("own parameters")
-def test_a_parameter_that_was_not_declared_cannot_be_set(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_a_parameter_that_was_not_declared_cannot_be_set(graph, left, right, name):
     if "declared parameters" in left.capabilities():
         with pytest.raises(ParameterUnknown, match=name):
             left.set_parameter(name, 1, right.node_name(), timeout=60)
@@ -90,8 +82,7 @@ def test_a_parameter_that_was_not_declared_cannot_be_set(graph: Any, pair: Pair,
 
 
 @pytest.mark.needs("own parameters")
-def test_values_that_no_parameter_holds_are_refused(graph: Any, pair: Pair, name: str) -> None:
-    left, _ = pair
+def test_values_that_no_parameter_holds_are_refused(graph, left, name):
     having(left, name, 1)
     for value in (None, {"a": 1}, [1, "a"], [[1]]):
         with pytest.raises(ParameterRefused):
@@ -99,8 +90,7 @@ def test_values_that_no_parameter_holds_are_refused(graph: Any, pair: Pair, name
     assert left.get_parameter(name, timeout=60) == 1
 
 
-def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_declaring_is_for_where_parameters_are_declared(graph, left, right, name):
     if "declared parameters" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="declare"):
             left.declare(name, 1)
@@ -112,8 +102,7 @@ def test_declaring_is_for_where_parameters_are_declared(graph: Any, pair: Pair, 
         left.declare(name, 1, node=right.node_name())
 
 
-def test_a_declaration_is_taken_back(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_a_declaration_is_taken_back(graph, left, right, name):
     if "declared parameters" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="withdrawn"):
             left.withdraw(name)
@@ -133,8 +122,7 @@ def test_a_declaration_is_taken_back(graph: Any, pair: Pair, name: str) -> None:
     right.set_parameter(f"{name}_even", 5, left.node_name(), timeout=60)
 
 
-def test_numbers_and_ranges_have_their_limits(graph: Any, pair: Pair, name: str) -> None:
-    left, _ = pair
+def test_numbers_and_ranges_have_their_limits(graph, left, name):
     if "declared parameters" not in left.capabilities():
         return
     for default in (2**63, [2**63]):
@@ -148,85 +136,47 @@ def test_numbers_and_ranges_have_their_limits(graph: Any, pair: Pair, name: str)
         left.set_parameter(name, [], timeout=60)
 
 
-def declaring(pair: Pair, name: str, default: Any, **more: Any) -> tuple[Any, str] | None:
-    """Let the right peer declare a parameter; None, after a look at the refusal, where that cannot be."""
-    left, right = pair
-    if "declared parameters" in right.capabilities():
-        assert right.declare(name, default, **more) == default
-        return left, right.node_name()
-    with pytest.raises(CapabilityMissing, match="declare"):
-        right.declare(name, default, **more)
-    return None
+@pytest.mark.parametrize(
+    ("default", "rules", "accepted", "refused", "why"),
+    [
+        pytest.param(1, {}, [], ["one"], "", id="type"),
+        pytest.param(0.5, {"minimum": 0.0, "maximum": 1.0}, [1.0], [1.5, -0.5], "", id="range"),
+        pytest.param([], {}, [["a"]], [[1]], "", id="type of an empty list, alone one of texts"),
+        pytest.param(5, {"minimum": 1}, [1_000_000], [0], "", id="open range"),
+        pytest.param("fixed", {"read_only": True}, [], ["loose"], "read-only", id="read-only"),
+        pytest.param(2, {"only_even": True}, [4], [3], "it is odd", id="refused by the node"),
+    ],
+)
+def test_a_parameter_keeps_to_its_declaration(left, right, name, default, rules, accepted, refused, why):
+    if "declared parameters" not in right.capabilities():
+        with pytest.raises(CapabilityMissing, match="declare"):
+            right.declare(name, default, **rules)
+        return
+    assert right.declare(name, default, **rules) == default
+    node = right.node_name()
+    for value in accepted:
+        left.set_parameter(name, value, node, timeout=60)
+    for value in refused:
+        with pytest.raises(ParameterRefused, match=why or name):
+            left.set_parameter(name, value, node, timeout=60)
+        if "read_only" in rules:
+            with pytest.raises(ParameterRefused, match=why):
+                right.set_parameter(name, value, timeout=60)
+    assert left.get_parameter(name, node, timeout=60) == [default, *accepted][-1]
 
 
-def test_a_parameter_keeps_its_type(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, 1)) is not None:
-        left, node = declared
-        with pytest.raises(ParameterRefused, match=name):
-            left.set_parameter(name, "one", node, timeout=60)
-        assert left.get_parameter(name, node, timeout=60) == 1
-
-
-def test_a_parameter_stays_in_its_range(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, 0.5, minimum=0.0, maximum=1.0)) is not None:
-        left, node = declared
-        left.set_parameter(name, 1.0, node, timeout=60)
-        for value in (1.5, -0.5):
-            with pytest.raises(ParameterRefused, match=name):
-                left.set_parameter(name, value, node, timeout=60)
-        assert left.get_parameter(name, node, timeout=60) == 1.0
-
-
-def test_an_empty_list_has_a_type(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, [])) is not None:  # alone it is one of texts
-        left, node = declared
-        left.set_parameter(name, ["a"], node, timeout=20)
-        with pytest.raises(ParameterRefused, match=name):
-            left.set_parameter(name, [1], node, timeout=20)
-        assert left.get_parameter(name, node, timeout=20) == ["a"]
-
-
-def test_a_range_may_be_open(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, 5, minimum=1)) is not None:
-        left, node = declared
-        left.set_parameter(name, 1_000_000, node, timeout=60)
-        with pytest.raises(ParameterRefused, match=name):
-            left.set_parameter(name, 0, node, timeout=60)
-
-
-def test_a_read_only_parameter_is_not_changed(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, "fixed", read_only=True)) is not None:
-        left, node = declared
-        with pytest.raises(ParameterRefused, match="read-only"):
-            left.set_parameter(name, "loose", node, timeout=60)
-        with pytest.raises(ParameterRefused, match="read-only"):
-            pair[1].set_parameter(name, "loose", timeout=60)
-        assert left.get_parameter(name, node, timeout=60) == "fixed"
-
-
-def test_a_node_may_refuse_a_value(graph: Any, pair: Pair, name: str) -> None:
-    if (declared := declaring(pair, name, 2, only_even=True)) is not None:
-        left, node = declared
-        with pytest.raises(ParameterRefused, match="it is odd"):
-            left.set_parameter(name, 3, node, timeout=60)
-        left.set_parameter(name, 4, node, timeout=60)
-        assert left.get_parameter(name, node, timeout=60) == 4
-
-
-def test_a_default_that_breaks_its_declaration_is_refused(graph: Any, pair: Pair, name: str) -> None:
-    _, right = pair
+def test_a_default_that_breaks_its_declaration_is_refused(graph, right, name):
     error = ParameterRefused if "declared parameters" in right.capabilities() else CapabilityMissing
     with pytest.raises(error):
         right.declare(name, 7, minimum=0, maximum=5)
 
 
 @pytest.mark.needs("given parameters")
-def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: str) -> None:
+def test_given_values_take_the_place_of_defaults(graph, left, name):
     """Of a launch file: where parameters are declared they count when that is done, else they are there at once."""
     given = {f"{name}_a": 0.25, f"{name}_b": ["x", "y"], f"{name}_c": 1, f"{name}_d": 7, f"{name}_e": []}
     # Tried again, the test has a node of another name: parameters are asked for by it.
     tuned = graph.peer(f"tuned_{name}", parameters=given)
-    left, _ = pair
     node = graph.node_of(tuned)
     if "declared parameters" not in tuned.capabilities():
         # The master receives it in a thread.
@@ -250,8 +200,7 @@ def test_given_values_take_the_place_of_defaults(graph: Any, pair: Pair, name: s
     assert tuned.declare(f"{name}_a", 0.5) == 0.25
 
 
-def test_changes_are_reported(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_changes_are_reported(graph, left, right, name):
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):
             left.watch_parameters(name, right.node_name())
@@ -279,8 +228,7 @@ def test_changes_are_reported(graph: Any, pair: Pair, name: str) -> None:
 
 
 @pytest.mark.needs("own parameters")
-def test_only_the_changes_of_the_node_are_reported(graph: Any, pair: Pair, name: str) -> None:
-    left, right = pair
+def test_only_the_changes_of_the_node_are_reported(graph, left, right, name):
     if "parameter events" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="change"):
             left.watch_parameters(name)
@@ -298,8 +246,7 @@ def test_only_the_changes_of_the_node_are_reported(graph: Any, pair: Pair, name:
     assert {name: 2} not in right.parameter_changes(name)
 
 
-def test_a_node_that_is_not_there_cannot_be_asked(graph: Any, pair: Pair, name: str) -> None:
-    left, _ = pair
+def test_a_node_that_is_not_there_cannot_be_asked(graph, left, name):
     if graph.kind.endswith("ros1"):  # the master keeps the parameters, whether there is such a node or not
         with pytest.raises(ParameterUnknown, match=name):
             left.get_parameter(name, "/nobody", timeout=60)

@@ -6,7 +6,6 @@ import pytest
 
 from jacaros.robots.ros.errors import CapabilityMissing
 
-Pair = tuple[Any, Any]
 INT, TEXT = "std_msgs/msg/Int32", "std_msgs/msg/String"
 NOTHING_MORE = 0.7
 """Seconds in which nothing more is to come."""
@@ -18,8 +17,7 @@ def troubles(peer: Any, key: str) -> list[str]:
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("first", ["publisher", "subscription"])
-def test_a_topic_of_another_type_is_reported(graph: Any, pair: Pair, topic: str, first: str) -> None:
-    left, right = pair
+def test_a_topic_of_another_type_is_reported(graph, left, right, topic, first):
     topic = f"{topic}/{first}"
     if first == "publisher":
         left.advertise(topic, INT)
@@ -39,8 +37,7 @@ def test_a_topic_of_another_type_is_reported(graph: Any, pair: Pair, topic: str,
 
 
 @pytest.mark.needs("events")
-def test_problems_without_a_callback_are_logged(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_problems_without_a_callback_are_logged(graph, left, right, topic):
     left.advertise(topic, INT)
     right.subscribe(topic, TEXT)
     graph.wait_until(
@@ -51,10 +48,7 @@ def test_problems_without_a_callback_are_logged(graph: Any, pair: Pair, topic: s
 
 @pytest.mark.needs("events")
 @pytest.mark.parametrize("weak", [{"reliability": "best_effort"}, {"durability": "volatile"}])
-def test_an_offer_that_is_too_weak_is_reported(
-    graph: Any, pair: Pair, topic: str, weak: dict[str, str]
-) -> None:
-    left, right = pair
+def test_an_offer_that_is_too_weak_is_reported(graph, left, right, topic, weak):
     [word] = weak
     topic = f"{topic}/{word}"
     strong = {"reliability": "reliable"} if word == "reliability" else {"durability": "transient_local"}
@@ -73,8 +67,7 @@ def test_an_offer_that_is_too_weak_is_reported(
 
 
 @pytest.mark.needs("deadlines", "events")
-def test_a_missed_deadline_is_reported(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_missed_deadline_is_reported(graph, left, right, topic):
     if "deadlines" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="deadline"):
             left.advertise(topic, INT, deadline=0.5)
@@ -93,8 +86,7 @@ def test_a_missed_deadline_is_reported(graph: Any, pair: Pair, topic: str) -> No
 
 
 @pytest.mark.needs("deadlines", "events")
-def test_a_promise_longer_than_the_wish_is_too_weak(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_promise_longer_than_the_wish_is_too_weak(graph, left, right, topic):
     if "deadlines" not in left.capabilities():
         with pytest.raises(CapabilityMissing, match="deadline"):
             left.advertise(topic, INT, deadline=2.0)
@@ -108,8 +100,7 @@ def test_a_promise_longer_than_the_wish_is_too_weak(graph: Any, pair: Pair, topi
 
 
 @pytest.mark.needs("events")
-def test_nothing_is_logged_without_a_problem(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_nothing_is_logged_without_a_problem(graph, left, right, topic):
     left.advertise(topic, INT)
     right.subscribe(topic, INT, events=True)
     graph.wait_until(lambda: left.subscription_count(topic) == 1, "they know each other")

@@ -14,7 +14,6 @@ import pytest
 
 from jacaros.robots.ros.errors import GoalRejected, ParameterUnknown, ServerLost
 
-Pair = tuple[Any, Any]
 pytestmark = [pytest.mark.only("ros1"), pytest.mark.slow]
 PROGRAM = str(Path(__file__).with_name("native_ros1_tools.py"))
 PATIENCE = 60.0
@@ -58,8 +57,7 @@ def native(graph: Any) -> Callable[..., str]:
     return run
 
 
-def test_an_actionlib_server_executes_our_goals(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_an_actionlib_server_executes_our_goals(graph, left):
     with running(graph, "serve"):
         left.send_goal("native", "/native/count", {"target": 4, "period": 0.05}, timeout=60)
         end = left.outcome("native", timeout=60)
@@ -80,9 +78,7 @@ def test_an_actionlib_server_executes_our_goals(graph: Any, pair: Pair) -> None:
     left.close_action_client("/native/count")
 
 
-def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
-    graph: Any, pair: Pair, native: Callable[..., str]
-) -> None:
+def test_a_genuine_server_refuses_and_is_deaf_and_recalls(graph, pair, native):
     left, right = pair
     with running(graph, "crowd"):
         with pytest.raises(GoalRejected, match="rejected the goal: not two"):
@@ -103,8 +99,7 @@ def test_a_genuine_server_refuses_and_is_deaf_and_recalls(
         peer.close_action_client("/native/count")
 
 
-def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_a_genuine_server_that_freezes_or_dies_is_lost(graph, left):
     with running(graph, "serve") as server:
         left.send_goal("frozen", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
         server.send_signal(signal.SIGSTOP)
@@ -122,8 +117,7 @@ def test_a_genuine_server_that_freezes_or_dies_is_lost(graph: Any, pair: Pair) -
     left.close_action_client("/native/count")
 
 
-def test_a_native_server_restarted_immediately_does_not_know_our_goal(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_a_native_server_restarted_immediately_does_not_know_our_goal(graph, left):
     with running(graph, "serve") as server:
         left.send_goal("old", "/native/count", {"target": 1000, "period": 0.02}, timeout=60)
         server.kill()
@@ -142,10 +136,7 @@ def test_a_native_server_restarted_immediately_does_not_know_our_goal(graph: Any
         ("count", "100", "again", {"state": "SUCCEEDED", "last": 1}),
     ],
 )
-def test_a_genuine_client_uses_our_server(
-    pair: Pair, native: Callable[..., str], topic: str, behaviour: str, target: str, cancel: str, end: Any
-) -> None:
-    _, right = pair
+def test_a_genuine_client_uses_our_server(right, native, topic, behaviour, target, cancel, end):
     right.serve_action(topic, behaviour, preempt=True)
     answer = json.loads(native("use", topic, target, cancel))
     right.unserve_action(topic)
@@ -157,10 +148,7 @@ def test_a_genuine_client_uses_our_server(
     assert {key: answer[key] for key in end} == end | ({"feedback": answer["feedback"]} if wanted else {})
 
 
-def test_a_genuine_request_cancels_all_goals_of_our_server(
-    graph: Any, pair: Pair, native: Callable[..., str], topic: str
-) -> None:
-    left, right = pair
+def test_a_genuine_request_cancels_all_goals_of_our_server(graph, left, right, native, topic):
     right.serve_action(topic, "count")
     for key in ("a", "b"):
         left.send_goal(key, topic, {"target": 1000, "period": 0.05}, timeout=60)
@@ -170,8 +158,7 @@ def test_a_genuine_request_cancels_all_goals_of_our_server(
     right.unserve_action(topic)
 
 
-def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
-    left, right = pair
+def test_rosparam_and_we_see_the_same_parameters(graph, left, right, native):
     left.set_parameter("wheels/radius", 0.25)
     left.set_parameter("rooms", ["hall", "kitchen"])
     assert native("rosparam", "get", "/left/wheels/radius") == "0.25"
@@ -196,8 +183,7 @@ def test_rosparam_and_we_see_the_same_parameters(graph: Any, pair: Pair, native:
     right.unwatch_parameters("left")
 
 
-def test_another_version_of_a_definition_is_reported(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_another_version_of_a_definition_is_reported(graph, left, topic):
     left.subscribe(topic, "std_msgs/msg/Int32", events=True)
     with running(graph, "other_definition", topic):
         graph.wait_until(lambda: left.events(topic), "the other version is reported")
@@ -209,8 +195,7 @@ def test_another_version_of_a_definition_is_reported(graph: Any, pair: Pair, top
     )
 
 
-def test_tf2_and_we_see_the_same_frames(graph: Any, pair: Pair, native: Callable[..., str]) -> None:
-    left, right = pair
+def test_tf2_and_we_see_the_same_frames(graph, left, right, native):
     with running(graph, "send_tf"):
         found = left.wait_for_transform("native_odom", "native_laser", timeout=60)
         assert found["x"] == pytest.approx(2.5)

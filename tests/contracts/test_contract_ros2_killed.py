@@ -1,23 +1,17 @@
 """Contract on ROS 2: who was killed is missed long before the graph takes them off its list."""
 
-from typing import Any
-
 import pytest
 from losses import lose_a_call
 
 from jacaros.robots.ros.errors import ServerGone, ServerLost
 
-Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros2")
 LONG = {"target": 1000, "period": 0.1}
 LOST = 60.0
 STRING = "std_msgs/msg/String"
 
 
-def test_a_server_that_is_killed_as_soon_as_it_has_accepted_is_lost(
-    graph: Any, pair: Pair, topic: str
-) -> None:
-    left, _ = pair
+def test_a_server_that_is_killed_as_soon_as_it_has_accepted_is_lost(graph, left, topic):
     mortal = graph.peer("short_lived_server")
     mortal.serve_action(topic)
     left.send_goal(topic, topic, LONG, timeout=60)
@@ -29,8 +23,7 @@ def test_a_server_that_is_killed_as_soon_as_it_has_accepted_is_lost(
         left.end_outcome(topic)
 
 
-def test_a_server_that_is_killed_before_it_has_accepted_is_lost(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_server_that_is_killed_before_it_has_accepted_is_lost(graph, left, topic):
     mortal = graph.peer("never_accepting_server")
     mortal.serve_action(topic)
     graph.wait_until(lambda: left.action_ready(topic), "the action is found")
@@ -41,16 +34,14 @@ def test_a_server_that_is_killed_before_it_has_accepted_is_lost(graph: Any, pair
     assert left.action_ready(topic), "the graph has noticed it first"
 
 
-def test_a_call_of_a_service_that_is_killed_fails(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_call_of_a_service_that_is_killed_fails(graph, left, topic):
     lose_a_call(graph, left, topic, LOST)
     assert left.ready(topic), "the graph has noticed it first"
     with pytest.raises(ServerGone, match=topic):
         left.end_call(topic)
 
 
-def test_a_killed_publisher_no_longer_counts(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_killed_publisher_no_longer_counts(graph, left, topic):
     mortal = graph.peer("short_lived_publisher")
     left.subscribe(topic, STRING)
     mortal.advertise(topic, STRING)

@@ -14,7 +14,6 @@ from graphs import shared_memory
 
 from jacaros.robots.ros.errors import GoalRejected, ParameterRefused, ParameterUnknown, ServerLost
 
-Pair = tuple[Any, Any]
 pytestmark = pytest.mark.only("ros2")
 COUNT = "/native/count"
 PROGRAM = [sys.executable, str(Path(__file__).with_name("native_ros2_robot.py"))]
@@ -68,8 +67,7 @@ def native(graph: Any) -> Iterator[subprocess.Popen[bytes]]:
         yield process
 
 
-def test_goals_of_a_plain_server(graph: Any, pair: Pair, topic: str, native: Any) -> None:
-    left, _ = pair
+def test_goals_of_a_plain_server(graph, left, topic, native):
     left.send_goal(topic, COUNT, {"target": 3, "period": 0.05}, timeout=60)
     assert left.outcome(topic, timeout=60) == {
         "status": "succeeded",
@@ -90,8 +88,7 @@ def test_goals_of_a_plain_server(graph: Any, pair: Pair, topic: str, native: Any
     assert left.cancel_goal(topic + "long", timeout=60) is False
 
 
-def test_many_goals_of_a_plain_server_at_once(graph: Any, pair: Pair, topic: str, native: Any) -> None:
-    left, _ = pair
+def test_many_goals_of_a_plain_server_at_once(graph, left, topic, native):
     for number in range(1, 9):
         left.begin_send(f"{topic}{number}", COUNT, {"target": number, "period": 0.01}, timeout=60)
     for number in range(1, 9):
@@ -100,8 +97,7 @@ def test_many_goals_of_a_plain_server_at_once(graph: Any, pair: Pair, topic: str
     assert ends == list(range(1, 9))
 
 
-def test_a_plain_server_that_is_killed_is_lost(graph: Any, pair: Pair, topic: str, native: Any) -> None:
-    left, _ = pair
+def test_a_plain_server_that_is_killed_is_lost(graph, left, topic, native):
     left.send_goal(topic, COUNT, LONG, timeout=60)
     graph.wait_until(lambda: len(left.feedback(topic)) > 10, "it is under way")
     left.begin_outcome(topic)
@@ -114,24 +110,19 @@ def test_a_plain_server_that_is_killed_is_lost(graph: Any, pair: Pair, topic: st
         assert left.outcome(topic + "again", timeout=60)["status"] == "succeeded"
 
 
-def test_a_plain_server_that_cannot_answer_while_it_works_is_not_lost(
-    graph: Any, pair: Pair, topic: str
-) -> None:
-    left, _ = pair
+def test_a_plain_server_that_cannot_answer_while_it_works_is_not_lost(graph, left, topic):
     with running(graph, "block"):
         for goal in ("first", "second"):
             left.send_goal(topic + goal, COUNT, {"target": 1, "period": 8.0}, timeout=60)
             assert left.outcome(topic + goal, timeout=60)["text"] == "counted natively"
 
 
-def test_a_plain_client_uses_our_action(graph: Any, pair: Pair, topic: str) -> None:
-    _, right = pair
+def test_a_plain_client_uses_our_action(graph, right, topic):
     right.serve_action(topic)
     assert asked(graph, "goal", topic) == ["counted 4 3 3", "cancelled 0 1 5", "accepted False"]
 
 
-def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: Any) -> None:
-    left, right = pair
+def test_parameters_of_a_plain_node(graph, left, right, topic, native):
     node = "/native_serve"
     assert {"speed", "rooms", "use_sim_time"} <= set(left.parameter_names(node, timeout=60))
     assert left.get_parameter("speed", node, timeout=60) == 0.5
@@ -155,9 +146,8 @@ def test_parameters_of_a_plain_node(graph: Any, pair: Pair, topic: str, native: 
         left.get_parameter("colour", node, timeout=60)
 
 
-def test_parameters_of_a_killed_and_restarted_node_are_read(graph: Any, pair: Pair) -> None:
+def test_parameters_of_a_killed_and_restarted_node_are_read(graph, left):
     """The one that was killed is still in the graph, and alone there for a moment: it is asked, and never answers."""
-    left, _ = pair
     node = "/native_serve"
     with running(graph, "serve"):
         assert "speed" in left.parameter_names(node, timeout=60)
@@ -166,14 +156,13 @@ def test_parameters_of_a_killed_and_restarted_node_are_read(graph: Any, pair: Pa
         assert left.get_parameter("speed", node, timeout=60) == 0.5
 
 
-def test_a_question_about_parameters_is_repeated_when_the_response_is_lost(graph: Any, pair: Pair) -> None:
+def test_a_question_about_parameters_is_repeated_when_the_response_is_lost(graph, left):
     """A server that discovers the client late, as on a busy machine, loses its first response."""
-    left, _ = pair
     with running(graph, "forget"):
         assert left.parameter_names("/native_forget", timeout=60) == ["speed"]
 
 
-def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
+def test_a_plain_node_uses_our_parameters(graph, pair):
     cruiser = graph.peer("cruiser")
     cruiser.declare("lanes", 4, only_even=True, minimum=0, maximum=10)
     assert asked(graph, "ask", "/cruiser") == ["names True True", "put True False it is odd", "got 6"]
@@ -181,8 +170,7 @@ def test_a_plain_node_uses_our_parameters(graph: Any, pair: Pair) -> None:
 
 
 @pytest.mark.parametrize("ending", ["signal", "return", "exception"])
-def test_goals_of_a_process_that_stops_are_cancelled(graph: Any, pair: Pair, topic: str, ending: str) -> None:
-    _, right = pair
+def test_goals_of_a_process_that_stops_are_cancelled(graph, right, topic, ending):
     leaver, name = graph.peer(f"leaver_{ending}"), f"{topic}_{ending}"
     right.serve_action(name)
     graph.wait_until(lambda: leaver.action_ready(name), "the action is found")

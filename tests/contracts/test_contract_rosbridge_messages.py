@@ -33,15 +33,9 @@ def test_messages_too_large_for_a_frame_go_both_ways_in_fragments(bridged: Behin
 
 NONSENSE = [
     *('{"op": "publish", "topic"', "[]", "7", '"op"', "{}", '{"op": ["publish"]}', '{"op": "publish"}'),
-    *(
-        '{"op": "publish", "topic": ["/a"], "msg": {}}',
-        '{"op": "publish", "topic": "/to_client", "msg": 7}',
-    ),
+    *('{"op": "publish", "topic": ["/a"], "msg": {}}', '{"op": "publish", "topic": "/to_client", "msg": 7}'),
     *('{"op": "publish", "topic": "/to_client", "msg": {"data": {}}}', '{"op": "never heard of"}'),
-    *(
-        '{"op": "service_response", "id": ["x"]}',
-        '{"op": "service_response", "values": 7, "result": false}',
-    ),
+    *('{"op": "service_response", "id": ["x"]}', '{"op": "service_response", "values": 7, "result": false}'),
     *('{"op": "call_service", "service": "/sum", "args": 7}', '{"op": "call_service", "service": {}}'),
     *('{"op": "action_result", "id": {}, "status": []}', '{"op": "send_action_goal", "action": []}'),
     *('{"op": "fragment", "id": 1}', '{"op": "fragment", "id": 1, "num": 3, "total": 2, "data": ""}'),

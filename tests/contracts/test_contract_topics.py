@@ -20,17 +20,14 @@ def connected(graph: Any, pair: Pair, topic: str, type_name: str, **qos: Any) ->
     return left, right
 
 
-def test_a_message_reaches_the_other_node(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_message_reaches_the_other_node(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/String")
     left.publish(topic, {"data": "schön"})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
     assert right.received(topic) == [{"data": "schön"}]
 
 
-def test_the_first_message_of_a_publisher_that_waited_for_its_match_arrives(
-    graph: Any, pair: Pair, topic: str
-) -> None:
-    left, right = pair
+def test_the_first_message_of_a_publisher_that_waited_for_its_match_arrives(graph, left, right, topic):
     for number in range(5):
         right.subscribe(f"{topic}/n{number}", "std_msgs/msg/Int32")
         left.publish_first(f"{topic}/n{number}", "std_msgs/msg/Int32", {"data": number})
@@ -39,8 +36,7 @@ def test_the_first_message_of_a_publisher_that_waited_for_its_match_arrives(
         assert right.received(f"{topic}/n{number}") == [{"data": number}]
 
 
-def test_messages_go_both_ways(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_messages_go_both_ways(graph, left, right, topic):
     connected(graph, (left, right), topic + "/to", "std_msgs/msg/Int32")
     connected(graph, (right, left), topic + "/fro", "std_msgs/msg/Int32")
     left.publish(topic + "/to", {"data": 1})
@@ -50,14 +46,14 @@ def test_messages_go_both_ways(graph: Any, pair: Pair, topic: str) -> None:
     assert left.received(topic + "/fro") == [{"data": -2}]
 
 
-def test_messages_keep_their_order(graph: Any, pair: Pair, topic: str) -> None:
+def test_messages_keep_their_order(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32", depth=100)
     left.publish_counted(topic, 100)
     graph.wait_until(lambda: len(right.received(topic)) == 100, "all arrive")
     assert [message["data"] for message in right.received(topic)] == list(range(100))
 
 
-def test_a_nested_message_arrives_as_it_was_sent(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_nested_message_arrives_as_it_was_sent(graph, pair, topic):
     left, right = connected(graph, pair, topic, "nav_msgs/msg/Odometry")
     fields = {
         "header": {"stamp": 1234.5, "frame_id": "odom"},
@@ -77,7 +73,7 @@ def test_a_nested_message_arrives_as_it_was_sent(graph: Any, pair: Pair, topic: 
     assert message["twist"]["covariance"] == [0.0] * 36
 
 
-def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph: Any, pair: Pair, topic: str) -> None:
+def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph, pair, topic):
     left, right = pair
     cases = {
         "sensor_msgs/msg/LaserScan": {"ranges": [0.5, 1, 2.25], "intensities": []},
@@ -101,7 +97,7 @@ def test_arrays_of_all_kinds_arrive_as_they_were_sent(graph: Any, pair: Pair, to
     assert right.received(f"{topic}/t5")[0]["values"] == [{"key": "k", "value": "v"}]
 
 
-def test_a_sample_has_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_sample_has_topic_time_and_cause(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
     left.publish(topic, {"data": True})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
@@ -111,15 +107,14 @@ def test_a_sample_has_topic_time_and_cause(graph: Any, pair: Pair, topic: str) -
     assert 0 <= sample["age"] < 60
 
 
-def test_callbacks_come_on_the_thread_of_the_loop(graph: Any, pair: Pair, topic: str) -> None:
+def test_callbacks_come_on_the_thread_of_the_loop(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Bool")
     left.publish(topic, {"data": True})
     graph.wait_until(lambda: right.received(topic), "the message arrives")
     assert right.callback_threads() == ["MainThread"]
 
 
-def test_a_latched_message_waits_for_late_subscriptions(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_latched_message_waits_for_late_subscriptions(graph, left, right, topic):
     latched = {"durability": "transient_local", "depth": 1}
     left.advertise(topic, "std_msgs/msg/String", **latched)
     left.publish(topic, {"data": "old"})
@@ -134,10 +129,7 @@ def test_a_latched_message_waits_for_late_subscriptions(graph: Any, pair: Pair, 
 
 
 @pytest.mark.parametrize("first", ["publisher", "subscription"])
-def test_the_best_available_durability_gets_what_a_publisher_stores(
-    graph: Any, pair: Pair, topic: str, first: str
-) -> None:
-    left, right = pair
+def test_the_best_available_durability_gets_what_a_publisher_stores(graph, left, right, topic, first):
     topic = f"{topic}/{first}"
     if first == "subscription":
         right.subscribe(topic, "std_msgs/msg/String", durability="best_available")
@@ -150,8 +142,7 @@ def test_the_best_available_durability_gets_what_a_publisher_stores(
 
 
 @pytest.mark.only("memory", "ros1", "ros2")  # over rosbridge the server chooses the durability, once
-def test_the_best_available_durability_excludes_no_publisher(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_the_best_available_durability_excludes_no_publisher(graph, left, right, topic):
     left.advertise(topic, "std_msgs/msg/String", durability="transient_local", depth=1)
     left.publish(topic, {"data": "stored"})
     right.subscribe(topic, "std_msgs/msg/String", durability="best_available")
@@ -165,8 +156,7 @@ def test_the_best_available_durability_excludes_no_publisher(graph: Any, pair: P
     graph.wait_until(heard, "the message of a publisher that stores nothing arrives")
 
 
-def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_a_volatile_topic_shows_nothing_of_the_past(graph, left, right, topic):
     connected(graph, (left, left), topic, "std_msgs/msg/String")
     left.publish(topic, {"data": "past"})
     graph.wait_until(lambda: left.received(topic), "it is past: who listens has heard it")
@@ -180,7 +170,7 @@ def test_a_volatile_topic_shows_nothing_of_the_past(graph: Any, pair: Pair, topi
     assert right.received(topic) == [{"data": "now"}]
 
 
-def test_best_effort_delivers_between_nodes_of_one_machine(graph: Any, pair: Pair, topic: str) -> None:
+def test_best_effort_delivers_between_nodes_of_one_machine(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32", reliability="best_effort")
 
     def arrives() -> bool:
@@ -192,10 +182,7 @@ def test_best_effort_delivers_between_nodes_of_one_machine(graph: Any, pair: Pai
 
 @pytest.mark.only("memory", "ros2")
 @pytest.mark.parametrize("weak", [{"reliability": "best_effort"}, {"durability": "volatile"}])
-def test_a_subscription_gets_nothing_from_a_weaker_publisher(
-    graph: Any, pair: Pair, topic: str, weak: dict[str, str]
-) -> None:
-    left, right = pair
+def test_a_subscription_gets_nothing_from_a_weaker_publisher(graph, left, right, topic, weak):
     topic = f"{topic}/{next(iter(weak))}"
     left.advertise(topic, "std_msgs/msg/Int32", **weak)
     strong = {"reliability": "reliable", "durability": "transient_local"} | {
@@ -212,7 +199,7 @@ def test_a_subscription_gets_nothing_from_a_weaker_publisher(
     assert right.received(topic) == []
 
 
-def test_a_slow_receiver_keeps_the_newest_messages(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_slow_receiver_keeps_the_newest_messages(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32", depth=5)
     if graph.separate_processes:
         right.begin_call("stall", "/nowhere", {"a": 1, "b": 1}, timeout=0.01)
@@ -226,7 +213,7 @@ def test_a_slow_receiver_keeps_the_newest_messages(graph: Any, pair: Pair, topic
         assert numbers == [195, 196, 197, 198, 199]
 
 
-def test_a_closed_subscription_receives_nothing(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_closed_subscription_receives_nothing(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     right.subscribe(topic, "std_msgs/msg/Int32", key=topic + "#other")
     right.unsubscribe(topic)
@@ -239,7 +226,7 @@ def test_a_closed_subscription_receives_nothing(graph: Any, pair: Pair, topic: s
     assert right.received(topic) == []
 
 
-def test_a_subscription_closed_and_made_again_receives(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_subscription_closed_and_made_again_receives(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     right.unsubscribe(topic)
     graph.wait_until(lambda: left.subscription_count(topic) == 0, "the publisher notices the leave")
@@ -250,20 +237,19 @@ def test_a_subscription_closed_and_made_again_receives(graph: Any, pair: Pair, t
     graph.wait_until(lambda: right.received(topic), "the message arrives")
 
 
-def test_a_closed_publisher_is_gone(graph: Any, pair: Pair, topic: str) -> None:
+def test_a_closed_publisher_is_gone(graph, pair, topic):
     left, right = connected(graph, pair, topic, "std_msgs/msg/Int32")
     left.unadvertise(topic)
     graph.wait_until(lambda: right.publisher_count(topic) == 0, "the subscription notices")
 
 
-def test_a_node_receives_its_own_messages(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_node_receives_its_own_messages(graph, left, topic):
     connected(graph, (left, left), topic, "std_msgs/msg/Int32")
     left.publish(topic, {"data": 3})
     graph.wait_until(lambda: left.received(topic), "the message arrives")
 
 
-def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
+def test_fields_do_for_a_message(graph, pair, topic):
     left, right = pair
     connected(graph, pair, topic, "geometry_msgs/msg/Twist")
     left.publish_fields(topic, {"linear": {"x": 1.5}})
@@ -273,15 +259,13 @@ def test_fields_do_for_a_message(graph: Any, pair: Pair, topic: str) -> None:
         left.publish_fields(topic, {"linaer": {"x": 1.5}})
 
 
-def test_a_message_of_another_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_a_message_of_another_type_is_refused(graph, left, topic):
     left.advertise(topic, "std_msgs/msg/Int32")
     with pytest.raises(MessageMismatch, match=rf"{topic}: expected a std_msgs/msg/Int32"):
         left.publish_wrong_message(topic)
 
 
-def test_wrong_fields_are_named(graph: Any, pair: Pair, topic: str) -> None:
-    left, _ = pair
+def test_wrong_fields_are_named(graph, left, topic):
     left.advertise(topic, "geometry_msgs/msg/Twist")
     with pytest.raises(MessageMismatch, match=r"no field 'liner'.*did you mean `linear`.*angular"):
         left.publish(topic, {"liner": {"x": 1}})
@@ -289,16 +273,14 @@ def test_wrong_fields_are_named(graph: Any, pair: Pair, topic: str) -> None:
         left.publish(topic, {"linear": {"x": "fast"}})
 
 
-def test_an_unknown_type_is_refused(graph: Any, pair: Pair, topic: str) -> None:
-    left, right = pair
+def test_an_unknown_type_is_refused(graph, left, right, topic):
     with pytest.raises(UnknownInterface, match="no_msgs/msg/Nothing"):
         left.advertise(topic, "no_msgs/msg/Nothing")
     with pytest.raises(UnknownInterface, match="std_msgs/msg/Nothing"):
         right.subscribe(topic, "std_msgs/msg/Nothing")
 
 
-def test_wrong_names_and_wishes_are_refused(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_wrong_names_and_wishes_are_refused(graph, left):
     with pytest.raises(NameInvalid, match="no spaces"):
         left.advertise("/no spaces", "std_msgs/msg/Int32")
     with pytest.raises(NameInvalid, match="Int32"):

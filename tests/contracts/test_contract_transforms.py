@@ -35,8 +35,7 @@ def hearing(graph: Any, pair: Pair, frame: str) -> Pair:
     return left, right
 
 
-def test_transforms_are_a_capability(graph: Any, pair: Pair) -> None:
-    left, _ = pair
+def test_transforms_are_a_capability(graph, left):
     if "transforms" in left.capabilities():
         left.listen_to_transforms()
         left.send_transform("capable_root", "capable", 1.0)
@@ -47,7 +46,7 @@ def test_transforms_are_a_capability(graph: Any, pair: Pair) -> None:
         left.look_up("root", "child")
 
 
-def test_a_way_over_several_frames_and_nodes_is_found(graph: Any, pair: Pair, frame: str) -> None:
+def test_a_way_over_several_frames_and_nodes_is_found(graph, pair, frame):
     left, right = hearing(graph, pair, frame)
     base, laser, world = f"{frame}_base", f"{frame}_laser", f"{frame}_world"
     left.send_transform(world, base, 2.0, HALF, HALF, stamp=5.0)  # turned by 90 degrees
@@ -61,8 +60,7 @@ def test_a_way_over_several_frames_and_nodes_is_found(graph: Any, pair: Pair, fr
     assert (back["x"], back["y"]) == (pytest.approx(-0.5), pytest.approx(2.0))
 
 
-def test_static_transforms_of_several_nodes_reach_late_listeners(graph: Any, pair: Pair, frame: str) -> None:
-    left, right = pair
+def test_static_transforms_of_several_nodes_reach_late_listeners(graph, left, right, frame):
     left.send_transform(f"{frame}_base", f"{frame}_laser", 0.5, static=True)
     right.send_transform(f"{frame}_base", f"{frame}_camera", 0.25, static=True)
     late = graph.peer("late_listener")
@@ -70,7 +68,7 @@ def test_static_transforms_of_several_nodes_reach_late_listeners(graph: Any, pai
     assert (found["x"], found["stamp"]) == (pytest.approx(0.25), 0.0)
 
 
-def test_between_two_times_it_is_interpolated(graph: Any, pair: Pair, frame: str) -> None:
+def test_between_two_times_it_is_interpolated(graph, pair, frame):
     left, right = hearing(graph, pair, frame)
     for stamp in (10.0, 11.0):
         left.send_transform(f"{frame}_odom", f"{frame}_base", stamp, stamp=stamp)
@@ -79,9 +77,7 @@ def test_between_two_times_it_is_interpolated(graph: Any, pair: Pair, frame: str
 
 
 @pytest.mark.parametrize(("stamp", "reason"), [(9.0, "too_old"), (12.0, "too_new")])
-def test_a_time_that_is_not_known_is_refused(
-    graph: Any, pair: Pair, frame: str, stamp: float, reason: str
-) -> None:
+def test_a_time_that_is_not_known_is_refused(graph, pair, frame, stamp, reason):
     left, right = hearing(graph, pair, frame)
     for moment in (10.0, 11.0):
         left.send_transform(f"{frame}_odom", f"{frame}_base", moment, stamp=moment)
@@ -91,7 +87,7 @@ def test_a_time_that_is_not_known_is_refused(
     assert caught.value.reason == reason
 
 
-def test_missing_things_are_reported(graph: Any, pair: Pair, frame: str) -> None:
+def test_missing_things_are_reported(graph, pair, frame):
     left, right = hearing(graph, pair, frame)
     with pytest.raises(TransformUnavailable, match=f"{frame}_nowhere") as caught:
         right.look_up(f"{frame}_root", f"{frame}_nowhere")
@@ -103,7 +99,7 @@ def test_missing_things_are_reported(graph: Any, pair: Pair, frame: str) -> None
     assert caught.value.reason == "not_connected"
 
 
-def test_a_transform_that_comes_late_is_awaited(graph: Any, pair: Pair, frame: str) -> None:
+def test_a_transform_that_comes_late_is_awaited(graph, pair, frame):
     left, right = hearing(graph, pair, frame)
     right.begin_wait_for_transform(frame, f"{frame}_odom", f"{frame}_base", 20.5, timeout=60)
     for stamp in (20.0, 21.0):
@@ -112,8 +108,7 @@ def test_a_transform_that_comes_late_is_awaited(graph: Any, pair: Pair, frame: s
     assert right.end_wait_for_transform(frame)["x"] == pytest.approx(20.5)
 
 
-def test_waiting_ends_with_the_reason(graph: Any, pair: Pair, frame: str) -> None:
-    _, right = pair
+def test_waiting_ends_with_the_reason(graph, right, frame):
     with pytest.raises(TransformUnavailable, match=rf"{frame}_nowhere.*waited 0\.2 s") as caught:
         right.wait_for_transform(f"{frame}_root", f"{frame}_nowhere", timeout=0.2)
     assert caught.value.reason == "unknown_frame"

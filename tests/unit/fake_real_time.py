@@ -46,3 +46,9 @@ def in_fake_time(
     monkeypatch.setattr("time.time", lambda: NOON + loop.selector.now)
     with asyncio.Runner(loop_factory=lambda: loop) as runner:
         runner.run(main(loop))
+
+
+def play_in_fake_time(main: Callable[[FakeTimeLoop], Coroutine[Any, Any, None]]) -> None:
+    """Run *main* in fake time, as the body of a test."""
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        in_fake_time(monkeypatch, main)

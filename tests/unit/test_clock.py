@@ -7,53 +7,47 @@ import time
 import pytest
 
 from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, WallClock, new_event_loop, run
+from played import played
 
 
-def test_virtual_time_begins_at_its_epoch_and_jumps_over_a_sleep():
+def on_virtual_time(scene):
     clock = VirtualClock()
+    run(lambda: scene(clock), clock)
 
-    async def main():
-        assert clock.now() == VIRTUAL_EPOCH
-        await clock.sleep(86_400.0)
-        return clock.now()
 
+@played(on_virtual_time)
+async def test_virtual_time_begins_at_its_epoch_and_jumps_over_a_sleep(clock):
     began = time.perf_counter()
-    assert run(main, clock) == VIRTUAL_EPOCH + 86_400.0
+    assert clock.now() == VIRTUAL_EPOCH
+    await clock.sleep(86_400.0)
+    assert clock.now() == VIRTUAL_EPOCH + 86_400.0
     assert time.perf_counter() - began < 10.0
 
 
-def test_timers_ring_in_the_order_of_their_moments_and_equal_moments_in_the_order_of_setting():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_timers_ring_in_the_order_of_their_moments_and_equal_moments_in_the_order_of_setting(clock):
     rung = []
-
-    async def main():
-        clock.call_later(2.0, lambda: rung.append(("c", clock.elapsed)))
-        clock.call_later(1.0, lambda: rung.append(("a", clock.elapsed)))
-        clock.call_later(1.0, lambda: rung.append(("b", clock.elapsed)))
-        await clock.sleep(3.0)
-
-    run(main, clock)
+    clock.call_later(2.0, lambda: rung.append(("c", clock.elapsed)))
+    clock.call_later(1.0, lambda: rung.append(("a", clock.elapsed)))
+    clock.call_later(1.0, lambda: rung.append(("b", clock.elapsed)))
+    await clock.sleep(3.0)
     assert rung == [("a", 1.0), ("b", 1.0), ("c", 2.0)]
 
 
-def test_a_cancelled_timer_does_not_ring_even_if_cancelled_at_its_own_moment():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_a_cancelled_timer_does_not_ring_even_if_cancelled_at_its_own_moment(clock):
     rung, timers = [], []
-
-    async def main():
-        early = clock.call_later(0.5, lambda: rung.append("early"))
-        clock.call_later(1.0, lambda: [timer.cancel() for timer in timers])
-        last = clock.call_later(1.0, lambda: rung.append("last"))
-        early.cancel()
-        timers.append(last)
-        await clock.sleep(2.0)
-
-    run(main, clock)
+    early = clock.call_later(0.5, lambda: rung.append("early"))
+    clock.call_later(1.0, lambda: [timer.cancel() for timer in timers])
+    last = clock.call_later(1.0, lambda: rung.append("last"))
+    early.cancel()
+    timers.append(last)
+    await clock.sleep(2.0)
     assert rung == []
 
 
-def test_time_stands_still_while_another_thread_works():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_time_stands_still_while_another_thread_works(clock):
     seen = []
 
     async def worker():
@@ -61,29 +55,22 @@ def test_time_stands_still_while_another_thread_works():
             await asyncio.sleep(0)
             seen.append(clock.elapsed)
 
-    async def main():
-        clock.call_later(1.0, lambda: seen.append("timer"))
-        await asyncio.create_task(worker())
-        await clock.sleep(1.5)
-
-    run(main, clock)
+    clock.call_later(1.0, lambda: seen.append("timer"))
+    await asyncio.create_task(worker())
+    await clock.sleep(1.5)
     assert seen == [0.0] * 100 + ["timer"]
 
 
-def test_time_stands_still_while_a_worker_thread_runs():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_time_stands_still_while_a_worker_thread_runs(clock):
     gate = threading.Event()
     order = []
-
-    async def main():
-        clock.call_later(1.0, lambda: order.append("timer"))
-        work = asyncio.get_running_loop().run_in_executor(None, gate.wait)
-        threading.Timer(0.05, gate.set).start()
-        await work
-        order.append(("thread", clock.elapsed))
-        await clock.sleep(2.0)
-
-    run(main, clock)
+    clock.call_later(1.0, lambda: order.append("timer"))
+    work = asyncio.get_running_loop().run_in_executor(None, gate.wait)
+    threading.Timer(0.05, gate.set).start()
+    await work
+    order.append(("thread", clock.elapsed))
+    await clock.sleep(2.0)
     assert order == [("thread", 0.0), "timer"]
 
 
@@ -112,48 +99,36 @@ def test_threads_give_their_results_and_errors():
     run(main, WallClock())
 
 
-def test_busy_agents_move_time_by_a_millisecond_per_ten_thousand_cycles():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_busy_agents_move_time_by_a_millisecond_per_ten_thousand_cycles(clock):
     rung = []
-
-    async def main():
-        clock.call_later(0.0015, lambda: rung.append(round(clock.elapsed, 6)))
-        clock.busy(9_999)
-        assert clock.elapsed == 0.0
-        clock.busy(1)
-        assert clock.elapsed == pytest.approx(0.001)
-        clock.busy(10_000)
-        assert rung == [], "never in the middle of the caller's work"
-        await asyncio.sleep(0)
-        assert rung == [0.002]
-
-    run(main, clock)
+    clock.call_later(0.0015, lambda: rung.append(round(clock.elapsed, 6)))
+    clock.busy(9_999)
+    assert clock.elapsed == 0.0
+    clock.busy(1)
+    assert clock.elapsed == pytest.approx(0.001)
+    clock.busy(10_000)
+    assert rung == [], "never in the middle of the caller's work"
+    await asyncio.sleep(0)
+    assert rung == [0.002]
 
 
-def test_idling_forgets_the_busy_cycles_before():
-    clock = VirtualClock()
-
-    async def main():
-        clock.busy(9_999)
-        await clock.sleep(1.0)
-        clock.busy(1)
-        return clock.elapsed
-
-    assert run(main, clock) == 1.0
+@played(on_virtual_time)
+async def test_idling_forgets_the_busy_cycles_before(clock):
+    clock.busy(9_999)
+    await clock.sleep(1.0)
+    clock.busy(1)
+    assert clock.elapsed == 1.0
 
 
-def test_an_error_in_a_timer_reaches_the_handler_of_the_loop_and_time_continues():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_an_error_in_a_timer_reaches_the_handler_of_the_loop_and_time_continues(clock):
     errors = []
-
-    async def main():
-        loop = asyncio.get_running_loop()
-        loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
-        clock.call_later(1.0, lambda: 1 / 0)
-        await clock.sleep(2.0)
-        return clock.elapsed
-
-    assert run(main, clock) == 2.0
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
+    clock.call_later(1.0, lambda: 1 / 0)
+    await clock.sleep(2.0)
+    assert clock.elapsed == 2.0
     assert [type(error) for error in errors] == [ZeroDivisionError]
 
 
@@ -168,30 +143,22 @@ def test_without_a_loop_the_clock_can_be_advanced_by_hand():
     assert clock.now() == 105.0
 
 
-def test_a_cancelled_sleeper_leaves_no_timer_that_time_would_jump_to():
-    clock = VirtualClock()
-
-    async def main():
-        sleeper = asyncio.create_task(clock.sleep(1000.0))
-        await clock.sleep(1.0)
-        sleeper.cancel()
-        await clock.sleep(1.0)
-        return clock.elapsed
-
-    assert run(main, clock) == 2.0
+@played(on_virtual_time)
+async def test_a_cancelled_sleeper_leaves_no_timer_that_time_would_jump_to(clock):
+    sleeper = asyncio.create_task(clock.sleep(1000.0))
+    await clock.sleep(1.0)
+    sleeper.cancel()
+    await clock.sleep(1.0)
+    assert clock.elapsed == 2.0
     assert not clock.advance()
 
 
-def test_a_sleeper_cancelled_at_the_moment_of_its_waking_is_cancelled():
-    clock = VirtualClock()
-
-    async def main():
-        sleeper = asyncio.create_task(clock.sleep(1.0))
-        clock.call_later(1.0, sleeper.cancel)  # rings first: the task has not begun to sleep yet
-        await clock.sleep(2.0)
-        return sleeper.cancelled()
-
-    assert run(main, clock)
+@played(on_virtual_time)
+async def test_a_sleeper_cancelled_at_the_moment_of_its_waking_is_cancelled(clock):
+    sleeper = asyncio.create_task(clock.sleep(1.0))
+    clock.call_later(1.0, sleeper.cancel)  # rings first: the task has not begun to sleep yet
+    await clock.sleep(2.0)
+    assert sleeper.cancelled()
 
 
 def test_timers_cancelled_in_the_past_of_a_busy_jump_are_skipped():
@@ -204,17 +171,13 @@ def test_timers_cancelled_in_the_past_of_a_busy_jump_are_skipped():
     assert clock.elapsed == 0.001
 
 
-def test_real_input_is_served_before_time_jumps():
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_real_input_is_served_before_time_jumps(clock):
     order = []
-
-    async def main():
-        loop = asyncio.get_running_loop()
-        clock.call_later(1.0, lambda: order.append("timer"))
-        loop.call_soon_threadsafe(order.append, "input")
-        await clock.sleep(1.0)
-
-    run(main, clock)
+    loop = asyncio.get_running_loop()
+    clock.call_later(1.0, lambda: order.append("timer"))
+    loop.call_soon_threadsafe(order.append, "input")
+    await clock.sleep(1.0)
     assert order == ["input", "timer"]
 
 
@@ -243,33 +206,22 @@ def test_the_wall_clock_gets_an_ordinary_loop():
     assert not hasattr(loop, "virtual_selector")
 
 
-def test_asyncio_itself_waits_on_the_virtual_clock() -> None:
-    clock = VirtualClock()
+@played(on_virtual_time)
+async def test_asyncio_itself_waits_on_the_virtual_clock(clock):
+    seen, began = [], time.monotonic()
 
-    async def main() -> list[tuple[str, float]]:
-        seen: list[tuple[str, float]] = []
+    async def tick():
+        for _ in range(3):
+            await clock.sleep(10)
+            seen.append(("clock", clock.elapsed))
 
-        async def tick() -> None:
-            for _ in range(3):
-                await clock.sleep(10)
-                seen.append(("clock", clock.now() - clock.start))
-
-        ticking = asyncio.create_task(tick())
-        await asyncio.sleep(15)
-        seen.append(("asyncio", clock.now() - clock.start))
-        with pytest.raises(TimeoutError):
-            async with asyncio.timeout(3600):
-                await asyncio.Event().wait()
-        await ticking
-        seen.append(("end", clock.now() - clock.start))
-        return seen
-
-    began = time.monotonic()
-    assert run(main, clock) == [
-        ("clock", 10),
-        ("asyncio", 15),
-        ("clock", 20),
-        ("clock", 30),
-        ("end", 3615),
-    ]
+    ticking = asyncio.create_task(tick())
+    await asyncio.sleep(15)
+    seen.append(("asyncio", clock.elapsed))
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(3600):
+            await asyncio.Event().wait()
+    await ticking
+    seen.append(("end", clock.elapsed))
+    assert seen == [("clock", 10), ("asyncio", 15), ("clock", 20), ("clock", 30), ("end", 3615)]
     assert time.monotonic() - began < 60

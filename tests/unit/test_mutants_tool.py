@@ -146,19 +146,8 @@ def test_the_tool_finds_what_tests_miss(tmp_path: Path) -> None:
     (package / "code.py").write_text(PACKAGE, encoding="utf-8")
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests" / "test_code.py").write_text(TESTS, encoding="utf-8")
-    command = [
-        sys.executable,
-        TOOLS / "mutants.py",
-        "pkg=tests",
-        "--root",
-        tmp_path,
-        "--sample",
-        "0",
-        "--least",
-        "90",
-        "--limit",
-        "1",
-    ]
+    options = ["--sample", "0", "--least", "90", "--limit", "1"]
+    command = [sys.executable, TOOLS / "mutants.py", "pkg=tests", "--root", tmp_path, *options]
     found = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     report = found.stdout
     assert found.returncode == 1, found.stderr

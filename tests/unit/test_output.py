@@ -19,6 +19,12 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="pipes are written by
 LINE = "a line of text that is written again and again\n"
 
 
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A queue that is full soon."""
+    monkeypatch.setattr(output, "LIMIT", 100_000)
+
+
 @contextmanager
 def pipe() -> Iterator[tuple[int, TextIO]]:
     """The end to read from, as a descriptor, and the stream to write to."""
@@ -62,8 +68,7 @@ def test_a_slow_reader_gets_every_line_in_order() -> None:
     assert found == [expected]
 
 
-def test_a_blocked_reader_loses_lines_but_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(output, "LIMIT", 100_000)
+def test_a_blocked_reader_loses_lines_but_no_time(small: None) -> None:
     warnings: list[str] = []
     with pipe() as (reader, stream):
         out = Output(stream, "standard output", warnings.append, patience=0.0)
@@ -79,8 +84,7 @@ def test_a_blocked_reader_loses_lines_but_no_time(monkeypatch: pytest.MonkeyPatc
     assert 0 < in_the_pipe.count(b"\n") <= 10_000 - lost + 1
 
 
-def test_lines_continue_when_a_blocked_reader_reads_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(output, "LIMIT", 100_000)
+def test_lines_continue_when_a_blocked_reader_reads_again(small: None) -> None:
     warnings: list[str] = []
     told = threading.Event()
 
@@ -106,10 +110,9 @@ def test_lines_continue_when_a_blocked_reader_reads_again(monkeypatch: pytest.Mo
     assert warnings[1] == "standard output works again; 1 line lost"
 
 
-def test_a_terminal_that_is_stopped_does_not_stop_the_writer(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_terminal_that_is_stopped_does_not_stop_the_writer(small: None) -> None:
     import pty
 
-    monkeypatch.setattr(output, "LIMIT", 100_000)
     warnings: list[str] = []
     master, slave = pty.openpty()
     with open(slave, "w", encoding="utf-8") as stream:
@@ -203,10 +206,7 @@ class FullDisk(io.StringIO):
         return len(text)
 
 
-def test_after_a_block_lines_are_dropped_until_half_of_the_queue_is_free(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(output, "LIMIT", 100_000)
+def test_after_a_block_lines_are_dropped_until_half_of_the_queue_is_free(small: None) -> None:
     with pipe() as (reader, stream):
         out = Output(stream, "standard output", None, patience=0.0)
         while not out._blocked:

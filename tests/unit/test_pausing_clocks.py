@@ -5,10 +5,11 @@ import time
 from collections.abc import Callable
 
 import pytest
-from fake_real_time import FakeTimeLoop, in_fake_time
+from fake_real_time import FakeTimeLoop, play_in_fake_time
 
 from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import COMPACT_ABOVE, Clock, TimerQueue, VirtualClock, WallClock, of_run, run
+from played import played
 
 
 def rings(clock: Clock, delays: dict[str, float]) -> list[tuple[str, float]]:
@@ -24,84 +25,76 @@ def rings(clock: Clock, delays: dict[str, float]) -> list[tuple[str, float]]:
     return rung
 
 
-def test_a_wall_clock_is_the_time_of_day_until_it_is_paused(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock = WallClock()
-        await asyncio.sleep(3.7)
-        assert clock.now() == time.time()
-        assert clock.elapsed == time.monotonic()
-        clock.pause()
-        paused = clock.now()
-        assert paused == time.time()
-        await asyncio.sleep(10.0)
-        assert clock.now() == paused
-        assert clock.paused
-        clock.resume()
-        assert clock.now() == paused
-        await asyncio.sleep(1.0)
-        assert clock.now() - paused == pytest.approx(1.0)
-        assert not clock.paused
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_a_wall_clock_is_the_time_of_day_until_it_is_paused(loop: FakeTimeLoop) -> None:
+    clock = WallClock()
+    await asyncio.sleep(3.7)
+    assert clock.now() == time.time()
+    assert clock.elapsed == time.monotonic()
+    clock.pause()
+    paused = clock.now()
+    assert paused == time.time()
+    await asyncio.sleep(10.0)
+    assert clock.now() == paused
+    assert clock.paused
+    clock.resume()
+    assert clock.now() == paused
+    await asyncio.sleep(1.0)
+    assert clock.now() - paused == pytest.approx(1.0)
+    assert not clock.paused
 
 
-def test_timers_can_be_paused_while_the_time_of_day_continues(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock = WallClock()
-        rung = rings(clock, {"a": 2.0})
-        clock.pause_timers()
-        await asyncio.sleep(5.0)
-        assert (clock.now(), rung) == (time.time(), [])
-        clock.resume()
-        await asyncio.sleep(2.5)
-        assert (clock.now(), rung) == (time.time(), [("a", 2.0)])
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_timers_can_be_paused_while_the_time_of_day_continues(loop: FakeTimeLoop) -> None:
+    clock = WallClock()
+    rung = rings(clock, {"a": 2.0})
+    clock.pause_timers()
+    await asyncio.sleep(5.0)
+    assert (clock.now(), rung) == (time.time(), [])
+    clock.resume()
+    await asyncio.sleep(2.5)
+    assert (clock.now(), rung) == (time.time(), [("a", 2.0)])
 
 
-def test_no_timer_of_a_paused_wall_clock_rings_and_all_ring_after_the_rest_of_their_time(
-    monkeypatch: pytest.MonkeyPatch,
+@played(play_in_fake_time)
+async def test_no_timer_of_a_paused_wall_clock_rings_and_all_ring_after_the_rest_of_their_time(
+    loop: FakeTimeLoop,
 ) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock = WallClock()
-        rung = rings(clock, {"c": 3.0, "a": 1.0, "b": 2.0, "b too": 2.0})
-        await asyncio.sleep(1.5)
-        clock.pause()
-        clock.pause()
-        clock.call_later(0.0, lambda: rung.append(("at once", 0.0)))
-        await asyncio.sleep(100.0)
-        assert rung == [("a", 1.0)]
-        clock.resume()
-        await asyncio.sleep(0.0)
-        await asyncio.sleep(0.0)
-        assert rung[1:] == [("at once", 0.0)]
-        await asyncio.sleep(1.6)
-        assert rung[2:] == [("b", 2.0), ("b too", 2.0), ("c", 3.0)]
-
-    in_fake_time(monkeypatch, main)
+    clock = WallClock()
+    rung = rings(clock, {"c": 3.0, "a": 1.0, "b": 2.0, "b too": 2.0})
+    await asyncio.sleep(1.5)
+    clock.pause()
+    clock.pause()
+    clock.call_later(0.0, lambda: rung.append(("at once", 0.0)))
+    await asyncio.sleep(100.0)
+    assert rung == [("a", 1.0)]
+    clock.resume()
+    await asyncio.sleep(0.0)
+    await asyncio.sleep(0.0)
+    assert rung[1:] == [("at once", 0.0)]
+    await asyncio.sleep(1.6)
+    assert rung[2:] == [("b", 2.0), ("b too", 2.0), ("c", 3.0)]
 
 
-def test_the_speed_changes_while_timers_are_pending(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock = WallClock()
-        rung = rings(clock, {"a": 4.0, "b": 10.0, "c": 11.0})
-        began = loop.time()
-        await asyncio.sleep(2.0)
-        clock.speed = 4.0
-        await asyncio.sleep(0.51)
-        assert rung == [("a", 4.0)]
-        clock.pause()
-        clock.speed = 2.0
-        await asyncio.sleep(5.0)
-        clock.resume()
-        await clock.sleep(6.0)
-        assert rung[1:] == [("b", 10.0)]
-        assert loop.time() - began == pytest.approx(2.0 + 0.51 + 5.0 + 3.0)
-        clock.speed = 0.5
-        await clock.sleep(1.0)
-        assert [name for name, _ in rung] == ["a", "b", "c"]
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_the_speed_changes_while_timers_are_pending(loop: FakeTimeLoop) -> None:
+    clock = WallClock()
+    rung = rings(clock, {"a": 4.0, "b": 10.0, "c": 11.0})
+    began = loop.time()
+    await asyncio.sleep(2.0)
+    clock.speed = 4.0
+    await asyncio.sleep(0.51)
+    assert rung == [("a", 4.0)]
+    clock.pause()
+    clock.speed = 2.0
+    await asyncio.sleep(5.0)
+    clock.resume()
+    await clock.sleep(6.0)
+    assert rung[1:] == [("b", 10.0)]
+    assert loop.time() - began == pytest.approx(2.0 + 0.51 + 5.0 + 3.0)
+    clock.speed = 0.5
+    await clock.sleep(1.0)
+    assert [name for name, _ in rung] == ["a", "b", "c"]
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("inf"), float("nan")])
@@ -110,45 +103,37 @@ def test_a_speed_that_is_not_greater_than_0_is_refused(speed: float) -> None:
         WallClock(speed)
 
 
-def test_a_clock_with_a_speed_begins_at_the_time_of_day(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        fast, slow = WallClock(4.0), WallClock(0.5)
-        began = time.time()
-        assert fast.now() == slow.now() == began
-        await asyncio.sleep(3.0)
-        assert (fast.now() - began, slow.now() - began) == pytest.approx((12.0, 1.5))
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_a_clock_with_a_speed_begins_at_the_time_of_day(loop: FakeTimeLoop) -> None:
+    fast, slow = WallClock(4.0), WallClock(0.5)
+    began = time.time()
+    assert fast.now() == slow.now() == began
+    await asyncio.sleep(3.0)
+    assert (fast.now() - began, slow.now() - began) == pytest.approx((12.0, 1.5))
 
 
-def test_a_timer_may_pause_the_clock_and_the_next_one_of_its_moment_waits(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock, rung = WallClock(), list[str]()
-        clock.call_later(1.0, clock.pause)
-        clock.call_later(1.0, lambda: rung.append("second"))
-        await asyncio.sleep(5.0)
-        assert rung == []
-        clock.resume()
-        await asyncio.sleep(0.0)
-        await asyncio.sleep(0.0)
-        assert rung == ["second"]
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_a_timer_may_pause_the_clock_and_the_next_one_of_its_moment_waits(loop: FakeTimeLoop) -> None:
+    clock, rung = WallClock(), list[str]()
+    clock.call_later(1.0, clock.pause)
+    clock.call_later(1.0, lambda: rung.append("second"))
+    await asyncio.sleep(5.0)
+    assert rung == []
+    clock.resume()
+    await asyncio.sleep(0.0)
+    await asyncio.sleep(0.0)
+    assert rung == ["second"]
 
 
-def test_an_error_in_a_timer_reaches_the_loop_and_the_next_one_rings(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def main(loop: FakeTimeLoop) -> None:
-        clock, rung, errors = WallClock(), list[str](), list[object]()
-        loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
-        clock.call_later(1.0, lambda: 1 / 0)  # type: ignore[arg-type, return-value]
-        clock.call_later(1.0, lambda: rung.append("second"))
-        await asyncio.sleep(1.5)
-        assert rung == ["second"]
-        assert [type(each) for each in errors] == [ZeroDivisionError]
-
-    in_fake_time(monkeypatch, main)
+@played(play_in_fake_time)
+async def test_an_error_in_a_timer_reaches_the_loop_and_the_next_one_rings(loop: FakeTimeLoop) -> None:
+    clock, rung, errors = WallClock(), list[str](), list[object]()
+    loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
+    clock.call_later(1.0, lambda: 1 / 0)  # type: ignore[arg-type, return-value]
+    clock.call_later(1.0, lambda: rung.append("second"))
+    await asyncio.sleep(1.5)
+    assert rung == ["second"]
+    assert [type(each) for each in errors] == [ZeroDivisionError]
 
 
 def test_a_virtual_clock_does_not_jump_while_it_is_paused_and_its_loop_serves_others() -> None:

@@ -15,12 +15,19 @@ def test_a_byte_order_mark_does_not_belong_to_the_text(tmp_path: Path) -> None:
     assert file_text(file) == "p(1).\nq.\n"
 
 
-def test_the_line_of_an_invalid_utf_8_byte_is_reported(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [
+        (b'p(1).\nq("caf\xe9").\n', "a byte (0xe9) that is not UTF-8; save the file as UTF-8"),
+        (b"p.\n" + b"\0" * 4000, "a NUL byte; this is not a text file"),
+    ],
+)
+def test_the_line_of_an_invalid_byte_is_reported(data: bytes, told: str, tmp_path: Path) -> None:
     file = tmp_path / "a.asl"
-    file.write_bytes(b'p(1).\nq("caf\xe9").\n')
+    file.write_bytes(data)
     with pytest.raises(UnicodeError) as wrong:
         file_text(file)
-    assert str(wrong.value) == "line 2 contains a byte (0xe9) that is not UTF-8; save the file as UTF-8"
+    assert str(wrong.value) == f"line 2 contains {told}"
 
 
 def test_the_reason_for_an_unreadable_file_is_reported(tmp_path: Path) -> None:
@@ -28,24 +35,12 @@ def test_the_reason_for_an_unreadable_file_is_reported(tmp_path: Path) -> None:
         file_text(tmp_path)
 
 
-def test_reading_stops_at_a_nul_byte(tmp_path: Path) -> None:
-    file = tmp_path / "a.asl"
-    file.write_bytes(b"p.\n" + b"\0" * 4000)
-    with pytest.raises(UnicodeError, match=r"^line 2 contains a NUL byte; this is not a text file$"):
-        file_text(file)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes in folders")
-def test_a_pipe_without_a_writer_is_refused_without_waiting(tmp_path: Path) -> None:
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no named pipes in folders, and no /dev")
+def test_a_pipe_without_a_writer_and_an_endless_device_are_refused_without_waiting(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.asl")
-    with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
-        file_text(tmp_path / "pipe.asl")
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no /dev")
-def test_an_endless_device_is_refused() -> None:
-    with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
-        file_text("/dev/zero")
+    for file in (tmp_path / "pipe.asl", "/dev/zero"):
+        with pytest.raises(UnusableFile, match=r"^it is not a regular file$"):
+            file_text(file)
 
 
 def test_a_file_that_is_too_large_is_refused_before_it_fills_the_memory(tmp_path: Path) -> None:

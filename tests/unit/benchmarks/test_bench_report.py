@@ -74,20 +74,19 @@ def test_a_program_has_its_cost_its_goal_and_its_peer(report: dict[str, Any]) ->
     assert rows["slow work"][4:6] == ["1.7 ×", "≥ 12 **missed**"]
 
 
-def test_a_peer_that_lacks_something_has_a_dash(report: dict[str, Any]) -> None:
-    rows = rows_of(parts_of(report)["programs"])
-    assert rows["quick work without a peer"][4:] == ["–", "", ""]
-
-
-def test_a_peer_that_never_ends_has_its_limit_as_time(report: dict[str, Any]) -> None:
-    rows = rows_of(parts_of(report)["programs"])
-    assert rows["quick work for ever"][4:] == ["> 30 s: > 290,000 ×", "≥ 12 met", ""]
-
-
-def test_a_peer_that_fails_or_is_wrong_has_no_ratio(report: dict[str, Any]) -> None:
-    rows = rows_of(parts_of(report)["programs"])
-    assert rows["quick work that fails"][4:] == ["fails", "", ""]
-    assert rows["quick work that is wrong"][4:] == ["is wrong: 8", "", ""]
+@pytest.mark.parametrize(
+    ("program", "cells"),
+    [
+        ("quick work without a peer", ["–", "", ""]),
+        ("quick work for ever", ["> 30 s: > 290,000 ×", "≥ 12 met", ""]),
+        ("quick work that fails", ["fails", "", ""]),
+        ("quick work that is wrong", ["is wrong: 8", "", ""]),
+    ],
+)
+def test_a_peer_without_a_time_has_a_word_or_its_limit(
+    report: dict[str, Any], program: str, cells: list[str]
+) -> None:
+    assert rows_of(parts_of(report)["programs"])[program][4:] == cells
 
 
 def test_goals_are_judged_by_the_worst(report: dict[str, Any]) -> None:

@@ -32,24 +32,10 @@ from pathlib import Path
 from typing import Any
 
 LIBRARIES = (
-    "click",
-    "click._compat",
-    "click.testing",
-    "concurrent.futures.thread",
-    "multiprocessing.connection",
-    "numpy",
-    "platform",
-    "rich.console",
-    "rich.live",
-    "rich.text",
-    "rosbags.typesys",
-    "ruamel.yaml",
-    "subprocess",
-    "tempfile",
-    "unittest",
-    "webbrowser",
-    "websockets.asyncio.client",
-    "websockets.asyncio.server",
+    *("click", "click._compat", "click.testing", "concurrent.futures.thread", "multiprocessing.connection"),
+    *("numpy", "platform", "rich.console", "rich.live", "rich.text", "rosbags.typesys", "ruamel.yaml"),
+    *("subprocess", "tempfile", "unittest", "webbrowser", "websockets.asyncio.client"),
+    *("websockets.asyncio.server",),
 )
 """Imported first: they look at the platform when they are."""
 SIGNAL_NAMES = (
@@ -60,35 +46,13 @@ SIGNAL_NAMES = (
 """What the module `signal` has on Windows, besides ``SIGBREAK`` and two events."""
 SIGBREAK = 21
 POSIX_FUNCTIONS = (
-    *(
-        "fork",
-        "forkpty",
-        "getuid",
-        "geteuid",
-        "getgid",
-        "getegid",
-        "getgroups",
-        "getpgid",
-        "getpgrp",
-        "getsid",
-    ),
-    *("setsid", "setuid", "setgid", "setpgid", "killpg", "mkfifo", "mknod", "uname", "statvfs", "fstatvfs"),
-    *(
-        "sysconf",
-        "getloadavg",
-        "nice",
-        "wait",
-        "wait3",
-        "wait4",
-        "waitid",
-        "chown",
-        "fchown",
-        "lchown",
-        "fchmod",
-    ),
-    *("fchdir", "chroot", "getpriority", "sched_getaffinity", "sched_setaffinity", "sched_yield", "openpty"),
-    *("ttyname", "tcgetpgrp", "pread", "pwrite", "readv", "writev", "posix_spawn", "posix_spawnp", "pipe2"),
-    *("O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_DIRECTORY", "O_SYNC", "O_DSYNC", "O_PATH"),
+    *("fork", "forkpty", "getuid", "geteuid", "getgid", "getegid", "getgroups", "getpgid", "getpgrp"),
+    *("getsid", "setsid", "setuid", "setgid", "setpgid", "killpg", "mkfifo", "mknod", "uname", "statvfs"),
+    *("fstatvfs", "sysconf", "getloadavg", "nice", "wait", "wait3", "wait4", "waitid", "chown", "fchown"),
+    *("lchown", "fchmod", "fchdir", "chroot", "getpriority", "sched_getaffinity", "sched_setaffinity"),
+    *("sched_yield", "openpty", "ttyname", "tcgetpgrp", "pread", "pwrite", "readv", "writev", "posix_spawn"),
+    *("posix_spawnp", "pipe2", "O_NONBLOCK", "O_NOCTTY", "O_NOFOLLOW", "O_CLOEXEC", "O_DIRECTORY", "O_SYNC"),
+    *("O_DSYNC", "O_PATH"),
 )
 POSIX_MODULES = ("crypt", "fcntl", "grp", "pty", "pwd", "readline", "resource", "syslog", "termios", "tty")
 STACK = 512 * 1024

@@ -162,19 +162,8 @@ def test_programs_are_checked_tested_and_formatted(tmp_path: Path) -> None:
 
 @simulated
 def test_the_world_runs_as_a_process_of_its_own(tmp_path: Path) -> None:
-    arguments = (
-        "sim",
-        "patrol",
-        "--ros",
-        "memory",
-        "--clock",
-        "fast",
-        "--for",
-        "5",
-        "--ground-truth",
-        "t.jsonl",
-    )
-    output, _ = ended(*arguments, folder=tmp_path)
+    arguments = "sim patrol --ros memory --clock fast --for 5 --ground-truth t.jsonl"
+    output, _ = ended(*arguments.split(), folder=tmp_path)
     assert output == "running the world patrol with turtlebot; press Ctrl+C to stop\n"
     assert truth(tmp_path / "t.jsonl")[-1] == {"kind": "end", "time": 5.0}
     output, _ = ended("ros", "list", folder=tmp_path)

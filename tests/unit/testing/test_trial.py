@@ -149,13 +149,6 @@ def test_each_test_starts_with_a_new_agent(outcomes: Outcomes) -> None:
     assert [outcome.passed for outcome in outcomes(both)] == [True, True]
 
 
-def test_the_goals_of_the_program_are_pursued_too(outcomes: Outcomes) -> None:
-    (outcome,) = outcomes(
-        "!start. +!start <- +started. @t[test] +!t <- .wait(started); !assert_true(started)."
-    )
-    assert outcome.passed
-
-
 def test_a_plan_before_an_include_overrides_an_included_one(outcomes: Outcomes) -> None:
     program = '+!start. { include("robot.asl") } @t[test] +!t <- .wait(10); !assert_false(started).'
     (outcome,) = outcomes(program, robot_asl="!start. +!start <- +started.")
@@ -187,25 +180,31 @@ def test_a_goal_that_fails_fails_its_test(told: Callable[..., str]) -> None:
     )  # fmt: skip
 
 
-def test_a_goal_without_plan_fails_its_test(told: Callable[..., str]) -> None:
-    assert "no relevant plan for !absent(1)" in told("@t[test] +!t <- !absent(1).")
-    assert "no applicable plan for !t" in told("@t[test] +!t : never <- .print(x).")
+ENDLESS = "did not end within 20000 reasoning cycles: an endless loop?"
+UNHANDLED = "agent t: the goal !other failed and has no plan for its failure"
 
 
-def test_a_goal_handled_by_its_own_plan_passes(outcomes: Outcomes) -> None:
-    (outcome,) = outcomes("@t[test] +!t <- .fail. -!t <- !assert_true(true).")
-    assert outcome.passed
-    assert outcome.assertions == 1
-
-
-def test_an_unhandled_failure_fails_the_test(told: Callable[..., str]) -> None:
-    shown = told("@t[test] +!t <- !!other; .wait(50). +!other <- ?nothing(X).")
-    assert "agent t: the goal !other failed and has no plan for its failure" in shown
-    assert "test_goal_failed" in shown
-
-
-def test_a_crash_in_an_internal_action_fails_the_test(told: Callable[..., str]) -> None:
-    assert "the goal of the test failed: " in told("@t[test] +!t <- .nth(7, [a], X); .print(X).")
+@pytest.mark.parametrize(
+    ("test", "parts"),
+    [
+        ("+!t <- !absent(1).", ["no relevant plan for !absent(1)"]),
+        ("+!t : never <- .print(x).", ["no applicable plan for !t"]),
+        ("+!t <- !!other; .wait(50). +!other <- ?nothing(X).", [UNHANDLED, "test_goal_failed"]),
+        ("+!t <- .nth(7, [a], X); .print(X).", ["the goal of the test failed: "]),
+        ("+!t <- !t.", [ENDLESS]),
+        ("+!t <- while (true) { +p; -p }.", ["an endless loop?"]),
+        ("+!t <- .drop_intention.", ["its intention was dropped"]),
+        ("+!t <- .stopMAS; .wait(10).", ["(.stopMAS)"]),
+        ("+!t <- !fake_action(drive, soon).", ["invalid outcome soon"]),
+        (
+            "+!t <- !fake_action(drive(_), never);\n drive(3).",
+            ["t.asl:2:2: the test did not end", "it waits for drive(3)"],
+        ),
+    ],
+)
+def test_a_failure_says_what_went_wrong(told: Callable[..., str], test: str, parts: list[str]) -> None:
+    shown = told(f"@t[test] {test}")
+    assert [part for part in parts if part not in shown] == []
 
 
 def test_a_time_out_reports_what_the_test_waits_for(told: Callable[..., str]) -> None:
@@ -214,15 +213,46 @@ def test_a_time_out_reports_what_the_test_waits_for(told: Callable[..., str]) ->
     assert "printed:\n  [t] begun" in shown
 
 
+@pytest.mark.parametrize(
+    ("program", "assertions"),
+    [
+        pytest.param(
+            "!start. +!start <- +started. @t[test] +!t <- .wait(started); !assert_true(started).",
+            1,
+            id="the goals of the program are pursued too",
+        ),
+        pytest.param(
+            "@t[test] +!t <- .fail. -!t <- !assert_true(true).", 1, id="a goal handled by its own plan"
+        ),
+        pytest.param(
+            "+!a <- .wait(10); +c(1). +!b <- .wait(20). @t[test] +!t <- (!a |&| !b); !assert_true(c(1)).",
+            1,
+            id="a test may fork",
+        ),
+        pytest.param(
+            "@t[test] +!t <- !fake_action(drive(_, _)); !fake_action(pose(7, _)); drive(1, 2); pose(X, Y);"
+            " !assert_equals(7, X); !assert_did(drive(1, _)); !assert_not_did(drive(2, _)).",
+            3,
+            id="actions can be faked",
+        ),
+        pytest.param(
+            "@t[test] +!t <- !fake_action(see(1)); see(X); !fake_action(see(2)); see(Y);"
+            " !assert_equals([1, 2], [X, Y]).",
+            1,
+            id="the last fake of an action wins",
+        ),
+    ],
+)
+def test_a_test_passes(outcomes: Outcomes, program: str, assertions: int) -> None:
+    (outcome,) = outcomes(program)
+    assert outcome.problems == []
+    assert outcome.assertions == assertions
+
+
 def test_the_default_time_limit_applies(outcomes: Outcomes) -> None:
     (outcome,) = outcomes("@t[test] +!t <- .wait(11000).")
     assert outcome.problems[0].message == "the test did not end within 10 s of the run's clock"
     assert outcome.simulated == pytest.approx(10.0)
-
-
-def test_an_endless_loop_is_ended(told: Callable[..., str]) -> None:
-    assert "did not end within 20000 reasoning cycles: an endless loop?" in told("@t[test] +!t <- !t.")
-    assert "an endless loop?" in told("@t[test] +!t <- while (true) { +p; -p }.")
 
 
 def test_a_step_that_does_not_end_is_stopped(outcomes: Outcomes) -> None:
@@ -243,46 +273,11 @@ def test_waiting_forever_is_detected_immediately(outcomes: Outcomes) -> None:
     assert outcome.simulated < 1.0
 
 
-def test_a_dropped_test_fails(told: Callable[..., str]) -> None:
-    assert "its intention was dropped" in told("@t[test] +!t <- .drop_intention.")
-
-
-def test_a_program_that_ends_the_run_fails_the_test(outcomes: Outcomes) -> None:
-    (outcome,) = outcomes("@t[test] +!t <- .stopMAS; .wait(10).")
-    assert "(.stopMAS)" in outcome.problems[0].message
-
-
-def test_a_test_may_fork(outcomes: Outcomes) -> None:
-    program = "+!a <- .wait(10); +c(1). +!b <- .wait(20). @t[test] +!t <- (!a |&| !b); !assert_true(c(1))."
-    (outcome,) = outcomes(program)
-    assert outcome.passed
-    assert outcome.assertions == 1
-
-
-def test_actions_can_be_faked(outcomes: Outcomes) -> None:
-    (outcome,) = outcomes(
-        """
-        @t[test] +!t
-          <- !fake_action(drive(_, _));
-             !fake_action(pose(7, _));
-             drive(1, 2);
-             pose(X, Y);
-             !assert_equals(7, X);
-             !assert_did(drive(1, _));
-             !assert_not_did(drive(2, _)).
-        """
-    )
-    assert outcome.problems == []
-
-
 def test_a_faked_action_can_fail_and_take_time(outcomes: Outcomes) -> None:
     (outcome,) = outcomes(
         """
         @t[test] +!t
-          <- !fake_action(drive, failed(blocked(wall), "a wall"));
-             !fake_action(wait, after(1500));
-             wait;
-             !go.
+          <- !fake_action(drive, failed(blocked(wall), "a wall")); !fake_action(wait, after(1500)); wait; !go.
         +!go <- drive.
         -!go[error_msg(Text), env_failure_reason(Reason)]
           <- !assert_equals("a wall", Text); !assert_equals(blocked(wall), Reason).
@@ -291,23 +286,6 @@ def test_a_faked_action_can_fail_and_take_time(outcomes: Outcomes) -> None:
     assert outcome.problems == []
     assert outcome.assertions == 2
     assert outcome.simulated == pytest.approx(1.5)
-
-
-def test_the_last_fake_of_an_action_wins(outcomes: Outcomes) -> None:
-    (outcome,) = outcomes(
-        "@t[test] +!t <- !fake_action(see(1)); see(X); !fake_action(see(2)); see(Y); !assert_equals([1, 2], [X, Y])."
-    )
-    assert outcome.passed
-
-
-def test_an_action_that_never_ends_is_reported(told: Callable[..., str]) -> None:
-    shown = told("@t[test] +!t <- !fake_action(drive(_), never);\n drive(3).")
-    assert "t.asl:2:2: the test did not end" in shown
-    assert "it waits for drive(3)" in shown
-
-
-def test_an_invalid_outcome_of_a_fake_is_reported(told: Callable[..., str]) -> None:
-    assert "invalid outcome soon" in told("@t[test] +!t <- !fake_action(drive, soon).")
 
 
 def test_tests_may_create_agents_and_exchange_messages(outcomes: Outcomes) -> None:

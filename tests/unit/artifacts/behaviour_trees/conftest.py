@@ -1,6 +1,7 @@
 """A cart on rails: an environment on the virtual clock in which trees can drive, stop, bump and fail."""
 
 import asyncio
+import inspect
 
 import py_trees
 import pytest
@@ -93,25 +94,40 @@ class Rails:
         await self.other.act(*call)
 
 
-@pytest.fixture
-def on_rails():
+def on_rails(scene):
     """Run a coroutine function with the rails, the cart made and focused by the tree."""
+    py_trees.blackboard.Blackboard.clear()
+    rails = Rails()
 
-    def play(scene):
-        py_trees.blackboard.Blackboard.clear()
-        rails = Rails()
+    async def main():
+        await rails.make_cart("cart")
+        rails.session.focus("cart")
+        try:
+            return await asyncio.wait_for(scene(rails), 1000)
+        finally:
+            await rails.environment.close()
 
-        async def main():
-            await rails.make_cart("cart")
-            rails.session.focus("cart")
-            try:
-                return await asyncio.wait_for(scene(rails), 1000)
-            finally:
-                await rails.environment.close()
+    return run(main, rails.clock)
 
-        return run(main, rails.clock)
 
-    return play
+@pytest.fixture(name="on_rails")
+def _on_rails():
+    return on_rails
+
+
+@pytest.fixture
+def rails():
+    """The place of the rails, which are made in the loop of the test."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    test = pyfuncitem.obj
+    if not inspect.iscoroutinefunction(test):
+        return None
+    given = {name: pyfuncitem.funcargs[name] for name in inspect.signature(test).parameters}
+    on_rails(lambda rails: test(**given | {"rails": rails}))
+    return True
 
 
 @pytest.fixture

@@ -45,13 +45,7 @@ def two_drive(on_rails):
 
 
 def test_a_more_urgent_act_takes_the_wheels_and_the_other_operation_continues(two_drive):
-    assert two_drive(urgency=10) == [
-        "1 tour 1",
-        "2 flee 1",
-        "3 flee 2",
-        "4 tour 2",
-        "5 tour 3",
-    ]
+    assert two_drive(urgency=10) == ["1 tour 1", "2 flee 1", "3 flee 2", "4 tour 2", "5 tour 3"]
 
 
 @pytest.mark.parametrize(("urgency", "urgency_of_other"), [(0, 0), (5, 5), (1, 10)])
@@ -65,32 +59,32 @@ def test_an_act_that_is_not_more_urgent_waits(two_drive, urgency, urgency_of_oth
     ]
 
 
-def test_an_act_is_preempted_and_keeps_running_until_it_has_the_wheels_again(on_rails):
-    async def scene(rails):
-        base = await rails.other.make_artifact("base", Wheels)
-        tour = Act("drive", "tour", 3, artifact=base)
-        running = asyncio.ensure_future(rails.runner(tour).run())
-        await rails.clock.sleep(0.5)
-        await rails.other.act("drive", "flee", 2, artifact=base, urgency=10)
-        assert tour.status is Status.RUNNING
-        assert await running is Status.SUCCESS
-        return rails.environment.artifact(base).lines
+async def test_an_act_is_preempted_and_keeps_running_until_it_has_the_wheels_again(rails):
+    base = await rails.other.make_artifact("base", Wheels)
+    tour = Act("drive", "tour", 3, artifact=base)
+    running = asyncio.ensure_future(rails.runner(tour).run())
+    await rails.clock.sleep(0.5)
+    await rails.other.act("drive", "flee", 2, artifact=base, urgency=10)
+    assert tour.status is Status.RUNNING
+    assert await running is Status.SUCCESS
+    assert rails.environment.artifact(base).lines == [
+        "1 tour 1",
+        "2 flee 1",
+        "3 flee 2",
+        "4 tour 2",
+        "5 tour 3",
+    ]
 
-    assert on_rails(scene) == ["1 tour 1", "2 flee 1", "3 flee 2", "4 tour 2", "5 tour 3"]
 
-
-def test_an_interrupted_act_gives_the_wheels_back(on_rails, reactive):
-    async def scene(rails):
-        base = await rails.other.make_artifact("base", Wheels)
-        tour = rails.other.begin("drive", "tour", 3, artifact=base)
-        await rails.clock.sleep(0.5)
-        flee = Act("drive", "flee", 9, artifact=base, urgency=10)
-        root = reactive("sequence", PropertyCheck("battery", lambda level: level > 20), flee)
-        status, _ = await asyncio.gather(rails.runner(root).run(), rails.at(2.5, "drain", 10))
-        assert status is Status.FAILURE
-        await tour
-        return [line.split(" ", 1)[1] for line in rails.environment.artifact(base).lines], rails.clock.elapsed
-
-    lines, elapsed = on_rails(scene)
-    assert lines == ["tour 1", "flee 1", "tour 2", "tour 3"]
-    assert elapsed == pytest.approx(4.5, abs=0.02)
+async def test_an_interrupted_act_gives_the_wheels_back(rails, reactive):
+    base = await rails.other.make_artifact("base", Wheels)
+    tour = rails.other.begin("drive", "tour", 3, artifact=base)
+    await rails.clock.sleep(0.5)
+    flee = Act("drive", "flee", 9, artifact=base, urgency=10)
+    root = reactive("sequence", PropertyCheck("battery", lambda level: level > 20), flee)
+    status, _ = await asyncio.gather(rails.runner(root).run(), rails.at(2.5, "drain", 10))
+    assert status is Status.FAILURE
+    await tour
+    lines = rails.environment.artifact(base).lines
+    assert [line.split(" ", 1)[1] for line in lines] == ["tour 1", "flee 1", "tour 2", "tour 3"]
+    assert rails.clock.elapsed == pytest.approx(4.5, abs=0.02)

@@ -42,55 +42,40 @@ class Wrong(Behaviour):
             raise RuntimeError("a mistake at its end")
 
 
-def test_it_ticks_at_its_period(on_rails):
-    async def scene(rails):
-        await rails.runner(Timer(0.5), period=0.2).run()
-        return rails.ticks
-
-    assert on_rails(scene) == [0, 0.2, 0.4, 0.5]
+async def test_it_ticks_at_its_period(rails):
+    await rails.runner(Timer(0.5), period=0.2).run()
+    assert rails.ticks == [0, 0.2, 0.4, 0.5]
 
 
-def test_without_a_period_it_ticks_only_when_something_happens(on_rails):
-    async def scene(rails):
-        await rails.runner(Act("drive", 3), period=None).run()
-        return rails.ticks
-
+async def test_without_a_period_it_ticks_only_when_something_happens(rails):
+    await rails.runner(Act("drive", 3), period=None).run()
     # The cart begins to move, and shows each metre; its last metre and the end of the operation are one tick.
-    assert on_rails(scene) == [0, 0.01, 1.0, 2.0, 3.0]
+    assert rails.ticks == [0, 0.01, 1.0, 2.0, 3.0]
 
 
-def test_what_comes_together_is_one_tick(on_rails):
-    async def scene(rails):
-        async def changes():
-            await rails.clock.sleep(1)
-            for level in (90, 80, 70):
-                await rails.other.act("drain", level)
+async def test_what_comes_together_is_one_tick(rails):
+    async def changes():
+        await rails.clock.sleep(1)
+        for level in (90, 80, 70):
+            await rails.other.act("drain", level)
 
-        wait = WaitForProperty("battery", lambda level: level < 75)
-        await asyncio.gather(rails.runner(wait, period=None).run(), changes())
-        return rails.ticks
-
-    assert on_rails(scene) == [0, 1.0]
+    wait = WaitForProperty("battery", lambda level: level < 75)
+    await asyncio.gather(rails.runner(wait, period=None).run(), changes())
+    assert rails.ticks == [0, 1.0]
 
 
-def test_a_tree_woken_by_its_own_operations_does_not_block_virtual_time(on_rails):
-    async def scene(rails):
-        runner = rails.runner(Act("drain", 1), period=None)
-        runner.tree.add_post_tick_handler(lambda tree: tree.count == 100 and runner.stop())
-        await runner.run(forever=True)
-        return rails.clock.elapsed
-
-    assert on_rails(scene) == pytest.approx(1.0)
+async def test_a_tree_woken_by_its_own_operations_does_not_block_virtual_time(rails):
+    runner = rails.runner(Act("drain", 1), period=None)
+    runner.tree.add_post_tick_handler(lambda tree: tree.count == 100 and runner.stop())
+    await runner.run(forever=True)
+    assert rails.clock.elapsed == pytest.approx(1.0)
 
 
-def test_what_the_tree_itself_changes_does_not_make_its_period_shorter(on_rails):
-    async def scene(rails):
-        runner = rails.runner(Act("drain", 1), period=0.5)
-        runner.tree.add_post_tick_handler(lambda tree: tree.count == 3 and runner.stop())
-        await runner.run(forever=True)
-        return rails.ticks
-
-    assert on_rails(scene) == [0, 0.5, 1.0, 1.5]
+async def test_what_the_tree_itself_changes_does_not_make_its_period_shorter(rails):
+    runner = rails.runner(Act("drain", 1), period=0.5)
+    runner.tree.add_post_tick_handler(lambda tree: tree.count == 3 and runner.stop())
+    await runner.run(forever=True)
+    assert rails.ticks == [0, 0.5, 1.0, 1.5]
 
 
 def test_two_runs_tick_at_the_same_moments(on_rails, reactive):
@@ -103,67 +88,49 @@ def test_two_runs_tick_at_the_same_moments(on_rails, reactive):
     assert on_rails(scene) == on_rails(scene)
 
 
-def test_the_tree_may_have_visitors_and_handlers(on_rails):
-    async def scene(rails):
-        tree = py_trees.trees.BehaviourTree(Act("drive", 1))
-        visitor = py_trees.visitors.SnapshotVisitor()
-        tree.add_visitor(visitor)
-        runner = TreeRunner(tree, rails.session)
-        assert await runner.run() is Status.SUCCESS
-        assert runner.tree is tree
-        return list(visitor.visited.values())
-
-    assert on_rails(scene) == [Status.SUCCESS]
+async def test_the_tree_may_have_visitors_and_handlers(rails):
+    tree = py_trees.trees.BehaviourTree(Act("drive", 1))
+    visitor = py_trees.visitors.SnapshotVisitor()
+    tree.add_visitor(visitor)
+    runner = TreeRunner(tree, rails.session)
+    assert await runner.run() is Status.SUCCESS
+    assert runner.tree is tree
+    assert list(visitor.visited.values()) == [Status.SUCCESS]
 
 
-def test_a_tree_can_run_again(on_rails):
-    async def scene(rails):
-        runner = rails.runner(Act("drive", 2))
-        return [await runner.run(), await runner.run(), rails.session.value("at")]
-
-    assert on_rails(scene) == [Status.SUCCESS, Status.SUCCESS, 4]
-
-
-def test_a_tree_runs_once_at_a_time(on_rails):
-    async def scene(rails):
-        runner = rails.runner(Act("drive", 2))
-        task = asyncio.create_task(runner.run())
-        await rails.clock.sleep(1)
-        with pytest.raises(RuntimeError, match=r"the tree `drive\(2\)` is already running"):
-            await runner.run()
-        return await task
-
-    assert on_rails(scene) is Status.SUCCESS
+async def test_a_tree_runs_once_at_a_time_and_can_run_again(rails):
+    runner = rails.runner(Act("drive", 2))
+    task = asyncio.create_task(runner.run())
+    await rails.clock.sleep(1)
+    with pytest.raises(RuntimeError, match=r"the tree `drive\(2\)` is already running"):
+        await runner.run()
+    assert await task is Status.SUCCESS
+    assert await runner.run() is Status.SUCCESS
+    assert rails.session.value("at") == 4
 
 
-def test_a_tree_can_be_ticked_without_a_runner(on_rails):
-    async def scene(rails):
-        tree = py_trees.trees.BehaviourTree(Act("drive", 2))
-        tree.setup(session=rails.session)
-        while tree.root.status in (Status.INVALID, Status.RUNNING):
-            tree.tick()
-            await rails.clock.sleep(0.5)
-        return tree.root.status, tree.count
-
-    assert on_rails(scene) == (Status.SUCCESS, 5)
+async def test_a_tree_can_be_ticked_without_a_runner(rails):
+    tree = py_trees.trees.BehaviourTree(Act("drive", 2))
+    tree.setup(session=rails.session)
+    while tree.root.status in (Status.INVALID, Status.RUNNING):
+        tree.tick()
+        await rails.clock.sleep(0.5)
+    assert (tree.root.status, tree.count) == (Status.SUCCESS, 5)
 
 
-def test_behaviours_of_others_get_what_they_need(on_rails):
+async def test_behaviours_of_others_get_what_they_need(rails):
     class NeedsNode(Wrong):
         def setup(self, **given):
             self.node = given["node"]
 
-    async def scene(rails):
-        behaviour = NeedsNode(5)
-        runner = rails.runner(behaviour, setup={"node": "a node of ROS"})
-        rails.clock.call_later(0.15, runner.stop)
-        await runner.run()
-        return behaviour.node
-
-    assert on_rails(scene) == "a node of ROS"
+    behaviour = NeedsNode(5)
+    runner = rails.runner(behaviour, setup={"node": "a node of ROS"})
+    rails.clock.call_later(0.15, runner.stop)
+    await runner.run()
+    assert behaviour.node == "a node of ROS"
 
 
-def test_behaviours_of_a_project_use_the_session_and_wake_the_tree(on_rails):
+async def test_behaviours_of_a_project_use_the_session_and_wake_the_tree(rails):
     class Reaches(ArtifactBehaviour):
         def initialise(self):
             self.seen = []
@@ -172,39 +139,30 @@ def test_behaviours_of_a_project_use_the_session_and_wake_the_tree(on_rails):
         def update(self):
             return Status.SUCCESS if (2,) in self.seen else Status.RUNNING
 
-    async def scene(rails):
-        runner = rails.runner(Reaches("at 2"), period=None)
-        await asyncio.gather(runner.run(), rails.at(1, "drive", 4))
-        return rails.ticks
-
-    assert on_rails(scene)[-1] == 3.0
+    runner = rails.runner(Reaches("at 2"), period=None)
+    await asyncio.gather(runner.run(), rails.at(1, "drive", 4))
+    assert rails.ticks[-1] == 3.0
 
 
-def test_it_can_be_stopped_from_outside(on_rails):
-    async def scene(rails):
-        runner = rails.runner(Act("drive", 9), period=None)
-        rails.clock.call_later(2.5, runner.stop)
-        assert await runner.run() is Status.RUNNING
-        await rails.session.until(lambda: rails.session.value("moving") == "stopped")
-        return rails.session.value("at"), rails.clock.elapsed
-
-    assert on_rails(scene) == (2, 2.5)
+async def test_it_can_be_stopped_from_outside(rails):
+    runner = rails.runner(Act("drive", 9), period=None)
+    rails.clock.call_later(2.5, runner.stop)
+    assert await runner.run() is Status.RUNNING
+    await rails.session.until(lambda: rails.session.value("moving") == "stopped")
+    assert (rails.session.value("at"), rails.clock.elapsed) == (2, 2.5)
 
 
-def test_when_its_task_is_cancelled_the_cart_stops(on_rails):
-    async def scene(rails):
-        task = asyncio.create_task(rails.runner(Sequence("s", memory=True, children=[Act("drive", 9)])).run())
-        await rails.clock.sleep(2.5)
-        task.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await task
-        await rails.session.until(lambda: rails.session.value("moving") == "stopped")
-        return rails.session.value("at")
-
-    assert on_rails(scene) == 2
+async def test_when_its_task_is_cancelled_the_cart_stops(rails):
+    task = asyncio.create_task(rails.runner(Sequence("s", memory=True, children=[Act("drive", 9)])).run())
+    await rails.clock.sleep(2.5)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await task
+    await rails.session.until(lambda: rails.session.value("moving") == "stopped")
+    assert rails.session.value("at") == 2
 
 
-def test_an_interrupted_tick_reports_all_running_behaviours(on_rails):
+async def test_an_interrupted_tick_reports_all_running_behaviours(rails):
     class Running(Behaviour):
         ended = None
 
@@ -214,113 +172,77 @@ def test_an_interrupted_tick_reports_all_running_behaviours(on_rails):
         def terminate(self, new_status):
             self.ended = new_status
 
-    async def scene(rails):
-        before = Running("before")
-        root = py_trees.composites.Parallel(
-            "p", py_trees.common.ParallelPolicy.SuccessOnAll(), [before, Wrong()]
-        )
-        with pytest.raises(RuntimeError):
-            await rails.runner(root).run()
-        return before.ended
-
-    assert on_rails(scene) is Status.INVALID
+    before = Running("before")
+    root = py_trees.composites.Parallel("p", py_trees.common.ParallelPolicy.SuccessOnAll(), [before, Wrong()])
+    with pytest.raises(RuntimeError):
+        await rails.runner(root).run()
+    assert before.ended is Status.INVALID
 
 
 @pytest.mark.parametrize("ends_badly", [False, True])
-def test_what_a_behaviour_raises_is_raised_and_the_cart_stops(on_rails, ends_badly):
-    async def scene(rails):
-        children = [Act("drive", 9), Wrong(3, ends_badly)]
-        root = py_trees.composites.Parallel("p", py_trees.common.ParallelPolicy.SuccessOnAll(), children)
-        with pytest.raises(RuntimeError, match="a mistake"):
-            await rails.runner(root).run()
-        await rails.session.until(lambda: rails.session.value("moving") == "stopped")
-        return rails.session.value("at")
-
-    assert on_rails(scene) == 0
+async def test_what_a_behaviour_raises_is_raised_and_the_cart_stops(rails, ends_badly):
+    children = [Act("drive", 9), Wrong(3, ends_badly)]
+    root = py_trees.composites.Parallel("p", py_trees.common.ParallelPolicy.SuccessOnAll(), children)
+    with pytest.raises(RuntimeError, match="a mistake"):
+        await rails.runner(root).run()
+    await rails.session.until(lambda: rails.session.value("moving") == "stopped")
+    assert rails.session.value("at") == 0
 
 
-def test_a_setup_that_raises_is_raised(on_rails):
+async def test_a_setup_that_raises_is_raised(rails):
     class Unready(Wrong):
         def setup(self, **given):
             raise RuntimeError("no driver")
 
-    async def scene(rails):
-        with pytest.raises(RuntimeError, match="no driver"):
-            await rails.runner(Unready()).run()
-
-    on_rails(scene)
+    with pytest.raises(RuntimeError, match="no driver"):
+        await rails.runner(Unready()).run()
 
 
-def test_a_closed_session_is_reported(on_rails):
-    async def scene(rails):
-        rails.clock.call_later(1.5, rails.session.close)
-        with pytest.raises(WorkspaceError, match="session tree has been closed"):
-            await rails.runner(Act("drive", 9)).run(forever=True)
-
-    on_rails(scene)
+async def test_a_closed_session_is_reported(rails):
+    rails.clock.call_later(1.5, rails.session.close)
+    with pytest.raises(WorkspaceError, match="session tree has been closed"):
+        await rails.runner(Act("drive", 9)).run(forever=True)
 
 
 @pytest.mark.parametrize("root", [None, Act, "patrol"])
-def test_a_tree_needs_a_root(on_rails, root):
-    async def scene(rails):
-        with pytest.raises(TypeError, match="expected a root behaviour of py_trees, found"):
-            TreeRunner(root, rails.session)
-
-    on_rails(scene)
+async def test_a_tree_needs_a_root(rails, root):
+    with pytest.raises(TypeError, match="expected a root behaviour of py_trees, found"):
+        TreeRunner(root, rails.session)
 
 
-def test_a_tree_needs_a_session():
+async def test_a_tree_needs_a_session_and_a_positive_period(rails):
     with pytest.raises(TypeError, match=r"found 'driver'; a PythonAgent has one: self\.session"):
         TreeRunner(Timer(1), "driver")
-
-
-@pytest.mark.parametrize("period", [0, -1, float("nan")])
-def test_the_period_is_positive(on_rails, period):
-    async def scene(rails):
+    for period in (0, -1, float("nan")):
         with pytest.raises(ValueError, match="positive number of seconds"):
             TreeRunner(Timer(1), rails.session, period=period)
 
-    on_rails(scene)
+
+async def test_a_timer_starts_again(rails):
+    root = py_trees.decorators.Repeat("twice", Timer(1.5), num_success=2)
+    await rails.runner(root).run()
+    assert rails.clock.elapsed == pytest.approx(3.0, abs=0.15)
 
 
-def test_a_timer_starts_again(on_rails):
-    async def scene(rails):
-        root = py_trees.decorators.Repeat("twice", Timer(1.5), num_success=2)
-        await rails.runner(root).run()
-        return rails.clock.elapsed
-
-    assert on_rails(scene) == pytest.approx(3.0, abs=0.15)
+async def test_a_timer_is_over_when_it_is_interrupted(rails, reactive):
+    root = reactive("sequence", HasProperty("battery", 100), Timer(500))
+    await asyncio.gather(rails.runner(root).run(), rails.at(2, "drain", 10))
+    assert rails.clock.pending() == []
 
 
-def test_a_timer_is_over_when_it_is_interrupted(on_rails, reactive):
-    async def scene(rails):
-        root = reactive("sequence", HasProperty("battery", 100), Timer(500))
-        await asyncio.gather(rails.runner(root).run(), rails.at(2, "drain", 10))
-        return rails.clock.pending()
-
-    assert on_rails(scene) == []
-
-
-def test_what_takes_too_long_is_interrupted(on_rails):
-    async def scene(rails):
-        drive = Act("drive", 9)
-        late = Timeout(drive, 2.5)
-        assert await rails.runner(late).run() is Status.FAILURE
-        assert (late.name, late.feedback_message) == ("at most 2.5 s", "took longer than 2.5 s")
-        assert drive.status is Status.INVALID
-        return rails.session.value("at"), rails.clock.elapsed
-
-    at, elapsed = on_rails(scene)
-    assert at == 2
-    assert elapsed == pytest.approx(2.5, abs=0.011)
+async def test_what_takes_too_long_is_interrupted(rails):
+    drive = Act("drive", 9)
+    late = Timeout(drive, 2.5)
+    assert await rails.runner(late).run() is Status.FAILURE
+    assert (late.name, late.feedback_message) == ("at most 2.5 s", "took longer than 2.5 s")
+    assert drive.status is Status.INVALID
+    assert rails.session.value("at") == 2
+    assert rails.clock.elapsed == pytest.approx(2.5, abs=0.011)
 
 
 @pytest.mark.parametrize(("metres", "status"), [(2, Status.SUCCESS), (20, Status.FAILURE)])
-def test_what_is_quick_enough_ends_by_itself(on_rails, metres, status):
-    async def scene(rails):
-        return await rails.runner(Timeout(Act("drive", metres), 11)).run()
-
-    assert on_rails(scene) is status
+async def test_what_is_quick_enough_ends_by_itself(rails, metres, status):
+    assert await rails.runner(Timeout(Act("drive", metres), 11)).run() is status
 
 
 def test_without_py_trees_the_error_has_help():
@@ -332,15 +254,11 @@ def test_without_py_trees_the_error_has_help():
     )
 
 
-def test_an_observer_receives_behaviours_and_operations_from_beginning_to_end(on_rails):
+async def test_an_observer_receives_behaviours_and_operations_from_beginning_to_end(rails):
     told = []
-
-    async def scene(rails):
-        rails.session.observer = lambda state, text, which, why: told.append((state, text, why))
-        far = Sequence("tour", memory=True, children=[Act("drive", 3), Act("drive", 30)])
-        await rails.runner(Selector("whatever", memory=True, children=[far, Timer(0.5)])).run()
-
-    on_rails(scene)
+    rails.session.observer = lambda state, text, which, why: told.append((state, text, why))
+    far = Sequence("tour", memory=True, children=[Act("drive", 3), Act("drive", 30)])
+    await rails.runner(Selector("whatever", memory=True, children=[far, Timer(0.5)])).run()
     assert [news for news in told if news[0] == "executing"] == [
         ("executing", text, "") for text in ("whatever", "tour", "drive(3)", "drive(30)", "0.5 s")
     ]
@@ -350,34 +268,26 @@ def test_an_observer_receives_behaviours_and_operations_from_beginning_to_end(on
     assert ("failed", "drive(30)", "a wall") in told
 
 
-def test_timers_of_py_trees_follow_the_clock_of_the_run(on_rails):
-    async def scene(rails):
-        rest = py_trees.timers.Timer("rest", 500.0)
-        drive = py_trees.decorators.Timeout("at most 2 s", Act("drive", 9), duration=2.0)
-        moments = []
-        for root in (rest, drive):
-            status = await rails.runner(root).run()
-            moments.append((status, rails.clock.elapsed))
-            assert "update" not in vars(root), "the object is as before the run"
-        assert py_trees.timers.time is time
-        return moments
-
+async def test_timers_of_py_trees_follow_the_clock_of_the_run(rails):
+    rest = py_trees.timers.Timer("rest", 500.0)
+    drive = py_trees.decorators.Timeout("at most 2 s", Act("drive", 9), duration=2.0)
+    moments = []
+    for root in (rest, drive):
+        status = await rails.runner(root).run()
+        moments.append((status, rails.clock.elapsed))
+        assert "update" not in vars(root), "the object is as before the run"
+    assert py_trees.timers.time is time
     begun = time.monotonic()
     ends = [(Status.SUCCESS, pytest.approx(500, abs=0.3)), (Status.FAILURE, pytest.approx(502, abs=0.6))]
-    assert on_rails(scene) == ends
+    assert moments == ends
     assert time.monotonic() - begun < 100
 
 
-def test_a_timer_that_cannot_follow_a_virtual_clock_is_refused(on_rails):
+async def test_a_timer_that_cannot_follow_a_virtual_clock_is_refused(rails):
     class Rest(py_trees.timers.Timer):
         def update(self):
             return super().update()
 
-    async def scene(rails):
-        with pytest.raises(
-            TypeError, match=r"`rest` \(Rest\) follows the time of day.*behaviour_trees\.Timer"
-        ):
-            await rails.runner(Rest("rest", 5.0)).run()
-        await rails.runner(Timer(1.0)).run()
-
-    on_rails(scene)
+    with pytest.raises(TypeError, match=r"`rest` \(Rest\) follows the time of day.*behaviour_trees\.Timer"):
+        await rails.runner(Rest("rest", 5.0)).run()
+    await rails.runner(Timer(1.0)).run()

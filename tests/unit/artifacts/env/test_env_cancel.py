@@ -2,9 +2,9 @@
 
 import asyncio
 
+import pytest
+
 from jacaros.artifacts import Artifact, operation
-from played import played
-from stage_lab import play
 
 
 class Robot(Artifact):
@@ -68,164 +68,128 @@ class Robot(Artifact):
             self.commands.append("dropped")
 
     @operation
+    def drop_me_now(self):
+        self.current.cancel()
+        self.update_property("units", 1)
+
+    @operation
     def ping(self):
         self.commands.append("ping")
+
+
+pytestmark = pytest.mark.makes(it=Robot)
 
 
 def state(stage, robot):
     return stage.property(robot, "moving")[0], stage.property(robot, "units")[0]
 
 
-def commands(stage):
-    return stage.robot.commands
-
-
-def robot_of(stage):
-    class Kept(Robot):
-        def init(self):
-            super().init()
-            stage.robot = self
-
-    return stage.make(Kept)
-
-
-@played(play)
-async def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(stage):
-    robot = await robot_of(stage)
-    watcher = stage.watch(robot)
-    move = stage.call(robot, "move", 10)
+async def test_a_cancelled_operation_stops_immediately_and_changes_in_finally_are_published(
+    stage, it, watcher, made
+):
+    move = stage.call(it, "move", 10)
     await stage.clock.sleep(2.5)
     watcher.take()
     move.execution.cancel()
     await stage.clock.sleep(0.1)
-    assert commands(stage) == ["go", "go", "go", "stop"]
+    assert made.commands == ["go", "go", "go", "stop"]
     assert watcher.take() == ["-moving(True) +moving(False)"]
     assert move.execution.ended
     await stage.clock.sleep(20.0)
-    assert state(stage, robot) == (False, 2)
+    assert state(stage, it) == (False, 2)
     assert move.outcome is None, "no outcome is reported"
 
 
-@played(play)
-async def test_cancelling_twice_or_after_the_end_has_no_effect(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 1)
-    await move.wait()
+async def test_cancelling_twice_or_after_the_end_has_no_effect(stage, it):
+    move = await stage.ended(it, "move", 1)
     move.execution.cancel()
-    second = stage.call(robot, "slow_end")
+    second = stage.call(it, "slow_end")
+    await stage.after(1.0, second.execution.cancel)
+    second.execution.cancel()
+    await stage.after(0.1, second.execution.cancel)
     await stage.clock.sleep(1.0)
-    second.execution.cancel()
-    second.execution.cancel()
-    await stage.clock.sleep(0.1)
-    second.execution.cancel()
-    await stage.clock.sleep(1.0)
-    assert state(stage, robot) == (False, 2), "finally has run"
-    ping = stage.call(robot, "ping")
+    assert state(stage, it) == (False, 2), "finally has run"
+    ping = stage.call(it, "ping")
     ping.execution.cancel()
     assert ping.ok
 
 
-@played(play)
-async def test_an_operation_cancelled_before_its_first_step_never_begins(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 1)
+async def test_an_operation_cancelled_before_its_first_step_or_in_the_queue_never_begins(stage, it, made):
+    move = stage.call(it, "move", 1)
     move.execution.cancel()
     await stage.clock.sleep(5.0)
-    assert (commands(stage), move.outcome) == ([], None)
+    assert (made.commands, move.outcome) == ([], None)
     assert move.execution.ended
-    assert stage.call(robot, "ping").ok
-
-
-@played(play)
-async def test_an_operation_cancelled_while_waiting_for_the_artifact_never_begins(stage):
-    robot = await robot_of(stage)
-    stage.call(robot, "hold", 1.0)
-    move, ping = stage.call(robot, "move", 1), stage.call(robot, "ping")
+    stage.call(it, "hold", 1.0)
+    move, ping = stage.call(it, "move", 1), stage.call(it, "ping")
     move.execution.cancel()
     await ping.wait()
+    assert ping.ok
     await stage.clock.sleep(3.0)
-    assert commands(stage) == ["released", "ping"]
+    assert made.commands == ["released", "ping"]
     assert move.outcome is None
 
 
-@played(play)
-async def test_the_step_in_which_it_is_cancelled_is_rolled_back(stage):
-    robot = await robot_of(stage)
-    hold = stage.call(robot, "hold", 10.0)
+async def test_the_step_in_which_it_is_cancelled_is_rolled_back(stage, it, made):
+    hold = stage.call(it, "hold", 10.0)
+    await stage.after(1.0, hold.execution.cancel)
     await stage.clock.sleep(1.0)
-    hold.execution.cancel()
-    await stage.clock.sleep(1.0)
-    assert state(stage, robot) == (False, 0)
-    assert commands(stage) == ["released"]
-    assert stage.call(robot, "ping").ok
+    assert state(stage, it) == (False, 0)
+    assert made.commands == ["released"]
+    assert stage.call(it, "ping").ok
 
 
-@played(play)
-async def test_finally_waits_for_its_turn_before_all_others(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 10)
+async def test_finally_waits_for_its_turn_before_all_others(stage, it, made):
+    move = stage.call(it, "move", 10)
     await stage.clock.sleep(0.5)
-    hold, ping = stage.call(robot, "hold", 1.0), stage.call(robot, "ping")
-    await stage.clock.sleep(0.1)
-    move.execution.cancel()
+    hold, ping = stage.call(it, "hold", 1.0), stage.call(it, "ping")
+    await stage.after(0.1, move.execution.cancel)
     await ping.wait()
-    assert commands(stage) == ["go", "released", "stop", "ping"]
+    assert made.commands == ["go", "released", "stop", "ping"]
     assert hold.ok
-    assert state(stage, robot) == (False, -1)
+    assert state(stage, it) == (False, -1)
 
 
-@played(play)
-async def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and_stops(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 10)
+async def test_cancelled_while_it_queues_for_its_next_step_it_keeps_its_turn_and_stops(stage, it, made):
+    move = stage.call(it, "move", 10)
     await stage.clock.sleep(0.5)
-    stage.call(robot, "hold", 2.0)
-    await stage.clock.sleep(1.0)
-    move.execution.cancel()
+    stage.call(it, "hold", 2.0)
+    await stage.after(1.0, move.execution.cancel)
     move.execution.task.cancel()
-    await stage.clock.sleep(0.5)
-    move.execution.task.cancel()
-    assert commands(stage) == ["go"]
+    await stage.after(0.5, move.execution.task.cancel)
+    assert made.commands == ["go"]
     await stage.clock.sleep(1.0)
-    assert commands(stage) == ["go", "released", "stop"]
+    assert made.commands == ["go", "released", "stop"]
     assert move.execution.ended
-    assert stage.call(robot, "ping").ok
+    assert stage.call(it, "ping").ok
 
 
-@played(play)
-async def test_it_is_cancelled_while_it_gets_its_turn(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 10)
+async def test_it_is_cancelled_while_it_gets_its_turn(stage, it, made):
+    move = stage.call(it, "move", 10)
     await stage.clock.sleep(0.5)
-    hold = stage.call(robot, "hold", 1.0)
+    hold = stage.call(it, "hold", 1.0)
 
     def on_done(outcome):
         asyncio.get_running_loop().call_soon(move.execution.cancel)
 
     hold.execution.request.on_done = on_done
     await stage.clock.sleep(2.0)
-    assert commands(stage) == ["go", "released", "stop"]
+    assert made.commands == ["go", "released", "stop"]
     assert move.execution.ended
-    assert stage.call(robot, "ping").ok
+    assert stage.call(it, "ping").ok
 
 
-@played(play)
-async def test_a_waiting_condition_is_cancelled(stage):
-    robot = await robot_of(stage)
-    wait = stage.call(robot, "wait")
+async def test_a_waiting_condition_is_cancelled(stage, it, made):
+    wait = stage.call(it, "wait")
+    await stage.after(1.0, wait.execution.cancel)
+    assert stage.call(it, "ping").ok
     await stage.clock.sleep(1.0)
-    wait.execution.cancel()
-    assert stage.call(robot, "ping").ok
-    await stage.clock.sleep(1.0)
-    assert commands(stage) == ["ping", "waited"]
+    assert made.commands == ["ping", "waited"]
     assert wait.outcome is None
 
 
-@played(play)
-async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage):
-    robot = await robot_of(stage)
-    watcher = stage.watch(robot)
-    call = stage.call(robot, "slow_end")
+async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage, it, watcher):
+    call = stage.call(it, "slow_end")
     await stage.clock.sleep(1.0)
     watcher.take()
     call.execution.cancel()
@@ -234,41 +198,36 @@ async def test_finally_may_take_its_time_and_have_steps_of_its_own(stage):
     assert call.outcome is None
 
 
-@played(play)
-async def test_a_failure_in_finally_is_undone_and_logged(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "bad_end")
+async def test_a_failure_in_finally_is_undone_and_logged(stage, it):
+    call = stage.call(it, "bad_end")
+    await stage.after(1.0, call.execution.cancel)
     await stage.clock.sleep(1.0)
-    call.execution.cancel()
-    await stage.clock.sleep(1.0)
-    assert state(stage, robot) == (False, 0)
+    assert state(stage, it) == (False, 0)
     assert stage.lines == ["[it] operation bad_end/0 failed: cannot stop"]
 
 
-@played(play)
-async def test_an_operation_may_cancel_itself(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "drop_me")
+async def test_an_operation_may_cancel_itself_and_ends_without_an_outcome(stage, it, made):
+    call = stage.call(it, "drop_me_now")
+    assert (call.outcome, call.execution.ended) == (None, True)
+    assert state(stage, it) == (False, 1)
+    call = stage.call(it, "drop_me")
     await stage.clock.sleep(2.0)
-    assert commands(stage) == ["dropped"]
+    assert made.commands == ["dropped"]
     assert call.outcome is None
-    assert state(stage, robot) == (False, 5)
-    assert stage.call(robot, "ping").ok
+    assert state(stage, it) == (False, 5)
+    assert stage.call(it, "ping").ok
 
 
-@played(play)
-async def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_usable(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 10)
-    await stage.clock.sleep(0.5)
-    move.execution.task.cancel()
+async def test_an_operation_cancelled_from_outside_of_the_kernel_leaves_the_artifact_usable(stage, it, made):
+    move = stage.call(it, "move", 10)
+    await stage.after(0.5, move.execution.task.cancel)
     await stage.clock.sleep(0.1)
     assert move.execution.task.cancelled()
-    assert commands(stage) == ["go", "stop"]
-    assert stage.call(robot, "ping").ok
+    assert made.commands == ["go", "stop"]
+    assert stage.call(it, "ping").ok
 
 
-def test_a_timeout_within_an_operation_is_not_a_cancellation():
+async def test_a_timeout_within_an_operation_is_not_a_cancellation(stage):
     class Impatient(Artifact):
         def init(self):
             self.define_property("result", "")
@@ -285,21 +244,15 @@ def test_a_timeout_within_an_operation_is_not_a_cancellation():
             finally:
                 timer.cancel()
 
-    async def scene(stage):
-        impatient = await stage.make(Impatient)
-        call = stage.call(impatient, "attempt")
-        await call.wait()
-        assert call.ok
-        assert stage.property(impatient, "result") == ("timed out",)
-        assert call.ended_at == 1.0
-
-    play(scene)
+    impatient = await stage.make(Impatient)
+    call = await stage.ended(impatient, "attempt")
+    assert call.ok
+    assert stage.property(impatient, "result") == ("timed out",)
+    assert call.ended_at == 1.0
 
 
-@played(play)
-async def test_observers_may_cancel_an_operation_while_they_are_notified(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 10)
+async def test_observers_may_cancel_an_operation_while_they_are_notified(stage, it, made):
+    move = stage.call(it, "move", 10)
 
     class Dropper:
         agent = "x"
@@ -308,55 +261,26 @@ async def test_observers_may_cancel_an_operation_while_they_are_notified(stage):
             if any(new.name == "units" for _, new in observation.changed):
                 move.execution.cancel()
 
-    stage.main.focus(robot, Dropper())
+    stage.main.focus(it, Dropper())
     await stage.clock.sleep(5.0)
-    assert commands(stage) == ["go", "go", "stop"]
-    assert state(stage, robot) == (False, 1)
+    assert made.commands == ["go", "go", "stop"]
+    assert state(stage, it) == (False, 1)
 
 
-def test_a_plain_operation_that_cancels_itself_ends_without_an_outcome():
-    class Plain(Artifact):
-        def init(self):
-            self.define_property("n", 0)
-
-        @operation
-        def drop_me(self):
-            self.current.cancel()
-            self.update_property("n", 1)
-
-    async def scene(stage):
-        plain = await stage.make(Plain)
-        call = stage.call(plain, "drop_me")
-        assert (call.outcome, call.execution.ended) == (None, True)
-        assert stage.property(plain, "n") == (1,)
-
-    play(scene)
-
-
-@played(play)
-async def test_one_of_several_waiting_operations_is_cancelled(stage):
-    robot = await robot_of(stage)
-    stage.call(robot, "hold", 1.0)
-    first, second, third = (stage.call(robot, "ping") for _ in range(3))
-    assert stage.main.pending(robot)[1:] == (first.execution, second.execution, third.execution)
+async def test_one_of_several_waiting_operations_is_cancelled(stage, it):
+    stage.call(it, "hold", 1.0)
+    first, second, third = (stage.call(it, "ping") for _ in range(3))
+    assert stage.main.pending(it)[1:] == (first.execution, second.execution, third.execution)
     second.execution.cancel()
     await third.wait()
     assert (first.ok, second.outcome) == (True, None)
-    assert stage.main.pending(robot) == ()
+    assert stage.main.pending(it) == ()
 
 
-def test_an_abandoned_coroutine_does_not_wait_for_its_turn():
-    async def scene(stage):
-        robot = await robot_of(stage)
-        move = stage.call(robot, "move", 1)
-        await stage.clock.sleep(0.5)
-        stage.main.dispose_artifact(robot)
-        move.execution.task.get_coro().close()
-        move.execution.task.cancel()
-        await stage.clock.sleep(1.0)
-        assert commands(stage) == ["go", "stop"]
-
-    try:
-        play(scene)
-    except asyncio.CancelledError:
-        raise AssertionError("the end of a coroutine must not reach others") from None
+async def test_an_abandoned_coroutine_does_not_wait_for_its_turn(stage, it, made):
+    move = stage.call(it, "move", 1)
+    await stage.after(0.5, stage.main.dispose_artifact, it)
+    move.execution.task.get_coro().close()
+    move.execution.task.cancel()
+    await stage.clock.sleep(1.0)
+    assert made.commands == ["go", "stop"]

@@ -1,9 +1,9 @@
 """Causes: why a property changed, and the tracer, which receives every link."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, Environment, OperationRequest, internal_operation, link, operation
 from jacaros.runtime.trace import Cause
-from played import played
-from stage_lab import play
 
 
 class Recorder:
@@ -54,17 +54,17 @@ class Lamp(Artifact):
         self.update_property("power", power)
 
 
-@played(play)
-async def test_without_a_tracer_the_cause_of_the_request_is_passed_on(stage):
-    lamp = await stage.make(Lamp)
-    watcher = stage.watch(lamp)
+pytestmark = pytest.mark.makes(it=Lamp)
+
+
+async def test_without_a_tracer_the_cause_of_the_request_is_passed_on(stage, it):
+    watcher = stage.watch(it)
     why = Cause(1, 0, "act", "switch")
-    stage.call(lamp, "switch", cause=why)
+    stage.call(it, "switch", cause=why)
     await stage.clock.sleep(2.0)
     assert [observation.cause for observation in watcher.observations] == [None, why, why]
 
 
-@played(play)
 async def test_with_a_tracer_each_operation_and_each_commit_is_a_link(stage):
     stage.environment.tracer = recorder = Recorder(stage.clock)
     assert stage.environment.tracer is recorder
@@ -81,7 +81,6 @@ async def test_with_a_tracer_each_operation_and_each_commit_is_a_link(stage):
     assert first.parent == why.id
 
 
-@played(play)
 async def test_the_chain_goes_through_links(stage):
     stage.environment.tracer = recorder = Recorder(stage.clock)
     first, second = await stage.make(Lamp, name="first"), await stage.make(Lamp, name="second")
@@ -95,33 +94,18 @@ async def test_the_chain_goes_through_links(stage):
     ]
 
 
-def test_a_process_started_by_a_callback_is_caused_by_its_sample():
-    kept = []
-
-    class Sensor(Lamp):
-        def init(self):
-            super().init()
-            kept.append(self)
-
-    async def scene(stage):
-        sensor = await stage.make(Sensor)
-        watcher = stage.watch(sensor)
-        sample = Cause(1, 0, "sample", "/power")
-        kept[0].start(kept[0].sample, 7, cause=sample)
-        assert watcher.observations[-1].cause == sample
-
-    play(scene)
+async def test_a_process_started_by_a_callback_is_caused_by_its_sample(made, watcher):
+    sample = Cause(1, 0, "sample", "/power")
+    made.start(made.sample, 7, cause=sample)
+    assert watcher.observations[-1].cause == sample
 
 
-@played(play)
-async def test_commits_are_traced_even_without_observers(stage):
-    lamp = await stage.make(Lamp)
+async def test_commits_are_traced_even_without_observers(stage, it):
     stage.environment.tracer = recorder = Recorder(stage.clock)
-    stage.call(lamp, "switch")
+    stage.call(it, "switch")
     assert [each.kind for each, _ in recorder.links] == ["operation", "property"]
 
 
-@played(play)
 async def test_an_environment_works_with_minimal_arguments(stage):
     environment = Environment(stage.clock)
     assert environment.tracer is None

@@ -5,8 +5,6 @@ from creation_lab import Counter, Fussy, Slow, why
 
 from jacaros.artifacts import Artifact, Atom, UnknownArtifact
 from jacaros.runtime.errors import InternalError
-from played import played
-from stage_lab import play
 
 
 class Labelled(Artifact):
@@ -23,7 +21,6 @@ def types(stage):
     stage.types = {"Counter": Counter, "Labelled": Labelled, "Fussy": Fussy, "Slow": Slow, "Nonsense": int}
 
 
-@played(play)
 async def test_init_has_the_arguments_of_make_artifact(stage):
     types(stage)
     a = await stage.main.make_artifact("a", "Counter")
@@ -44,7 +41,6 @@ async def test_init_has_the_arguments_of_make_artifact(stage):
     assert repr(c) == "</main/c: Labelled>"
 
 
-@played(play)
 async def test_an_artifact_without_init_is_made_without_arguments_only(stage):
     await stage.make(Bare)
     reason, name, message = await why(stage.make(Bare, 1, name="other"))
@@ -52,14 +48,12 @@ async def test_an_artifact_without_init_is_made_without_arguments_only(stage):
     assert "expected () as arguments of init, found 1 arguments" in message
 
 
-@played(play)
 async def test_without_arguments_an_artifact_is_made_even_if_its_init_wants_some(stage):
     fussy = await stage.make(Fussy)
     assert stage.main.properties(fussy) == ()
     assert stage.lines == []
 
 
-@played(play)
 async def test_a_used_name_is_refused_and_the_artifact_stays(stage):
     counter = await stage.make(Counter, 5)
     reason, name, _ = await why(stage.make(Counter))
@@ -68,7 +62,6 @@ async def test_a_used_name_is_refused_and_the_artifact_stays(stage):
     assert stage.property(counter, "count") == (5,)
 
 
-@played(play)
 async def test_an_unknown_type_is_refused_with_a_suggestion(stage):
     types(stage)
     reason, name, message = await why(stage.main.make_artifact("d", "Cuonter"))
@@ -78,7 +71,6 @@ async def test_an_unknown_type_is_refused_with_a_suggestion(stage):
         stage.main.lookup("d")
 
 
-@played(play)
 async def test_without_find_type_no_type_name_is_known(stage):
     environment = type(stage.environment)(stage.clock)
     reason, _, message = await why(environment.workspace("/main").make_artifact("d", "Counter"))
@@ -86,7 +78,6 @@ async def test_without_find_type_no_type_name_is_known(stage):
     assert "unknown artifact type `Counter`" in message
 
 
-@played(play)
 async def test_a_type_that_is_not_an_artifact_or_cannot_be_loaded_is_refused(stage):
     types(stage)
     reason, name, message = await why(stage.main.make_artifact("d", "Nonsense"))

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, internal_operation, link, operation
-from stage_lab import play
 
 
 def keys(artifact_type):
@@ -170,7 +169,7 @@ def test_a_parameter_that_agents_cannot_pass_is_an_error():
             def go(self, *, fast): ...
 
 
-def test_operations_of_one_artifact_can_be_added_and_removed():
+async def test_operations_of_one_artifact_can_be_added_and_removed(stage):
     class Dynamic(Artifact):
         def init(self):
             self.define_property("n", 0)
@@ -198,35 +197,31 @@ def test_operations_of_one_artifact_can_be_added_and_removed():
         def spoil(self):
             self.define_operation("wrong", self.add, guard=lambda x, y: True)
 
-    async def scene(stage):
-        first, second = await stage.make(Dynamic, name="a"), await stage.make(Dynamic, name="b")
-        assert stage.main.providers("add", 1) == (first, second)
-        assert stage.call(first, "add", 3).ok
-        assert stage.property(first, "n") == (3,)
-        assert stage.call(first, "add", -3).outcome is None, "its guard is false"
-        result = Out()
-        call = stage.call(first, "later", 7, result)
-        assert call.execution.pausable
-        await call.wait()
-        assert result.value == 7
-        stage.call(first, "forget")
-        assert stage.main.providers("add", 1) == (second,)
-        assert stage.call(first, "add", 3).reason.functor == "unknown_operation"
-        assert stage.call(second, "add", 3).ok
-        stage.call(first, "extend")
-        assert stage.call(first, "forget").outcome.message == "replaced"
-        assert stage.call(second, "forget").ok
-        assert stage.call(first, "more", 1, 2, 3).ok
-        assert (
-            "expected a guard with the parameters of the operation"
-            in stage.call(first, "spoil").outcome.message
-        )
-        assert Dynamic.interface.operations.find("add", 1) is None
-
-    play(scene)
+    first, second = await stage.make(Dynamic, name="a"), await stage.make(Dynamic, name="b")
+    assert stage.main.providers("add", 1) == (first, second)
+    assert stage.call(first, "add", 3).ok
+    assert stage.property(first, "n") == (3,)
+    assert stage.call(first, "add", -3).outcome is None, "its guard is false"
+    result = Out()
+    call = stage.call(first, "later", 7, result)
+    assert call.execution.pausable
+    await call.wait()
+    assert result.value == 7
+    stage.call(first, "forget")
+    assert stage.main.providers("add", 1) == (second,)
+    assert stage.call(first, "add", 3).reason.functor == "unknown_operation"
+    assert stage.call(second, "add", 3).ok
+    stage.call(first, "extend")
+    assert stage.call(first, "forget").outcome.message == "replaced"
+    assert stage.call(second, "forget").ok
+    assert stage.call(first, "more", 1, 2, 3).ok
+    assert (
+        "expected a guard with the parameters of the operation" in stage.call(first, "spoil").outcome.message
+    )
+    assert Dynamic.interface.operations.find("add", 1) is None
 
 
-def test_partial_functions_and_callable_objects_can_be_operations():
+async def test_partial_functions_and_callable_objects_can_be_operations(stage):
     class Greeting:
         """Greets."""
 
@@ -244,13 +239,10 @@ def test_partial_functions_and_callable_objects_can_be_operations():
             """Order a dish."""
             price.set(len(dish))
 
-    async def scene(stage):
-        it = await stage.make(Dynamic)
-        price = Out()
-        assert stage.call(it, "soup", price).ok
-        assert price.value == 4
-        assert "expected a text" in stage.call(it, "greet", 3).outcome.message
-        assert "ValueError in operation greet/1 of it: bob" in stage.call(it, "greet", "bob").outcome.message
-        assert set(stage.main.offers(it)) == {"soup/1", "greet/1"}
-
-    play(scene)
+    it = await stage.make(Dynamic)
+    price = Out()
+    assert stage.call(it, "soup", price).ok
+    assert price.value == 4
+    assert "expected a text" in stage.call(it, "greet", 3).outcome.message
+    assert "ValueError in operation greet/1 of it: bob" in stage.call(it, "greet", "bob").outcome.message
+    assert set(stage.main.offers(it)) == {"soup/1", "greet/1"}

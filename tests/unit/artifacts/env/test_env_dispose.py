@@ -8,14 +8,11 @@ import pytest
 from jacaros.artifacts import (
     Artifact,
     OperationRequest,
-    Session,
     Structure,
     UnknownArtifact,
     internal_operation,
     operation,
 )
-from played import played
-from stage_lab import play
 
 
 class Thing(Artifact):
@@ -82,6 +79,30 @@ class Thing(Artifact):
         await self.sleep(1.0)
         self.events.append("still here")
 
+    @operation
+    def leave(self):
+        self.define_property("last", 1)
+        self.workspace.dispose_artifact(self.id)
+        self.start(self.process)
+
+    @operation
+    async def leave_slowly(self):
+        self.workspace.dispose_artifact(self.id)
+        await self.sleep(1)
+        await self.until(lambda: False)
+
+    @operation(pausable=True)
+    async def rest(self):
+        while True:
+            await self.sleep(1.0)
+            await self.pause_point()
+
+    @operation
+    async def ignore_the_end(self):
+        while self.clock.now() < self.clock.start + 1000:
+            with suppress(asyncio.CancelledError):
+                await self.sleep(1.0)
+
     @operation(name="startProcess")
     def start_process(self):
         self.start(self.process)
@@ -94,366 +115,217 @@ class Thing(Artifact):
             self.events.append("process stopped")
 
 
-def thing_of(stage):
-    class Kept(Thing):
-        def init(self):
-            super().init()
-            stage.thing = self
-
-    return stage.make(Kept)
+pytestmark = pytest.mark.makes(it=Thing)
+HOOKS = ["dispose", "last registered", "first registered"]
+DISPOSED = Structure("artifact_disposed", ("it",))
+GONE = Structure("artifact_not_available", ("it",))
 
 
-@played(play)
-async def test_observers_lose_all_properties(stage):
-    thing = await thing_of(stage)
-    watcher = stage.watch(thing)
-    stage.main.dispose_artifact(thing)
+async def test_observers_lose_all_properties(stage, it, made):
+    watcher = stage.watch(it)
+    stage.main.dispose_artifact(it)
     assert watcher.notes == ["+level(0) +mode('idle')", "-level(0) -mode('idle')"]
-    assert stage.thing.events == ["dispose", "last registered", "first registered"]
+    assert made.events == HOOKS
 
 
-@played(play)
-async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage):
-    thing = await thing_of(stage)
-    stage.watch(thing)
-    calls = [stage.call(thing, name) for name in ("run", "wait", "run", "hold")]
+async def test_operations_running_or_waiting_fail_with_artifact_disposed(stage, it, made):
+    stage.watch(it)
+    calls = [stage.call(it, name) for name in ("run", "wait", "run", "hold")]
     await stage.clock.sleep(1.0)
-    calls.append(stage.call(thing, "ping"))
+    calls.append(stage.call(it, "ping"))
     stage.story.clear()
-    stage.main.dispose_artifact(thing)
+    stage.main.dispose_artifact(it)
     await stage.clock.sleep(1.0)
     assert stage.story[0] == ("main", "-level(0) -mode('idle')"), "observers first, as they knew it"
-    assert [call.reason for call in calls] == [Structure("artifact_disposed", ("it",))] * 5
+    assert [call.reason for call in calls] == [DISPOSED] * 5
     assert "was disposed before run/0 ended" in calls[0].outcome.message
-    assert stage.thing.events == [
-        "run stopped",
-        "run stopped",
-        "dispose",
-        "last registered",
-        "first registered",
-    ]
+    assert made.events == ["run stopped", "run stopped", *HOOKS]
 
 
-@played(play)
-async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(stage):
-    thing = await thing_of(stage)
-    call = stage.call(thing, "run")
-    stage.main.dispose_artifact(thing)
+async def test_an_operation_that_has_its_first_turn_but_has_not_begun_fails_too(stage, it, made):
+    call = stage.call(it, "run")
+    stage.main.dispose_artifact(it)
     await call.wait()
-    assert call.reason == Structure("artifact_disposed", ("it",))
-    assert "run stopped" not in stage.thing.events
+    assert call.reason == DISPOSED
+    assert "run stopped" not in made.events
 
 
-@played(play)
-async def test_the_hook_waits_for_the_last_operation_to_end(stage):
-    thing = await thing_of(stage)
-    call = stage.call(thing, "run_long")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(thing)
+async def test_processes_are_stopped_and_the_hook_waits_for_the_last_operation_to_end(stage, it, made):
+    call = stage.call(it, "run_long")
+    stage.call(it, "startProcess")
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     await stage.clock.sleep(0.5)
-    assert (stage.thing.events, call.outcome) == ([], None)
+    assert (made.events, call.outcome) == (["process stopped"], None)
     await stage.clock.sleep(1.0)
-    assert stage.thing.events[:2] == ["run stopped late", "dispose"]
+    assert made.events == ["process stopped", "run stopped late", *HOOKS]
     assert call.ended_at == 2.0
-
-
-@played(play)
-async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(stage):
-    thing = await thing_of(stage)
-    call = stage.call(thing, "stubborn")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(thing)
-    await call.wait()
-    assert call.reason == Structure("artifact_disposed", ("it",))
-    assert stage.logged("will not stop")
-
-
-@played(play)
-async def test_processes_are_stopped(stage):
-    thing = await thing_of(stage)
-    stage.call(thing, "startProcess")
-    await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(thing)
-    await stage.clock.sleep(1.0)
-    assert stage.thing.events[0] == "process stopped"
     assert stage.lines == []
 
 
-@played(play)
-async def test_new_operations_fail_with_artifact_not_available(stage):
-    thing = await thing_of(stage)
-    stage.main.dispose_artifact(thing)
-    call = stage.call(thing, "ping")
-    assert call.reason == Structure("artifact_not_available", ("it",))
+async def test_an_operation_that_fails_while_it_is_stopped_fails_as_disposed(stage, it):
+    call = stage.call(it, "stubborn")
+    await stage.after(1.0, stage.main.dispose_artifact, it)
+    await call.wait()
+    assert call.reason == DISPOSED
+    assert stage.logged("will not stop")
+
+
+async def test_a_disposed_artifact_is_not_available_and_its_name_can_be_reused(stage, it):
+    stage.main.dispose_artifact(it)
+    call = stage.call(it, "ping")
+    assert call.reason == GONE
     call.execution.cancel()
     call.execution.pause()
     call.execution.resume()
-
-
-@played(play)
-async def test_requests_to_a_disposed_artifact_are_refused(stage):
-    thing = await thing_of(stage)
-    stage.main.dispose_artifact(thing)
     for use in (
-        lambda: stage.main.dispose_artifact(thing),
-        lambda: stage.watch(thing),
+        lambda: stage.main.dispose_artifact(it),
+        lambda: stage.watch(it),
         lambda: stage.main.lookup("it"),
-        lambda: stage.main.properties(thing),
-        lambda: stage.main.observers(thing),
-        lambda: stage.main.interface(thing),
+        lambda: stage.main.properties(it),
+        lambda: stage.main.observers(it),
+        lambda: stage.main.interface(it),
     ):
         with pytest.raises(UnknownArtifact) as caught:
             use()
-        assert caught.value.reason == Structure("artifact_not_available", ("it",))
-
-
-@played(play)
-async def test_the_name_can_be_reused_and_the_old_id_does_not_mean_the_new_artifact(stage):
-    old = await thing_of(stage)
-    stage.main.dispose_artifact(old)
-    new = await thing_of(stage)
+        assert caught.value.reason == GONE
+    new = await stage.make(Thing)
     assert stage.main.lookup("it") is new
     assert stage.call(new, "ping").ok
-    assert not stage.call(old, "ping").ok
+    assert not stage.call(it, "ping").ok, "the old id does not mean the new artifact"
 
 
-@played(play)
-async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage):
-    thing = await thing_of(stage)
-    watcher = stage.watch(thing)
-    call = stage.call(thing, "disposeMe")
+async def test_an_artifact_may_dispose_itself_and_the_operation_still_succeeds(stage, it, watcher, made):
+    call = stage.call(it, "disposeMe")
     assert call.ok
-    assert stage.thing.events[:2] == ["still here", "dispose"]
-    assert watcher.notes[1:] == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
+    assert made.events[:2] == ["still here", "dispose"]
+    assert watcher.notes == ["-level(0) +level(5)", "-level(5) -mode('idle')"]
 
 
-@played(play)
-async def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(stage):
-    thing = await thing_of(stage)
-    run, call = stage.call(thing, "run"), stage.call(thing, "disposeMeLater")
-    await call.wait()
+async def test_a_coroutine_may_dispose_its_artifact_and_continue_while_others_fail(stage, it, made):
+    run, call = stage.call(it, "run"), await stage.ended(it, "disposeMeLater")
     assert call.ok
     assert (run.ended_at, call.ended_at) == (1.0, 2.0)
-    assert stage.thing.events == [
-        "run stopped",
-        "still here",
-        "dispose",
-        "last registered",
-        "first registered",
-    ]
+    assert made.events == ["run stopped", "still here", *HOOKS]
 
 
-def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run():
+async def test_an_error_in_a_hook_is_logged_and_the_other_hooks_run(stage):
     class Bad(Thing):
         def dispose(self):
             raise RuntimeError("hook")
 
-    async def scene(stage):
-        kept = []
-
-        class Kept(Bad):
-            def init(self):
-                super().init()
-                kept.append(self)
-
-        thing = await stage.make(Kept)
-        stage.main.dispose_artifact(thing)
-        assert stage.logged("RuntimeError: hook")
-        assert kept[0].events == ["last registered", "first registered"]
-
-    play(scene)
+    bad = await stage.make(Bad)
+    kept = stage.environment.artifact(bad)
+    stage.main.dispose_artifact(bad)
+    assert stage.logged("RuntimeError: hook")
+    assert kept.events == HOOKS[1:]
 
 
-@played(play)
-async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage):
-    thing = await thing_of(stage)
+async def test_a_waiting_operation_that_fails_may_dispose_or_call_again(stage, it):
     second = []
 
     def again(outcome):
-        second.append(stage.call(thing, "ping"))
+        second.append(stage.call(it, "ping"))
 
-    stage.main.execute(OperationRequest(thing, "wait", (), "main", None, again))
-    stage.main.dispose_artifact(thing)
-    assert second[0].reason == Structure("artifact_not_available", ("it",))
-
-
-def test_closing_the_environment_ends_everything_and_waits_for_it():
-    kept = []
-
-    class Kept(Thing):
-        def init(self):
-            super().init()
-            kept.append(self)
-
-    async def scene(stage):
-        first = await stage.make(Kept)
-        lab = stage.environment.create_workspace("/main/lab")
-        second = await lab.make_artifact("it", Kept)
-        for artifact in (first, second):
-            stage.call(artifact, "run_long")
-            stage.call(artifact, "startProcess")
-        await stage.clock.sleep(1.0)
-        await stage.environment.close()
-        assert stage.main.artifacts() == ()
-        assert stage.elapsed == 3.0, "one workspace after the other, one second each"
-        for thing in kept:
-            assert thing.events == [
-                "process stopped",
-                "run stopped late",
-                "dispose",
-                "last registered",
-                "first registered",
-            ]
-
-    play(scene)
+    stage.main.execute(OperationRequest(it, "wait", (), "main", None, again))
+    stage.main.dispose_artifact(it)
+    assert second[0].reason == GONE
 
 
-@played(play)
-async def test_closing_waits_for_artifacts_that_are_ending_already(stage):
-    thing = await thing_of(stage)
-    stage.call(thing, "run_long")
+async def test_an_artifact_is_disposed_through_any_workspace_and_closing_the_environment_waits_for_all(
+    stage, it
+):
+    lab = stage.environment.create_workspace("/main/lab")
+    second, third = await lab.make_artifact("it", Thing), await lab.make_artifact("third", Thing)
+    kept = [stage.environment.artifact(artifact) for artifact in (it, second)]
+    stage.main.dispose_artifact(third)
+    with pytest.raises(UnknownArtifact):
+        lab.lookup("third")
+    for artifact in (it, second):
+        stage.call(artifact, "run_long")
+        stage.call(artifact, "startProcess")
     await stage.clock.sleep(1.0)
-    stage.main.dispose_artifact(thing)
+    await stage.environment.close()
+    assert stage.main.artifacts() == ()
+    assert stage.elapsed == 3.0, "one workspace after the other, one second each"
+    for thing in kept:
+        assert thing.events == ["process stopped", "run stopped late", *HOOKS]
+
+
+async def test_closing_waits_for_artifacts_that_are_ending_already(stage, it, made):
+    stage.call(it, "run_long")
+    await stage.after(1.0, stage.main.dispose_artifact, it)
     other = await stage.make(Thing, name="other")
     stage.call(other, "ping")
     await stage.clock.sleep(0.5)
     await asyncio.gather(stage.environment.close(), stage.environment.close())
     assert stage.elapsed == 2.0
-    assert "dispose" in stage.thing.events
+    assert "dispose" in made.events
 
 
-@played(play)
-async def test_cancelling_one_wait_for_the_end_does_not_affect_others(stage):
-    thing = await thing_of(stage)
-    stage.call(thing, "run_long")
+async def test_cancelling_one_wait_for_the_end_does_not_affect_others(stage, it):
+    stage.call(it, "run_long")
     await stage.clock.sleep(1.0)
     first, second = (asyncio.ensure_future(stage.environment.close()) for _ in range(2))
-    await stage.clock.sleep(0.5)
-    first.cancel()
+    await stage.after(0.5, first.cancel)
     await second
     assert stage.elapsed == 2.0
 
 
-def test_processes_started_after_the_end_do_not_begin():
-    class Late(Thing):
-        @operation
-        def end(self):
-            self.workspace.dispose_artifact(self.id)
-            self.start(self.process)
-
-    async def scene(stage):
-        late = await stage.make(Late)
-        assert stage.call(late, "end").ok
-        await stage.clock.sleep(1.0)
-        assert stage.main.artifacts()[-1].name == "workspace"
-
-    play(scene)
+async def test_processes_started_after_the_end_do_not_begin(stage, it, made):
+    assert stage.call(it, "leave").ok
+    await stage.clock.sleep(1.0)
+    assert stage.main.artifacts()[-1].name == "workspace"
+    assert made.events == HOOKS
 
 
-def test_closing_ends_the_artifacts_made_last_first():
-    order = []
-
+async def test_closing_ends_the_artifacts_made_last_first(stage):
     class Ordered(Artifact):
         def dispose(self):
-            order.append(self.name)
+            self.log("disposed")
 
-    async def scene(stage):
-        for name in ("a", "b", "c"):
-            await stage.make(Ordered, name=name)
-
-    play(scene)
-    assert order == ["c", "b", "a"]
+    for name in ("a", "b", "c"):
+        await stage.make(Ordered, name=name)
+    await stage.environment.close()
+    assert stage.lines == ["[c] disposed", "[b] disposed", "[a] disposed"]
 
 
-@played(play)
-async def test_an_artifact_can_be_disposed_through_any_workspace(stage):
-    lab = stage.environment.create_workspace("/main/lab")
-    thing = await lab.make_artifact("it", Thing)
-    stage.main.dispose_artifact(thing)
-    with pytest.raises(UnknownArtifact):
-        lab.lookup("it")
+async def test_an_operation_that_ignores_cancellation_is_abandoned(stage, it, made):
+    call = stage.call(it, "ignore_the_end")
+    await stage.clock.sleep(1.0)
+    await stage.environment.close()
+    assert stage.elapsed == 21.0
+    assert call.reason == DISPOSED
+    assert stage.lines == [
+        "[it] operation ignore_the_end/0 did not stop within 20 s of its artifact's disposal; abandoning it"
+    ]
+    assert made.events == HOOKS
+    await stage.environment.close()
+    await stage.clock.sleep(2000)
 
 
-def test_an_operation_that_ignores_cancellation_is_abandoned():
-    class Stubborn(Artifact):
-        @operation
-        async def go_on(self):
-            while self.clock.now() < self.clock.start + 1000:
-                with suppress(asyncio.CancelledError):
-                    await self.sleep(1.0)
-
-        def dispose(self):
-            self.log("given back")
-
-    async def scene(stage):
-        call = stage.call(await stage.make(Stubborn), "go_on")
-        await stage.clock.sleep(1.0)
-        await stage.environment.close()
-        assert stage.elapsed == 21.0
-        assert call.reason == Structure("artifact_disposed", ("it",))
-        assert stage.lines == [
-            "[it] operation go_on/0 did not stop within 20 s of its artifact's disposal; abandoning it",
-            "[it] given back",
-        ]
-        await stage.environment.close()
-        await stage.clock.sleep(2000)
-
-    play(scene)
+async def test_a_paused_operation_fails_too(stage, it):
+    call = stage.call(it, "rest")
+    call.execution.pause()
+    await stage.after(5.0, call.execution.pause)
+    await stage.after(5.0, stage.main.dispose_artifact, it)
+    await call.wait()
+    assert (stage.elapsed, call.reason) == (10.0, DISPOSED)
 
 
-def test_a_paused_operation_fails_too():
-    class Resting(Artifact):
-        @operation(pausable=True)
-        async def rest(self):
-            while True:
-                await self.sleep(1.0)
-                await self.pause_point()
-
-    async def scene(stage):
-        it = await stage.make(Resting)
-        call = stage.call(it, "rest")
-        call.execution.pause()
-        await stage.clock.sleep(5.0)
-        call.execution.pause()
-        await stage.clock.sleep(5.0)
-        stage.main.dispose_artifact(it)
-        await call.wait()
-        assert (stage.elapsed, call.reason) == (10.0, Structure("artifact_disposed", ("it",)))
-
-    play(scene)
-
-
-class Farewell(Artifact):
-    """Says something, and is gone."""
-
-    @operation
-    def leave(self):
-        self.define_property("last", 1)
-        self.workspace.dispose_artifact(self.id)
-
-
-@played(play)
-async def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(stage):
-    it = await stage.make(Farewell)
+async def test_what_changed_before_an_artifact_disposes_itself_is_seen_by_sessions(stage, session, it):
     seen = []
-    with Session(stage.environment, "s") as session:
-        session.focus(it)
-        session.on_change(lambda change: seen.append((change.before, change.now)))
-        await session.act("leave")
-        assert seen == [(None, (1,)), ((1,), None)]
-        assert session.focused == ()
+    session.focus(it)
+    session.on_change(lambda change: seen.append((change.name, change.before, change.now)))
+    await session.act("leave")
+    assert seen == [
+        ("last", None, (1,)),
+        ("level", (0,), None),
+        ("mode", ("idle",), None),
+        ("last", (1,), None),
+    ]
+    assert session.focused == ()
 
 
-class Lonely(Artifact):
-    @operation
-    async def leave(self):
-        self.workspace.dispose_artifact(self.id)
-        await self.sleep(1)
-        await self.until(lambda: False)
-
-
-@played(play)
-async def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(stage):
-    outcome = await stage.call(await stage.make(Lonely), "leave").wait()
-    assert outcome.reason == Structure("artifact_disposed", ("it",))
-    assert stage.elapsed == 1
+async def test_an_operation_that_disposed_its_own_artifact_does_not_wait_for_others(stage, it):
+    call = await stage.ended(it, "leave_slowly")
+    assert (call.reason, stage.elapsed) == (DISPOSED, 1)

@@ -9,7 +9,6 @@ import pytest
 
 from jacaros.artifacts import Artifact, OperationFailed, Out, Structure, internal_operation, operation
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
-from played import played
 from stage_lab import play
 
 
@@ -130,52 +129,43 @@ class Bursting(Artifact):
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
 @pytest.mark.parametrize("op", ["now", "at_once", "later", "within", "guarded"])
-def test_an_operation_that_raises_anything_fails_and_is_rolled_back(op, raised, message):
-    async def scene(stage):
-        it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
-        watcher = stage.watch(it)
-        call = stage.call(it, op)
-        await call.wait()
-        assert call.reason == Structure("operation_error", (f"{op}/0",))
-        assert call.outcome.message == message.format(op=f"{op}/0")
-        assert watcher.notes == ["+count(0) +kept(1)"]
-        assert stage.call(it, "inc").ok, "the artifact goes on"
-        assert watcher.notes[1:] == ["-count(0) +count(1)"]
-
-    stage = play(scene)
+async def test_an_operation_that_raises_anything_fails_and_is_rolled_back(stage, op, raised, message):
+    it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
+    watcher = stage.watch(it)
+    call = await stage.ended(it, op)
+    assert call.reason == Structure("operation_error", (f"{op}/0",))
+    assert call.outcome.message == message.format(op=f"{op}/0")
+    assert watcher.notes == ["+count(0) +kept(1)"]
+    assert stage.call(it, "inc").ok, "the artifact goes on"
+    assert watcher.notes[1:] == ["-count(0) +count(1)"]
     assert stage.logged(f"[it] error in operation {op}/0; its step is rolled back:")
+    await stage.environment.close()
     assert not stage.logged("must not run")
     assert stage.logged("error while disposing"), "errors of dispose are the artifact's too"
 
 
 @pytest.mark.parametrize("op", ["now", "at_once"])
-@played(play)
 async def test_stop_iteration_fails_an_operation_too(stage, op):
     it = await stage.make(type("Bursting", (Bursting,), {"what": StopIteration("end")}))
-    call = stage.call(it, op)
-    await call.wait()
+    call = await stage.ended(it, op)
     assert call.reason == Structure("operation_error", (f"{op}/0",))
     assert "StopIteration" in call.outcome.message
 
 
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(raised, message):
-    async def scene(stage):
-        it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
-        watcher = stage.watch(it)
-        assert stage.call(it, "start_process").ok
-        waiting = stage.call(it, "until_broken")
-        await waiting.wait()
-        assert waiting.reason == Structure("operation_error", ("until_broken/0",))
-        assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
-
-    stage = play(scene)
+async def test_a_process_and_a_condition_that_raise_anything_are_rolled_back(stage, raised, message):
+    it = await stage.make(type("Bursting", (Bursting,), {"what": raised}))
+    watcher = stage.watch(it)
+    assert stage.call(it, "start_process").ok
+    waiting = await stage.ended(it, "until_broken")
+    assert waiting.reason == Structure("operation_error", ("until_broken/0",))
+    assert watcher.notes == ["+count(0) +kept(1)", "-count(0) +count(1)"]
     assert stage.logged("[it] error in operation process/0; its step is rolled back:")
 
 
 @pytest.mark.parametrize("when", ["constructor", "init", "slow init", "awaited init"])
 @pytest.mark.parametrize(("raised", "message"), RAISED, ids=lambda each: type(each).__name__)
-def test_an_artifact_whose_creation_raises_anything_is_not_created(when, raised, message):
+async def test_an_artifact_whose_creation_raises_anything_is_not_created(stage, when, raised, message):
     class Unborn(Artifact):
         def __init__(self):
             if when == "constructor":
@@ -194,19 +184,16 @@ def test_an_artifact_whose_creation_raises_anything_is_not_created(when, raised,
 
     made = {"constructor": Unborn, "init": Failing, "slow init": Slow, "awaited init": Slow}[when]
 
-    async def scene(stage):
-        with pytest.raises(OperationFailed) as caught:
-            await stage.make(made)
-        assert caught.value.reason == Structure("makeArtifactFailure", ("init_failed", "it"))
-        assert type(raised).__name__ in caught.value.message
-        assert all(each.creator is None for each in stage.main.artifacts())
-        assert stage.logged("given back") == (when == "init")
-        await stage.make(Artifact)
-
-    play(scene)
+    with pytest.raises(OperationFailed) as caught:
+        await stage.make(made)
+    assert caught.value.reason == Structure("makeArtifactFailure", ("init_failed", "it"))
+    assert type(raised).__name__ in caught.value.message
+    assert all(each.creator is None for each in stage.main.artifacts())
+    assert stage.logged("given back") == (when == "init")
+    await stage.make(Artifact)
 
 
-def test_an_incomplete_failure_is_a_failure_too():
+async def test_an_incomplete_failure_is_a_failure_too(stage):
     class Odd(Artifact):
         @operation
         def homemade(self):
@@ -224,83 +211,69 @@ def test_an_incomplete_failure_is_a_failure_too():
         def empty(self):
             self.fail("no", "")
 
-    async def scene(stage):
-        odd = await stage.make(Odd)
-        homemade = stage.call(odd, "homemade")
-        assert (homemade.outcome.message, homemade.reason) == ("homemade", None)
-        assert stage.call(odd, "number").outcome.message == "42"
-        for op in ("nameless", "empty"):
-            call = stage.call(odd, op)
-            assert call.reason == Structure("operation_error", (f"{op}/0",))
-            assert "expected a functor as reason" in call.outcome.message
-
-    play(scene)
+    odd = await stage.make(Odd)
+    homemade = stage.call(odd, "homemade")
+    assert (homemade.outcome.message, homemade.reason) == ("homemade", None)
+    assert stage.call(odd, "number").outcome.message == "42"
+    for op in ("nameless", "empty"):
+        call = stage.call(odd, op)
+        assert call.reason == Structure("operation_error", (f"{op}/0",))
+        assert "expected a functor as reason" in call.outcome.message
 
 
-class Meddling(Artifact):
-    def init(self):
-        self.define_property("count", 0)
-
-    @operation(guard="updating")
-    def a(self): ...
-
-    @operation(guard="signalling")
-    async def b(self): ...
-
-    @operation(guard="defining")
-    def c(self): ...
-
-    @operation(guard="waiting")
-    def d(self): ...
-
-    @operation
-    async def e(self):
-        await self.until(self.updating)
-
-    @operation
-    async def f(self):
-        await self.until(True)
-
-    @operation
-    async def g(self):
-        await self.until(self.waits)
-
-    def updating(self):
-        self.update_property("count", 1)
-
-    def signalling(self):
-        self.signal("tick")
-
-    def defining(self):
-        self.define_property("more", 1)
-
-    def waiting(self):
-        return self.waits()
-
-    async def waits(self): ...
+async def waits(artifact): ...
 
 
-@played(play)
-async def test_a_guard_must_not_change_anything(stage):
-    it = await stage.make(Meddling)
+def meddling(look):
+    class Meddling(Artifact):
+        def init(self):
+            self.define_property("count", 0)
+
+        @operation(guard="look")
+        def guarded(self): ...
+
+        @operation(guard="look")
+        async def guarded_coroutine(self): ...
+
+        @operation
+        async def waiting(self):
+            await self.until(self.look)
+
+        @operation
+        async def waiting_for_a_value(self):
+            await self.until(True)
+
+        def look(self):
+            return look(self)
+
+    return Meddling
+
+
+@pytest.mark.parametrize(
+    ("look", "said"),
+    [
+        (lambda it: it.update_property("count", 1), "updating property count is not possible within a guard"),
+        (lambda it: it.signal("tick"), "the signal tick is not possible within a guard"),
+        (lambda it: it.define_property("more", 1), "defining property more is not possible within a guard"),
+        (waits, "expected a plain def as guard"),
+    ],
+)
+async def test_a_guard_must_not_change_anything(stage, look, said):
+    it = await stage.make(meddling(look))
     watcher = stage.watch(it)
-    for op, said in [
-        ("a", "updating property count is not possible within a guard"),
-        ("b", "the signal tick is not possible within a guard"),
-        ("c", "defining property more is not possible within a guard"),
-        ("d", "expected a plain def as guard"),
-        ("e", "updating property count is not possible within a guard"),
-        ("f", "expected a function in until"),
-        ("g", "expected a plain def as guard"),
+    for op, told in [
+        ("guarded", said),
+        ("guarded_coroutine", said),
+        ("waiting", said),
+        ("waiting_for_a_value", "expected a function in until"),
     ]:
-        call = stage.call(it, op)
-        await call.wait()
-        assert said in call.outcome.message
+        call = await stage.ended(it, op)
+        assert told in call.outcome.message
         assert call.reason == Structure("operation_error", (f"{op}/0",))
     assert watcher.notes == ["+count(0)"]
 
 
-def test_a_value_that_cannot_be_converted_rolls_back_the_step():
+async def test_a_value_that_cannot_be_converted_rolls_back_the_step(stage):
     class Odd(Artifact):
         def init(self):
             self.define_property("count", 0)
@@ -328,18 +301,15 @@ def test_a_value_that_cannot_be_converted_rolls_back_the_step():
 
             out.set(Strange())
 
-    async def scene(stage):
-        it = await stage.make(Odd)
-        watcher = stage.watch(it)
-        assert "ValueError" in stage.call(it, "endless").outcome.message
-        assert "expected a string as functor of a structure" in stage.call(it, "nameless").outcome.message
-        assert "SystemExit" in stage.call(it, "strange", Out()).outcome.message
-        assert watcher.notes == ["+count(0)"]
-
-    play(scene)
+    it = await stage.make(Odd)
+    watcher = stage.watch(it)
+    assert "ValueError" in stage.call(it, "endless").outcome.message
+    assert "expected a string as functor of a structure" in stage.call(it, "nameless").outcome.message
+    assert "SystemExit" in stage.call(it, "strange", Out()).outcome.message
+    assert watcher.notes == ["+count(0)"]
 
 
-def test_errors_of_pause_callbacks_are_the_artifacts_own():
+async def test_errors_of_pause_callbacks_are_the_artifacts_own(stage):
     class Resting(Artifact):
         @operation(pausable=True)
         async def rest(self):
@@ -350,14 +320,10 @@ def test_errors_of_pause_callbacks_are_the_artifacts_own():
             await self.sleep(1)
             await self.pause_point()
 
-    async def scene(stage):
-        call = stage.call(await stage.make(Resting), "rest")
-        await stage.clock.sleep(0.5)
-        call.execution.pause()
-        call.execution.resume()
-        assert (await call.wait()).ok
-
-    stage = play(scene)
+    call = stage.call(await stage.make(Resting), "rest")
+    await stage.after(0.5, call.execution.pause)
+    call.execution.resume()
+    assert (await call.wait()).ok
     assert stage.logged("a pause callback of rest failed")
 
 
@@ -392,23 +358,18 @@ def test_a_ctrl_c_in_the_middle_of_a_coroutine_ends_the_run():
     signal.signal(signal.SIGINT, Handling().handler)
 
     class Busy(Artifact):
-        def init(self):
-            self.define_property("count", 0)
-
         @operation
         async def work(self):
-            self.update_property("count", 1)
+            self.define_property("count", 1)
             signal.raise_signal(signal.SIGINT)
 
+    async def interrupted(stage):
+        await stage.ended(await stage.make(Busy), "work")
+
     with pytest.raises(KeyboardInterrupt):
-        play(lambda stage: interrupted(stage, Busy))
+        play(interrupted)
     # asyncio reports the lost task when it is collected. In the middle of a later ast.parse, that makes CPython 3.11 fail.
     gc.collect()
-
-
-async def interrupted(stage, kind):
-    await stage.call(await stage.make(kind), "work").wait()
-    await stage.clock.sleep(1)
 
 
 def test_exceptions_are_described_in_words():

@@ -1,8 +1,8 @@
 """Guards: an operation waits until its guard is true, in the order of arrival."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, Structure, operation
-from played import played
-from stage_lab import play
 
 
 class Store(Artifact):
@@ -47,6 +47,13 @@ class Store(Artifact):
     def broken(self):
         raise KeyError("guard")
 
+    @operation(guard="is_owner")
+    def use(self):
+        self.log(self.caller)
+
+    def is_owner(self):
+        return self.caller == "owner"
+
     @operation(guard="broken_later")
     def wrong_later(self):
         self.log("never")
@@ -55,35 +62,18 @@ class Store(Artifact):
         return self.closed and 1 / 0
 
 
+pytestmark = pytest.mark.makes(it=Store)
+
+
 def level(stage, store):
     return stage.property(store, "level")[0]
 
 
-@played(play)
-async def test_an_operation_waits_while_its_guard_is_false_and_runs_when_it_becomes_true(stage):
-    store = await stage.make(Store)
-    take = stage.call(store, "take", 3)
-    stage.call(store, "fill", 2)
-    assert take.outcome is None
-    stage.call(store, "fill", 2)
-    assert take.ok
-    assert level(stage, store) == 1
-
-
-@played(play)
-async def test_a_guard_that_is_true_at_once_does_not_delay(stage):
-    store = await stage.make(Store)
-    stage.call(store, "fill", 2)
-    assert stage.call(store, "take", 2).ok
-
-
-@played(play)
-async def test_a_step_completes_before_the_operations_that_it_enables(stage):
-    store = await stage.make(Store)
-    stage.watch(store)
-    stage.call(store, "take", 1)
+async def test_a_step_completes_before_the_operations_that_it_enables(stage, it):
+    stage.watch(it)
+    stage.call(it, "take", 1)
     stage.story.clear()
-    stage.call(store, "fill", 1)
+    stage.call(it, "fill", 1)
     assert stage.story == [
         ("main", "-level(0) +level(1)"),
         ("fill", "ok"),
@@ -92,133 +82,75 @@ async def test_a_step_completes_before_the_operations_that_it_enables(stage):
     ]
 
 
-@played(play)
-async def test_waiting_operations_are_served_in_the_order_of_arrival(stage):
-    store = await stage.make(Store)
-    takes = [stage.call(store, "take", 2, agent=name) for name in ("a", "b", "c")]
-    stage.call(store, "fill", 4)
-    assert [take.ok for take in takes] == [True, True, False]
-
-
-@played(play)
-async def test_an_enabled_operation_does_not_wait_for_a_blocked_one_before_it(stage):
-    store = await stage.make(Store)
-    big, small = stage.call(store, "take", 5), stage.call(store, "take", 1)
-    stage.call(store, "fill", 1)
-    assert (big.ok, small.ok) == (False, True)
-
-
-@played(play)
-async def test_a_bounded_buffer_loses_nothing(stage):
-    store = await stage.make(Store)
-    takes = [stage.call(store, "take") for _ in range(50)]
+async def test_a_bounded_buffer_loses_nothing(stage, it):
+    takes = [stage.call(it, "take") for _ in range(50)]
     for _ in range(50):
-        stage.call(store, "fill")
+        stage.call(it, "fill")
     assert all(take.ok for take in takes)
-    assert level(stage, store) == 0
+    assert level(stage, it) == 0
 
 
-@played(play)
-async def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(stage):
-    store = await stage.make(Store)
-    first, second = stage.call(store, "take"), stage.call(store, "take")
+async def test_a_waiting_request_is_withdrawn_by_cancel_without_an_outcome(stage, it):
+    first, second = stage.call(it, "take"), stage.call(it, "take")
     first.execution.cancel()
     assert first.execution.ended
-    stage.call(store, "fill", 5)
+    stage.call(it, "fill", 5)
     assert (first.outcome, second.ok) == (None, True)
-    assert level(stage, store) == 4
+    assert level(stage, it) == 4
 
 
-@played(play)
-async def test_a_guarded_coroutine_begins_when_its_guard_is_true(stage):
-    store = await stage.make(Store)
-    slowly = stage.call(store, "slowly", 1)
+async def test_a_guarded_coroutine_begins_when_its_guard_is_true(stage, it):
+    slowly = stage.call(it, "slowly", 1)
     await stage.clock.sleep(1.0)
-    stage.call(store, "fill", 1)
+    stage.call(it, "fill", 1)
     await slowly.wait()
     assert slowly.ended_at == 2.0
 
 
-@played(play)
-async def test_a_guard_may_be_without_parameters(stage):
-    store = await stage.make(Store)
-    stage.call(store, "close", True)
-    visit = stage.call(store, "visit", "bob")
+async def test_a_guard_may_be_without_parameters(stage, it):
+    stage.call(it, "close", True)
+    visit = stage.call(it, "visit", "bob")
     assert visit.outcome is None
-    stage.call(store, "close", False)
+    stage.call(it, "close", False)
     assert visit.ok
 
 
-@played(play)
-async def test_an_error_in_a_guard_fails_the_operation_now_or_later(stage):
-    store = await stage.make(Store)
-    assert stage.call(store, "wrong").reason == Structure("operation_error", ("wrong/0",))
-    later = stage.call(store, "wrong_later")
+async def test_an_error_in_a_guard_fails_the_operation_now_or_later(stage, it):
+    assert stage.call(it, "wrong").reason == Structure("operation_error", ("wrong/0",))
+    later = stage.call(it, "wrong_later")
     assert later.outcome is None
-    stage.call(store, "close", True)
+    stage.call(it, "close", True)
     assert later.reason == Structure("operation_error", ("wrong_later/0",))
     assert stage.lines
     assert not any(line.endswith("never") for line in stage.lines)
 
 
-@played(play)
-async def test_a_guard_can_read_the_caller(stage):
-    kept = []
-
-    class Private(Artifact):
-        @operation(guard="is_owner")
-        def use(self):
-            kept.append(self.caller)
-
-        def is_owner(self):
-            return self.caller == "owner"
-
-    private = await stage.make(Private)
-    stage.call(private, "use", agent="thief")
-    stage.call(private, "use", agent="owner")
-    assert kept == ["owner"]
+async def test_a_guard_can_read_the_caller(stage, it):
+    stage.call(it, "use", agent="thief")
+    stage.call(it, "use", agent="owner")
+    assert stage.lines == ["[it] owner"]
 
 
-@played(play)
-async def test_guards_are_evaluated_on_arrival_and_after_each_step_only(stage):
-    checked = []
-
-    class Watched(Artifact):
-        @operation(guard="check")
-        def wait(self):
-            pass
-
-        def check(self):
-            checked.append(self.clock.now())
-            return False
-
-        @operation
-        def nothing(self):
-            pass
-
-    watched = await stage.make(Watched)
-    stage.call(watched, "wait")
+async def test_guards_are_evaluated_on_arrival_and_after_each_step_only(stage, it, made):
+    stage.call(it, "take", agent="a")
     await stage.clock.sleep(1.0)
-    assert len(checked) == 1
-    stage.call(watched, "nothing")
-    stage.call(watched, "nothing")
-    assert len(checked) == 3
+    assert made.checks == [("a", 1)]
+    stage.call(it, "close", True)
+    stage.call(it, "close", False)
+    assert made.checks == [("a", 1)] * 3
 
 
-@played(play)
-async def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(stage):
-    store = await stage.make(Store)
-    chain = [stage.call(store, "take", 1) for _ in range(400)]
+async def test_a_chain_of_hundreds_of_waiting_operations_needs_no_deep_stack(stage, it):
+    chain = [stage.call(it, "take", 1) for _ in range(400)]
 
     class Refill:
         agent = "x"
 
         def observe(self, observation):
             if observation.changed and chain[-1].outcome is None and observation.changed[0][1].values == (0,):
-                stage.call(store, "fill")
+                stage.call(it, "fill")
 
-    stage.main.focus(store, Refill())
-    chain_first = chain[0]
-    stage.call(store, "fill")
-    assert chain_first.ok
+    stage.main.focus(it, Refill())
+    stage.call(it, "fill")
+    assert chain[0].ok
     assert chain[-1].ok

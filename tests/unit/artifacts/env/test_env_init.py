@@ -14,11 +14,9 @@ from jacaros.artifacts import (
 )
 from jacaros.artifacts.env.ports import ENDED
 from jacaros.runtime.trace import Cause
-from played import played
 from stage_lab import play
 
 
-@played(play)
 async def test_create_reports_a_plain_init_immediately(stage):
     told = []
     stage.main.create("c", Counter, [3], "bob", lambda *result: told.append(result))
@@ -32,7 +30,7 @@ async def test_create_reports_a_plain_init_immediately(stage):
     assert stage.main.create("d", Counter) is ENDED, "a failure without a waiting caller"
 
 
-def test_the_cause_of_the_creation_is_that_of_its_processes():
+async def test_the_cause_of_the_creation_is_that_of_its_processes(stage):
     class Alive(Artifact):
         def init(self):
             self.start(self.beat)
@@ -42,44 +40,31 @@ def test_the_cause_of_the_creation_is_that_of_its_processes():
             await self.sleep(1.0)
             self.signal("beat")
 
-    async def scene(stage):
-        why, made = Cause(1, 0, "act", "make"), []
-        stage.main.create("it", Alive, on_done=lambda artifact, _: made.append(artifact), cause=why)
-        watcher = stage.watch(made[0])
-        await stage.clock.sleep(2.0)
-        assert watcher.observations[0].cause == why
-
-    play(scene)
-
-
-def test_the_creator_is_the_caller_in_init():
-    class Curious(Artifact):
-        def init(self):
-            self.define_property("maker", self.caller)
-
-    async def scene(stage):
-        assert stage.property(await stage.make(Curious, creator="bob"), "maker") == ("bob",)
-
-    play(scene)
+    why, made = Cause(1, 0, "act", "make"), []
+    stage.main.create("it", Alive, on_done=lambda artifact, _: made.append(artifact), cause=why)
+    watcher = stage.watch(made[0])
+    await stage.clock.sleep(2.0)
+    assert watcher.observations[0].cause == why
 
 
 def test_artifacts_know_their_workspace_in_init():
     class Curious(Artifact):
         def init(self):
-            self.define_property(
-                "told", self.name, self.workspace.path, self.workspace.name, self.clock.virtual
-            )
+            workspace = self.workspace
+            self.define_property("told", self.name, workspace.path, workspace.name, self.clock.virtual)
             self.define_property("lent", self.resources["lent"])
+            self.define_property("maker", self.caller)
 
     async def scene(stage):
-        curious = await stage.make(Curious)
+        curious = await stage.make(Curious, creator="bob")
         assert stage.property(curious, "told") == ("it", "/main", "main", True)
         assert stage.property(curious, "lent") == ("this",)
+        assert stage.property(curious, "maker") == ("bob",)
 
     play(scene, lent="this")
 
 
-def test_an_artifact_can_make_others():
+async def test_an_artifact_can_make_others(stage):
     class Maker(Artifact):
         @operation(name="makeOne")
         async def make_one(self, name: str):
@@ -90,24 +75,26 @@ def test_an_artifact_can_make_others():
         async def make_held(self, name: str):
             await self.workspace.make_artifact(name, Counter)
 
-    async def scene(stage):
-        maker = await stage.make(Maker)
-        await stage.call(maker, "makeOne", "child").wait()
-        assert stage.property(stage.main.lookup("child"), "count") == (9,)
-        again = stage.call(maker, "makeOne", "child")
-        await again.wait()
-        assert again.reason == Structure("makeArtifactFailure", ("artifact_already_present", "child"))
-        held = stage.call(maker, "makeHeld", "other")
-        await held.wait()
-        assert held.ok
-
-    play(scene)
+    maker = await stage.make(Maker)
+    await stage.call(maker, "makeOne", "child").wait()
+    assert stage.property(stage.main.lookup("child"), "count") == (9,)
+    again = await stage.ended(maker, "makeOne", "child")
+    assert again.reason == Structure("makeArtifactFailure", ("artifact_already_present", "child"))
+    held = await stage.ended(maker, "makeHeld", "other")
+    assert held.ok
 
 
-@played(play)
-async def test_init_cannot_be_called_by_agents(stage):
+async def test_init_cannot_be_called_by_agents_unless_it_is_an_operation_too(stage):
+    class Restart(Artifact):
+        @operation
+        def init(self, start: int):
+            self.define_property("start", start)
+
     counter = await stage.make(Counter)
     assert stage.call(counter, "init", 3).reason == Structure("unknown_operation", (counter, "init"))
+    restart = await stage.make(Restart, 1, name="restart")
+    assert stage.call(restart, "init", 2).ok
+    assert len(stage.main.properties(restart)) == 2
 
 
 class Several(Artifact):
@@ -129,7 +116,6 @@ class Derived(Several):
         self.define_property("made", f"derived {room}", start)
 
 
-@played(play)
 async def test_of_several_inits_the_one_with_that_number_of_arguments_runs(stage):
     for kind, args, values in [
         (Several, (), ("usual", 0)),
@@ -155,33 +141,16 @@ def test_two_inits_with_the_same_arity_are_an_error():
             def again(self, start): ...
 
 
-def test_an_init_that_is_an_operation_too_can_be_called_by_agents():
-    class Restart(Artifact):
-        @operation
-        def init(self, start: int):
-            self.define_property("start", start)
-
-    async def scene(stage):
-        it = await stage.make(Restart, 1)
-        assert stage.call(it, "init", 2).ok
-        assert len(stage.main.properties(it)) == 2
-
-    play(scene)
-
-
-def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones():
+async def test_the_error_for_wrong_init_arguments_lists_the_accepted_ones(stage):
     class Two(Artifact):
         def init(self, a): ...
 
         @initializer
         def other(self, a, b: int): ...
 
-    async def scene(stage):
-        with pytest.raises(OperationFailed) as caught:
-            await stage.make(Two, 1, 2, 3)
-        assert (
-            "expected (a: any value) or (a: any value, b: an integer) as arguments of init, found 3 arguments"
-            in caught.value.message
-        )
-
-    play(scene)
+    with pytest.raises(OperationFailed) as caught:
+        await stage.make(Two, 1, 2, 3)
+    assert (
+        "expected (a: any value) or (a: any value, b: an integer) as arguments of init, found 3 arguments"
+        in caught.value.message
+    )

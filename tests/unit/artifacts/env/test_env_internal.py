@@ -4,8 +4,6 @@ import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.runtime.trace import Cause
-from played import played
-from stage_lab import play
 
 
 class Clock(Artifact):
@@ -87,64 +85,58 @@ class Clock(Artifact):
     def has_ticks(self):
         return self.value("ticks") > 0
 
+    def on_sample(self, sample):
+        self.start(self.receive, sample)
+
+    @internal_operation
+    def receive(self, sample: int):
+        self.update_property("ticks", sample)
+
+    @operation
+    async def hold(self):
+        await self.clock.sleep(1.0)
+
+    @operation
+    def note(self):
+        self.update_property("ticks", self.value("ticks") + 1)
+
+    @operation
+    def note_later(self):
+        self.start(self.note)
+        self.start("note")
+
     @operation(name="startGuarded")
     def start_guarded(self):
         self.start(self.guarded)
 
 
-@played(play)
-async def test_a_process_continues_after_the_operation_that_started_it(stage):
-    clock = await stage.make(Clock)
-    watcher = stage.watch(clock)
-    assert stage.call(clock, "start", 3).ok
-    await stage.clock.sleep(1.0)
-    assert watcher.notes[1:] == [
-        "-running('no') +running('yes')",
-        "~tick(1)",
-        "~tick(2)",
-        "~tick(3)",
-        "-running('yes') +running('no')",
-    ]
+pytestmark = pytest.mark.makes(it=Clock)
 
 
-@played(play)
-async def test_the_artifact_can_be_used_meanwhile(stage):
-    clock = await stage.make(Clock)
-    watcher = stage.watch(clock)
-    stage.call(clock, "start", 1000)
+async def test_the_artifact_can_be_used_meanwhile(stage, it, watcher):
+    stage.call(it, "start", 1000)
     await stage.clock.sleep(0.25)
-    assert stage.call(clock, "stop").ok
+    assert stage.call(it, "stop").ok
     watcher.take()
     await stage.clock.sleep(1.0)
     assert watcher.take() == ["-running('no') +running('no')"]
 
 
-@played(play)
-async def test_a_process_is_not_started_by_a_step_that_fails(stage):
-    clock = await stage.make(Clock)
-    watcher = stage.watch(clock)
-    watcher.take()
-    assert not stage.call(clock, "startBroken").ok
+async def test_a_process_is_not_started_by_a_step_that_fails(stage, it, watcher):
+    assert not stage.call(it, "startBroken").ok
     await stage.clock.sleep(1.0)
     assert watcher.take() == []
 
 
-@played(play)
-async def test_a_process_started_before_a_commit_is_started_even_if_the_step_fails_later(stage):
-    clock = await stage.make(Clock)
-    call = stage.call(clock, "early")
-    await call.wait()
+async def test_a_process_started_before_a_commit_is_started_even_if_the_step_fails_later(stage, it):
+    call = await stage.ended(it, "early")
     assert not call.ok
-    assert stage.property(clock, "ticks") == (1,)
+    assert stage.property(it, "ticks") == (1,)
 
 
-@played(play)
-async def test_processes_begin_after_the_step_that_starts_them_in_their_order(stage):
-    clock = await stage.make(Clock)
-    watcher = stage.watch(clock)
-    watcher.take()
+async def test_processes_begin_after_the_step_that_starts_them_in_their_order(stage, it, watcher):
     stage.story.clear()
-    stage.call(clock, "twice")
+    stage.call(it, "twice")
     assert stage.story == [
         ("main", "-ticks(0) +ticks(1)"),
         ("twice", "ok"),
@@ -153,24 +145,19 @@ async def test_processes_begin_after_the_step_that_starts_them_in_their_order(st
     ]
 
 
-@played(play)
-async def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(stage):
-    clock = await stage.make(Clock)
-    assert stage.call(clock, "startAll").ok
+async def test_a_failing_process_is_rolled_back_and_logged_without_other_effects(stage, it):
+    assert stage.call(it, "startAll").ok
     await stage.clock.sleep(2.0)
-    assert stage.property(clock, "ticks") == (8,), "refuses committed 5, count added 3"
+    assert stage.property(it, "ticks") == (8,), "refuses committed 5, count added 3"
     assert stage.logged("[it] error in operation breaks/0")
     assert stage.logged("ValueError: inside")
     assert stage.logged("[it] operation refuses/0 failed: no way")
 
 
-@played(play)
-async def test_a_guarded_process_waits(stage):
-    clock = await stage.make(Clock)
-    watcher = stage.watch(clock)
-    stage.call(clock, "startGuarded")
+async def test_a_guarded_process_waits(stage, it, watcher):
+    stage.call(it, "startGuarded")
     watcher.take()
-    stage.call(clock, "twice")
+    stage.call(it, "twice")
     assert watcher.take() == [
         "-ticks(0) +ticks(1)",
         "~guarded",
@@ -179,24 +166,20 @@ async def test_a_guarded_process_waits(stage):
     ]
 
 
-@played(play)
-async def test_an_unknown_process_is_an_error_of_the_artifact(stage):
-    clock = await stage.make(Clock)
-    call = stage.call(clock, "wrong")
+async def test_an_unknown_process_is_an_error_of_the_artifact(stage, it):
+    call = stage.call(it, "wrong")
     assert "unknown internal operation `no_such/0`" in call.outcome.message
-    call = stage.call(clock, "wrongMethod")
+    call = stage.call(it, "wrongMethod")
     assert "add @internal_operation above def has_ticks" in call.outcome.message
 
 
-@played(play)
-async def test_agents_cannot_call_internal_operations(stage):
-    clock = await stage.make(Clock)
-    call = stage.call(clock, "work", 3)
+async def test_agents_cannot_call_internal_operations(stage, it):
+    call = stage.call(it, "work", 3)
     assert call.reason.functor == "unknown_operation"
     assert "its internal operation of this name is for the artifact itself only" in call.outcome.message
 
 
-def test_a_process_started_in_init_begins_when_the_artifact_exists():
+async def test_a_process_started_in_init_begins_when_the_artifact_exists(stage):
     class Alive(Artifact):
         def init(self):
             self.define_property("beats", 0)
@@ -210,56 +193,32 @@ def test_a_process_started_in_init_begins_when_the_artifact_exists():
                 await self.sleep(1.0)
                 self.update_property("beats", self.value("beats") + 1)
 
-    async def scene(stage):
-        alive = await stage.make(Alive)
-        await stage.clock.sleep(3.5)
-        assert stage.property(alive, "beats") == (3,)
-        assert stage.lines == []
-
-    play(scene)
+    alive = await stage.make(Alive)
+    await stage.clock.sleep(3.5)
+    assert stage.property(alive, "beats") == (3,)
+    assert stage.lines == []
 
 
-def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free():
-    kept = []
-
-    class Sensor(Artifact):
-        def init(self):
-            self.define_property("sample", 0)
-            kept.append(self)
-
-        def on_sample(self, sample):
-            self.start(self.receive, sample)
-
-        @internal_operation
-        def receive(self, sample):
-            self.update_property("sample", sample)
-
-        @operation
-        async def hold(self):
-            await self.clock.sleep(1.0)
-
-    async def scene(stage):
-        sensor = await stage.make(Sensor)
-        kept[0].on_sample(7)
-        assert stage.property(sensor, "sample") == (7,)
-        stage.call(sensor, "hold")
-        await stage.clock.sleep(0.5)
-        kept[0].on_sample(8)
-        kept[0].on_sample(9)
-        assert stage.property(sensor, "sample") == (7,)
-        watcher = stage.watch(sensor)
-        await stage.clock.sleep(1.0)
-        assert watcher.notes == ["+sample(7)", "-sample(7) +sample(8)", "-sample(8) +sample(9)"]
-        stage.main.dispose_artifact(sensor)
-        kept[0].on_sample(10)
-        kept[0].start("receive", 11, cause=Cause(1, 0, "sample", "late"))
-        with pytest.raises(InvalidArtifact, match="unknown internal operation `receive/0`"):
-            kept[0].start("receive")
-
-    play(scene)
+async def test_a_process_started_by_a_callback_runs_immediately_if_the_artifact_is_free(
+    stage, it, made, watcher
+):
+    made.on_sample(7)
+    assert stage.property(it, "ticks") == (7,)
+    stage.call(it, "hold")
+    await stage.clock.sleep(0.5)
+    made.on_sample(8)
+    made.on_sample(9)
+    assert stage.property(it, "ticks") == (7,)
+    await stage.clock.sleep(1.0)
+    assert watcher.notes == ["-ticks(0) +ticks(7)", "-ticks(7) +ticks(8)", "-ticks(8) +ticks(9)"]
+    stage.main.dispose_artifact(it)
+    made.on_sample(10)
+    made.start("receive", 11, cause=Cause(1, 0, "sample", "late"))
+    with pytest.raises(InvalidArtifact, match="unknown internal operation `receive/0`"):
+        made.start("receive")
 
 
-def test_an_overridden_process_is_found_by_its_method():
+async def test_an_overridden_process_is_found_by_its_method(stage):
     class Old(Artifact):
         def init(self):
             self.define_property("p", "")
@@ -276,31 +235,11 @@ def test_an_overridden_process_is_found_by_its_method():
         def work_hard(self):
             self.update_property("p", "new")
 
-    async def scene(stage):
-        new = await stage.make(New)
-        stage.call(new, "go")
-        assert stage.property(new, "p") == ("new",)
-
-    play(scene)
+    new = await stage.make(New)
+    stage.call(new, "go")
+    assert stage.property(new, "p") == ("new",)
 
 
-def test_an_artifact_may_start_its_ordinary_operations_too():
-    class Both(Artifact):
-        def init(self):
-            self.define_property("n", 0)
-
-        @operation
-        def inc(self):
-            self.update_property("n", self.value("n") + 1)
-
-        @operation
-        def later(self):
-            self.start(self.inc)
-            self.start("inc")
-
-    async def scene(stage):
-        both = await stage.make(Both)
-        stage.call(both, "later")
-        assert stage.property(both, "n") == (2,)
-
-    play(scene)
+async def test_an_artifact_may_start_its_ordinary_operations_too(stage, it):
+    stage.call(it, "note_later")
+    assert stage.property(it, "ticks") == (2,)

@@ -12,8 +12,6 @@ from jacaros.artifacts import (
     link,
     operation,
 )
-from played import played
-from stage_lab import play
 
 
 class Lamp(Artifact):
@@ -75,13 +73,13 @@ class Switch(Artifact):
         await self.call_linked("out", "who", name)
 
     @operation
-    async def forward(self, operation: str):
+    async def forward(self, operation: str, *args: object):
         self.update_property("presses", 9)
-        await self.call_linked("out", operation)
+        await self.call_linked("out", operation, *args)
 
     @operation
-    async def forward_slowly(self, seconds: float):
-        await self.call_linked("out", "slowly", seconds)
+    async def shine(self):
+        await self.call_linked("spare", "raise", 3)
 
     @operation
     async def wrong_port(self):
@@ -93,6 +91,18 @@ class Switch(Artifact):
             await self.call_linked("out", "refuse")
         except OperationFailed as failure:
             reason.set(failure.reason)
+
+    @operation
+    async def owner_behind_me(self, name: Out):
+        await self.call_linked("out", "tell_caller", name)
+
+    @link
+    def tell_caller(self, name: Out):
+        name.set(self.caller)
+
+    @operation
+    async def owner_behind(self, name: Out):
+        await self.call_linked("out", "relay", name)
 
     @link
     async def relay(self, name: Out):
@@ -109,15 +119,11 @@ async def linked(stage):
     return lamp, switch
 
 
-@played(play)
 async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_the_caller_ends(stage):
-    lamp, switch = await linked(stage)
-    stage.watch(lamp, "lamp")
-    stage.watch(switch, "switch")
+    for artifact in await linked(stage):
+        stage.watch(artifact, artifact.name)
     stage.story.clear()
-    power = Out()
-    await stage.call(switch, "press", 5, power).wait()
-    assert power.value == 5
+    assert await stage.output(stage.main.lookup("switch"), "press", 5) == 5
     assert stage.story == [
         ("lamp", "-power(0) +power(5)"),
         ("switch", "-presses(0) +presses(1)"),
@@ -125,59 +131,29 @@ async def test_a_linked_operation_has_outputs_and_its_changes_are_seen_before_th
     ]
 
 
-@played(play)
 async def test_the_chain_runs_on_behalf_of_the_agent_that_started_it(stage):
     _, first = await linked(stage)
-    second = await stage.make(Switch, name="second")
-    stage.main.link(second, "out", first)
-    name = Out()
-    await stage.call(first, "owner", name, agent="bob").wait()
-    assert name.value == "bob"
-
-    class Far(Switch):
-        @operation
-        async def far(self, name: Out):
-            await self.call_linked("out", "relay", name)
-
-    far, deep = await stage.make(Far, name="far"), Out()
+    far = await stage.make(Switch, name="far")
     stage.main.link(far, "out", first)
-    await stage.call(far, "far", deep, agent="carol").wait()
-    assert deep.value == "carol"
+    assert await stage.output(first, "owner", agent="bob") == "bob"
+    assert await stage.output(far, "owner_behind", agent="carol") == "carol"
 
 
-@pytest.mark.parametrize(
-    ("operation", "reason"),
-    [("refuse", Structure("refused_by", ("lamp",))), ("late_refusal", Structure("late", ("lamp",)))],
-)
-@played(play)
-async def test_a_failure_passes_through_with_its_reason(stage, operation, reason):
-    _, switch = await linked(stage)
-    call = stage.call(switch, "forward", operation)
-    await call.wait()
-    assert call.reason == reason
-    assert stage.property(switch, "presses") == (9,), "the call was a step boundary"
-
-
-@played(play)
-async def test_the_caller_may_handle_the_failure(stage):
-    _, switch = await linked(stage)
-    reason = Out()
-    call = stage.call(switch, "careful", reason)
-    await call.wait()
-    assert call.ok
-    assert reason.value == Structure("refused_by", ("lamp",))
-
-
-@played(play)
-async def test_an_unknown_linked_operation_fails_with_its_reason(stage):
+async def test_a_failure_passes_through_with_its_reason_unless_the_caller_handles_it(stage):
     lamp, switch = await linked(stage)
-    call = stage.call(switch, "forward", "ping")
-    await call.wait()
-    assert call.reason == Structure("unknown_operation", (lamp, "ping"))
+    refused = Structure("refused_by", ("lamp",))
+    for name, reason in (
+        ("refuse", refused),
+        ("late_refusal", Structure("late", ("lamp",))),
+        ("ping", Structure("unknown_operation", (lamp, "ping"))),
+    ):
+        call = await stage.ended(switch, "forward", name)
+        assert call.reason == reason
     assert "unknown linked operation `ping/0`" in call.outcome.message
+    assert stage.property(switch, "presses") == (9,), "the call was a step boundary"
+    assert await stage.output(switch, "careful") == refused
 
 
-@played(play)
 async def test_agents_cannot_call_linked_operations_unless_they_are_operations_too(stage):
     lamp, _ = await linked(stage)
     call = stage.call(lamp, "raise", 1)
@@ -186,52 +162,43 @@ async def test_agents_cannot_call_linked_operations_unless_they_are_operations_t
     assert stage.call(lamp, "read", Out()).ok
 
 
-@played(play)
 async def test_an_unlinked_or_unknown_port_fails(stage):
     switch = await stage.make(Switch, name="switch")
-    call = stage.call(switch, "forward", "refuse")
-    await call.wait()
+    call = await stage.ended(switch, "forward", "refuse")
     assert call.reason == Structure("operation_error", ("forward/1",)), "as in CArtAgO"
     assert call.outcome.message == "port out of artifact switch is not linked"
-    wrong = stage.call(switch, "wrong_port")
-    await wrong.wait()
+    wrong = await stage.ended(switch, "wrong_port")
     assert wrong.reason == Structure("operation_error", ("wrong_port/0",))
     assert "unknown out port `in`" in wrong.outcome.message
 
 
-@played(play)
 async def test_all_artifacts_behind_a_port_are_called_and_waited_for(stage):
     lamp, switch = await linked(stage)
     second = await stage.make(Lamp, name="second")
     stage.main.link(switch, "out", second)
     stage.main.link(switch, "out", second)
-    power = Out()
-    await stage.call(switch, "press", 5, power).wait()
+    await stage.output(switch, "press", 5)
     assert [stage.property(each, "power") for each in (lamp, second)] == [(5,), (5,)]
-    call = stage.call(switch, "forward", "late_refusal")
-    await call.wait()
+    call = await stage.ended(switch, "forward", "late_refusal")
     assert call.reason == Structure("late", ("lamp",)), "the first in the order of linking"
     assert stage.main.linked(switch, "out") == (lamp, second)
 
 
-@played(play)
 async def test_the_caller_is_free_for_others_while_it_waits(stage):
     _, switch = await linked(stage)
-    slow = stage.call(switch, "forward_slowly", 1.0)
+    slow = stage.call(switch, "forward", "slowly", 1.0)
     await stage.clock.sleep(0.5)
     assert stage.call(switch, "ping").ok
     await slow.wait()
     assert slow.ended_at == 1.0
 
 
-@played(play)
 async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
     lamp, switch = await linked(stage)
     watcher = stage.watch(lamp)
-    slow = stage.call(switch, "forward_slowly", 1.0)
+    slow = stage.call(switch, "forward", "slowly", 1.0)
     waiting = stage.call(switch, "forward", "when_on")
-    await stage.clock.sleep(0.5)
-    slow.execution.cancel()
+    await stage.after(0.5, slow.execution.cancel)
     waiting.execution.cancel()
     await stage.clock.sleep(5.0)
     assert watcher.notes == ["+power(0)", "~ended"]
@@ -239,20 +206,16 @@ async def test_cancelling_the_caller_cancels_the_linked_operations(stage):
     assert stage.call(switch, "ping").ok
 
 
-@played(play)
 async def test_disposing_the_target_fails_the_caller_and_unlinks_it(stage):
     lamp, switch = await linked(stage)
-    slow = stage.call(switch, "forward_slowly", 1.0)
-    await stage.clock.sleep(0.5)
-    stage.main.dispose_artifact(lamp)
+    slow = stage.call(switch, "forward", "slowly", 1.0)
+    await stage.after(0.5, stage.main.dispose_artifact, lamp)
     await slow.wait()
     assert slow.reason == Structure("artifact_disposed", ("lamp",))
-    again = stage.call(switch, "forward", "refuse")
-    await again.wait()
+    again = await stage.ended(switch, "forward", "refuse")
     assert again.reason == Structure("operation_error", ("forward/1",))
 
 
-@played(play)
 async def test_disposing_the_caller_leaves_the_other_links_alone(stage):
     lamp, switch = await linked(stage)
     other = await stage.make(Switch, name="other")
@@ -262,7 +225,6 @@ async def test_disposing_the_caller_leaves_the_other_links_alone(stage):
     assert stage.main.linked(other, "out") == (lamp,)
 
 
-@played(play)
 async def test_linking_is_checked(stage):
     lamp, switch = await linked(stage)
     with pytest.raises(
@@ -278,25 +240,16 @@ async def test_linking_is_checked(stage):
     assert gone.value.reason == Structure("artifact_not_available", ("lamp",))
 
 
-@played(play)
 async def test_links_reach_other_workspaces(stage):
     _, switch = await linked(stage)
     lab = stage.environment.create_workspace("/main/lab")
     far = await lab.make_artifact("far", Lamp)
     stage.main.link(switch, "spare", far)
-
-    class Far(Switch):
-        @operation
-        async def shine(self):
-            await self.call_linked("spare", "raise", 3)
-
-    near = await stage.make(Far, name="near")
-    stage.main.link(near, "spare", far)
-    await stage.call(near, "shine").wait()
+    await stage.ended(switch, "shine")
     assert stage.main.properties(far)[0].values == (3,)
 
 
-def test_a_target_that_is_disposed_during_the_call_is_not_available():
+async def test_a_target_that_is_disposed_during_the_call_is_not_available(stage):
     class Jealous(Artifact):
         @link
         def greet(self):
@@ -304,37 +257,18 @@ def test_a_target_that_is_disposed_during_the_call_is_not_available():
                 if rival is not self.id:
                     self.workspace.dispose_artifact(rival)
 
-    async def scene(stage):
-        switch = await stage.make(Switch, name="switch")
-        first, second = await stage.make(Jealous, name="first"), await stage.make(Jealous, name="second")
-        stage.main.link(switch, "out", first)
-        stage.main.link(switch, "out", second)
-        call = stage.call(switch, "forward", "greet")
-        await call.wait()
-        assert call.reason == Structure("artifact_not_available", ("second",))
-
-    play(scene)
+    switch = await stage.make(Switch, name="switch")
+    first, second = await stage.make(Jealous, name="first"), await stage.make(Jealous, name="second")
+    stage.main.link(switch, "out", first)
+    stage.main.link(switch, "out", second)
+    call = await stage.ended(switch, "forward", "greet")
+    assert call.reason == Structure("artifact_not_available", ("second",))
 
 
-def test_a_link_to_itself_does_not_block():
-    class Self(Artifact):
-        ports = ("me",)
-
-        @operation
-        async def ask(self, answer: Out):
-            await self.call_linked("me", "answer", answer)
-
-        @link
-        def answer(self, answer: Out):
-            answer.set(42)
-
-    async def scene(stage):
-        myself, answer = await stage.make(Self), Out()
-        stage.main.link(myself, "me", myself)
-        await stage.call(myself, "ask", answer).wait()
-        assert answer.value == 42
-
-    play(scene)
+async def test_a_link_to_itself_does_not_block(stage):
+    switch = await stage.make(Switch, name="switch")
+    stage.main.link(switch, "out", switch)
+    assert await stage.output(switch, "owner_behind_me", agent="bob") == "bob"
 
 
 class Hub(Artifact):
@@ -368,16 +302,12 @@ class Dim(Artifact):
         power.set(self.value("power"))
 
 
-@played(play)
 async def test_an_artifact_makes_and_links_another_in_its_init(stage):
     hub = await stage.make(Hub, "inner", Dim, name="hub")
-    name, power = Out(), Out()
-    assert stage.call(hub, "name_of_first", name).ok
-    await stage.call(hub, "through_any", power).wait()
-    assert (name.value, power.value) == ("inner", 3)
+    assert await stage.output(hub, "name_of_first") == "inner"
+    assert await stage.output(hub, "through_any") == 3
 
 
-@played(play)
 async def test_without_a_port_the_first_one_is_meant(stage):
     hub, dim = await stage.make(Hub, name="hub"), await stage.make(Dim, name="dim")
     stage.main.link(hub, None, dim)
@@ -386,26 +316,20 @@ async def test_without_a_port_the_first_one_is_meant(stage):
         stage.main.link(dim, None, hub)
 
 
-@played(play)
 async def test_a_linked_operation_of_an_artifact_that_is_not_linked_is_called_by_its_id(stage):
     hub = await stage.make(Hub, name="hub")
     lab = stage.environment.create_workspace("/main/lab")
     dim = await lab.make_artifact("dim", Dim)
-    power = Out()
-    assert (await stage.call(hub, "directly", dim, power).wait()).ok
-    assert power.value == 3
+    assert await stage.output(hub, "directly", dim) == 3
     lab.dispose_artifact(dim)
-    call = stage.call(hub, "directly", dim, Out())
-    await call.wait()
+    call = await stage.ended(hub, "directly", dim, Out())
     assert call.reason == Structure("artifact_not_available", ("dim",))
 
 
-@played(play)
 async def test_an_operation_pending_in_a_linked_call_fails_when_its_artifact_is_disposed(stage):
     lamp, switch = await linked(stage)
-    call = stage.call(switch, "forward_slowly", 5)
-    await stage.clock.sleep(0.1)
-    stage.main.dispose_artifact(switch)
+    call = stage.call(switch, "forward", "slowly", 5)
+    await stage.after(0.1, stage.main.dispose_artifact, switch)
     await call.wait()
     assert call.reason == Structure("artifact_disposed", ("switch",))
     assert stage.main.pending(lamp) == (), "the linked operation is dropped with its caller"

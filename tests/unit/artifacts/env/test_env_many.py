@@ -6,8 +6,6 @@ from jacaros.artifacts import Artifact, operation
 from jacaros.artifacts.env.workspace import chosen_artifact
 from jacaros.artifacts.kernel.declaration import OperationTable
 from jacaros.artifacts.kernel.steps import Steps
-from played import played
-from stage_lab import play
 
 MANY = 300
 
@@ -51,7 +49,6 @@ def alive(kind):
     return sum(type(each) is kind for each in gc.get_objects())
 
 
-@played(play)
 async def test_an_artifact_is_chosen_without_searching_all_others(stage, monkeypatch):
     counted = Counted(monkeypatch)
     for number in range(MANY):
@@ -66,7 +63,6 @@ async def test_an_artifact_is_chosen_without_searching_all_others(stage, monkeyp
     assert counted.looks < 20 * MANY
 
 
-@played(play)
 async def test_among_many_an_own_artifact_is_chosen_then_the_one_focused_first(stage):
     made = []
     for number in range(MANY):
@@ -85,7 +81,6 @@ async def test_among_many_an_own_artifact_is_chosen_then_the_one_focused_first(s
     assert chosen("agent7") is made[17]
 
 
-@played(play)
 async def test_disposed_artifacts_leave_nothing_behind(stage):
     gone = []
     stage.environment.when_disposed(gone.append)
@@ -107,7 +102,6 @@ async def test_disposed_artifacts_leave_nothing_behind(stage):
     assert alive(Steps) <= before + 1
 
 
-@played(play)
 async def test_a_removed_watcher_of_a_workspace_is_forgotten(stage):
     before = len(stage.main._watchers)
     ends = [stage.main.watch(lambda artifact, present: None) for _ in range(MANY)]
@@ -117,7 +111,6 @@ async def test_a_removed_watcher_of_a_workspace_is_forgotten(stage):
     assert len(stage.main._watchers) == before
 
 
-@played(play)
 async def test_names_of_removed_properties_are_forgotten(stage):
     lamp = await stage.make(Lamp, name="lamp")
     for number in range(MANY):

@@ -5,8 +5,6 @@ import asyncio
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, OperationFailed, Out, internal_operation, operation
-from played import played
-from stage_lab import play
 
 
 def made(**members):
@@ -65,6 +63,9 @@ class Careless(Artifact):
         self.update_property("on", True)
 
 
+pytestmark = pytest.mark.makes(it=Careless)
+
+
 @pytest.mark.parametrize(
     ("operation_name", "arguments", "told"),
     [
@@ -80,29 +81,22 @@ class Careless(Artifact):
         ("undefined", (), 'add it with self.define_property("on", ...)'),
     ],
 )
-@played(play)
-async def test_an_error_of_an_author_is_reported_with_a_fix(stage, operation_name, arguments, told):
-    call = stage.call(await stage.make(Careless), operation_name, *arguments)
-    assert told in call.outcome.message
+async def test_an_error_of_an_author_is_reported_with_a_fix(stage, it, operation_name, arguments, told):
+    assert told in stage.call(it, operation_name, *arguments).outcome.message
 
 
-def test_an_operation_called_without_await_is_reported():
-    async def scene(stage):
-        careless = await stage.make(Careless)
-        assert (await stage.call(careless, "rest").wait()).ok
-
-    assert play(scene).logged("self.rest() has no effect without await")
+async def test_an_operation_called_without_await_is_reported(stage, it):
+    assert (await stage.call(it, "rest").wait()).ok
+    assert stage.logged("self.rest() has no effect without await")
 
 
-@played(play)
-async def test_a_signal_without_an_agent_is_reported(stage):
-    careless = await stage.make(Careless)
-    assert stage.call(careless, "begin").ok
+async def test_a_signal_without_an_agent_is_reported(stage, it):
+    assert stage.call(it, "begin").ok
     await asyncio.sleep(0)
     assert any("self.caller is None in internal operations" in line for line in stage.lines)
 
 
-def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts():
+async def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts(stage):
     names = {"__name__": __name__, "Artifact": Artifact, "operation": operation}
     exec(
         "class Late(Artifact):\n"
@@ -111,21 +105,15 @@ def test_an_unknown_annotation_is_reported_once_and_a_later_definition_counts():
         "Room = int\n",
         names,
     )
-
-    async def scene(stage):
-        for name in ("a", "b"):
-            made = await stage.make(names["Late"], name=name)
-        (told,) = [line for line in stage.lines if "accepts any value" in line]
-        assert told.startswith(
-            "[Late] parameter x of Late.put accepts any value: unknown annotation 'NoSuch';"
-        )
-        assert "expected an integer" in stage.call(made, "place", "hall").outcome.message
-        assert stage.call(made, "put", "hall").ok
-
-    play(scene)
+    for name in ("a", "b"):
+        made = await stage.make(names["Late"], name=name)
+    (told,) = [line for line in stage.lines if "accepts any value" in line]
+    assert told.startswith("[Late] parameter x of Late.put accepts any value: unknown annotation 'NoSuch';")
+    assert "expected an integer" in stage.call(made, "place", "hall").outcome.message
+    assert stage.call(made, "put", "hall").ok
 
 
-def test_a_missing_port_can_be_caught():
+async def test_a_missing_port_can_be_caught(stage):
     class Speaker(Artifact):
         ports = ("out",)
 
@@ -136,15 +124,12 @@ def test_a_missing_port_can_be_caught():
             except OperationFailed as failure:
                 result.set(f"{failure.message} {failure.reason}")
 
-    async def scene(stage):
-        result = Out()
-        assert (await stage.call(await stage.make(Speaker), "say", result).wait()).ok
-        assert result.value.endswith('; its ports are out operation_error("say/1")')
-
-    play(scene)
+    result = Out()
+    assert (await stage.call(await stage.make(Speaker), "say", result).wait()).ok
+    assert result.value.endswith('; its ports are out operation_error("say/1")')
 
 
-def test_a_value_of_another_class_is_an_error():
+async def test_a_value_of_another_class_is_an_error(stage):
     class Typed(Artifact):
         def init(self):
             self.define_property("free", 3)
@@ -157,16 +142,13 @@ def test_a_value_of_another_class_is_an_error():
         def ask_wrongly(self):
             self.value("free", kind=str)
 
-    async def scene(stage):
-        typed, free = await stage.make(Typed), Out()
-        assert stage.call(typed, "ask", free).ok
-        assert free.value is True
-        assert (
-            "expected str at index 0 of property free, found 3"
-            in stage.call(typed, "ask_wrongly").outcome.message
-        )
-
-    play(scene)
+    typed, free = await stage.make(Typed), Out()
+    assert stage.call(typed, "ask", free).ok
+    assert free.value is True
+    assert (
+        "expected str at index 0 of property free, found 3"
+        in stage.call(typed, "ask_wrongly").outcome.message
+    )
 
 
 class Copying(Artifact):
@@ -188,7 +170,6 @@ class Copying(Artifact):
         last.set(self.value("path").pop())
 
 
-@played(play)
 async def test_a_change_of_a_copy_is_reported_once(stage):
     await stage.make(Copying, name="a")
     copying = await stage.make(Copying, name="b")

@@ -1,8 +1,8 @@
 """What observers see: focus, coalescing, signals and changes of one step, order, signals to one agent."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, Atom, Structure, operation
-from played import played
-from stage_lab import play
 
 
 class Ticker(Artifact):
@@ -13,10 +13,6 @@ class Ticker(Artifact):
     def inc(self):
         self.update_property("count", self.value("count") + 1)
 
-    @operation
-    def same(self):
-        self.update_property("count", self.value("count"))
-
     @operation(name="tickInc")
     def tick_inc(self):
         self.inc()
@@ -24,7 +20,7 @@ class Ticker(Artifact):
 
     @operation(name="sigFirst")
     def signal_first(self):
-        self.signal("early", 0)
+        self.signal("early", self.value("count"))
         self.inc()
 
     @operation
@@ -35,11 +31,6 @@ class Ticker(Artifact):
         self.inc()
         self.signal("two")
         self.inc()
-
-    @operation
-    def burst(self, times: int):
-        for _ in range(times):
-            self.inc()
 
     @operation
     def flash(self):
@@ -81,214 +72,121 @@ class Ticker(Artifact):
         pass
 
     @operation
+    def only_whisper(self, agent: str):
+        self.signal_to(agent, "psst")
+
+    @operation
+    def shout(self):
+        self.signal("Shout")
+
+    @operation
     def annotate(self):
         self.define_property("pose", 1, 2, annotations=(Structure("frame", ("map",)),))
 
 
-@played(play)
-async def test_focus_begins_with_all_properties_and_is_idempotent(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
+pytestmark = pytest.mark.makes(it=Ticker)
+
+
+async def test_focus_begins_with_all_properties_and_is_idempotent(stage, it):
+    watcher = stage.watch(it)
     assert watcher.take() == ["+count(0)"]
-    stage.main.focus(ticker, watcher)
+    stage.main.focus(it, watcher)
     assert watcher.take() == []
-    stage.call(ticker, "inc")
+    stage.call(it, "inc")
     assert watcher.take() == ["-count(0) +count(1)"]
-    assert stage.main.observers(ticker) == (watcher,)
+    assert stage.main.observers(it) == (watcher,)
 
 
-@played(play)
 async def test_stop_focus_removes_the_properties_and_a_later_focus_shows_the_current_values(stage):
     ticker = await stage.make(Ticker, 10)
     watcher = stage.watch(ticker)
     stage.call(ticker, "inc")
     stage.main.stop_focus(ticker, watcher)
     assert watcher.take() == ["+count(10)", "-count(10) +count(11)", "-count(11)"]
+    stage.main.stop_focus(ticker, watcher)
     stage.call(ticker, "inc")
     stage.call(ticker, "tickInc")
     assert watcher.take() == []
     stage.main.focus(ticker, watcher)
-    assert watcher.take() == ["+count(13)"]
-
-
-@played(play)
-async def test_stop_focus_without_focus_has_no_effect(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
+    assert watcher.take() == ["+count(13)"], "the signal was for those who focus at that time"
     stage.main.stop_focus(ticker, watcher)
     watcher.take()
-    stage.main.stop_focus(ticker, watcher)
     stage.main.dispose_artifact(ticker)
     stage.main.stop_focus(ticker, watcher)
     assert watcher.take() == []
 
 
-def test_focusing_an_artifact_without_properties_is_silent():
-    class Mute(Artifact):
-        pass
-
-    async def scene(stage):
-        assert stage.watch(await stage.make(Mute)).notes == []
-
-    play(scene)
+async def test_focusing_an_artifact_without_properties_is_silent(stage):
+    assert stage.watch(await stage.make(Artifact)).notes == []
 
 
-@played(play)
-async def test_each_observer_gets_every_change_in_one_order(stage):
-    ticker = await stage.make(Ticker)
-    alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
-    stage.call(ticker, "inc", agent="alice")
-    stage.main.stop_focus(ticker, bob)
-    stage.call(ticker, "inc", agent="bob")
-    assert alice.notes == ["+count(0)", "-count(0) +count(1)", "-count(1) +count(2)"]
-    assert bob.notes == ["+count(0)", "-count(0) +count(1)", "-count(1)"]
-
-
-@played(play)
-async def test_several_updates_in_one_step_are_one_change(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    stage.call(ticker, "burst", 5)
-    assert watcher.notes == ["+count(0)", "-count(0) +count(5)"]
-
-
-@played(play)
-async def test_an_update_to_an_equal_value_is_published(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    stage.call(ticker, "same")
-    assert watcher.notes == ["+count(0)", "-count(0) +count(0)"]
-
-
-@played(play)
-async def test_a_property_added_and_removed_in_one_step_is_not_published(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    watcher.take()
-    stage.call(ticker, "flash")
-    stage.call(ticker, "quiet")
+async def test_a_property_added_and_removed_in_one_step_is_not_published(stage, it, watcher):
+    stage.call(it, "flash")
+    stage.call(it, "quiet")
     assert watcher.take() == []
-    stage.call(ticker, "mix")
+    stage.call(it, "mix")
     assert watcher.take() == ["-count(0) +count(1) +new([1, 2])"]
-    stage.call(ticker, "wipe")
+    stage.call(it, "wipe")
     assert watcher.take() == ["-count(1)"]
 
 
-@played(play)
-async def test_a_signal_and_the_changes_before_it_are_one_publication_signal_first(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    watcher.take()
-    stage.call(ticker, "tickInc")
+async def test_a_signal_and_the_changes_before_it_are_one_publication_signal_first(stage, it, watcher):
+    stage.call(it, "tickInc")
     assert watcher.take() == ["~tick(1) -count(0) +count(1)"]
+    stage.call(it, "sigFirst")
+    assert watcher.take() == ["~early(1)", "-count(1) +count(2)"]
+    stage.call(it, "between")
+    assert watcher.take() == ["~one -count(2) +count(3)", "~two -count(3) +count(5)", "-count(5) +count(6)"]
 
 
-@played(play)
-async def test_a_signal_before_the_change_of_its_step_is_a_publication_of_its_own(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    watcher.take()
-    stage.call(ticker, "sigFirst")
-    assert watcher.take() == ["~early(0)", "-count(0) +count(1)"]
-    stage.call(ticker, "between")
-    assert watcher.take() == [
-        "~one -count(1) +count(2)",
-        "~two -count(2) +count(4)",
-        "-count(4) +count(5)",
-    ]
+async def test_a_signal_to_one_agent_reaches_it_alone_while_the_changes_reach_all(stage, it):
+    alice, bob = stage.watch(it, "alice"), stage.watch(it, "bob")
+    stage.call(it, "whisper", "bob")
+    assert alice.take() == ["+count(0)", "-count(0) +count(1)"]
+    assert bob.take() == ["+count(0)", "~psst(Atom('a')) -count(0) +count(1)"]
+    stage.call(it, "whisper", "carol")
+    assert alice.take() == bob.take() == ["-count(1) +count(2)"]
+    stage.call(it, "only_whisper", "alice")
+    assert (alice.take(), bob.take()) == (["~psst"], [])
 
 
-@played(play)
-async def test_a_signal_reaches_only_those_who_focus_at_that_time(stage):
-    ticker = await stage.make(Ticker)
-    stage.call(ticker, "tickInc")
-    watcher = stage.watch(ticker)
-    assert watcher.notes == ["+count(1)"]
-
-
-@played(play)
-async def test_a_signal_to_one_agent_reaches_it_alone_while_the_changes_reach_all(stage):
-    ticker = await stage.make(Ticker)
-    alice, bob = stage.watch(ticker, "alice"), stage.watch(ticker, "bob")
-    stage.call(ticker, "whisper", "bob")
-    assert alice.notes == ["+count(0)", "-count(0) +count(1)"]
-    assert bob.notes == ["+count(0)", "~psst(Atom('a')) -count(0) +count(1)"]
-    stage.call(ticker, "whisper", "carol")
-    assert alice.notes[-1] == bob.notes[-1] == "-count(1) +count(2)"
-
-
-def test_a_signal_to_one_agent_without_changes_reaches_no_other_observer():
-    class Whisper(Artifact):
-        @operation
-        def whisper(self, agent: str):
-            self.signal_to(agent, "psst")
-
-    async def scene(stage):
-        whisper = await stage.make(Whisper)
-        alice, bob = stage.watch(whisper, "alice"), stage.watch(whisper, "bob")
-        stage.call(whisper, "whisper", "alice")
-        assert (alice.notes, bob.notes) == (["~psst"], [])
-
-    play(scene)
-
-
-@played(play)
-async def test_what_was_committed_or_signalled_stays_when_the_step_fails(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    watcher.take()
-    assert not stage.call(ticker, "halfway").ok
+async def test_what_was_committed_or_signalled_stays_when_the_step_fails(stage, it, watcher):
+    assert not stage.call(it, "halfway").ok
     assert watcher.take() == ["-count(0) +count(1)"]
-    assert not stage.call(ticker, "tell_and_fail").ok
+    assert not stage.call(it, "tell_and_fail").ok
     assert watcher.take() == ["~done -count(1) +count(2)"]
-    stage.call(ticker, "inc")
+    stage.call(it, "inc")
     assert watcher.take() == ["-count(2) +count(3)"]
 
 
-def test_signal_names_begin_with_a_lower_case_letter():
-    class Loud(Artifact):
-        @operation
-        def shout(self):
-            self.signal("Shout")
-
-    async def scene(stage):
-        call = stage.call(await stage.make(Loud), "shout")
-        assert call.reason == Structure("operation_error", ("shout/0",))
-        assert "lower-case" in call.outcome.message
-
-    play(scene)
+async def test_signal_names_begin_with_a_lower_case_letter(stage, it):
+    call = stage.call(it, "shout")
+    assert call.reason == Structure("operation_error", ("shout/0",))
+    assert "lower-case" in call.outcome.message
 
 
-@played(play)
-async def test_annotations_of_a_property_are_published(stage):
-    ticker = await stage.make(Ticker)
-    watcher = stage.watch(ticker)
-    stage.call(ticker, "annotate")
+async def test_annotations_of_a_property_are_published(stage, it, watcher):
+    stage.call(it, "annotate")
     assert watcher.observations[-1].added[0].annotations == (Structure("frame", ("map",)),)
 
 
-@played(play, expect_defects=True)
-async def test_a_broken_observer_is_reported_and_the_others_are_notified(stage):
-    ticker = await stage.make(Ticker)
-
+@pytest.mark.expects_defects
+async def test_a_broken_observer_is_reported_and_the_others_are_notified(stage, it):
     class Broken:
         agent = "broken"
 
         def observe(self, observation):
             raise ValueError("broken observer")
 
-    stage.main.focus(ticker, Broken())
-    watcher = stage.watch(ticker)
-    assert stage.call(ticker, "inc").ok
+    stage.main.focus(it, Broken())
+    watcher = stage.watch(it)
+    assert stage.call(it, "inc").ok
     assert watcher.notes[-1] == "-count(0) +count(1)"
     assert [str(error) for error in stage.defects] == ["broken observer"] * 2
-    stage.main.dispose_artifact(ticker)
+    stage.main.dispose_artifact(it)
 
 
-@played(play)
-async def test_an_observer_may_stop_while_it_is_notified(stage):
-    ticker = await stage.make(Ticker)
-
+async def test_an_observer_may_stop_while_it_is_notified(stage, it):
     class Once:
         agent = "once"
         seen = 0
@@ -296,12 +194,12 @@ async def test_an_observer_may_stop_while_it_is_notified(stage):
         def observe(self, observation):
             self.seen += 1
             if observation.changed:
-                stage.main.stop_focus(ticker, self)
+                stage.main.stop_focus(it, self)
 
     once = Once()
-    stage.main.focus(ticker, once)
-    watcher = stage.watch(ticker)
-    stage.call(ticker, "inc")
-    stage.call(ticker, "inc")
+    stage.main.focus(it, once)
+    watcher = stage.watch(it)
+    stage.call(it, "inc")
+    stage.call(it, "inc")
     assert once.seen == 3, "focus, one change, and the end of the focus"
     assert watcher.notes[-1] == "-count(1) +count(2)"

@@ -2,16 +2,22 @@
 
 import pytest
 
-from jacaros.artifacts import UNSET, Artifact, Atom, InvalidArtifact, Out, Structure, operation
+from jacaros.artifacts import (
+    UNSET,
+    Artifact,
+    Atom,
+    InvalidArtifact,
+    OperationRequest,
+    Out,
+    Structure,
+    operation,
+)
 from jacaros.runtime.errors import InternalError
-from played import played
-from stage_lab import play
 
 
 class Counter(Artifact):
     def init(self, start: int = 0):
         self.define_property("count", start)
-        self.plain_attribute = 0
 
     @operation
     def inc(self, by: int = 1):
@@ -65,106 +71,57 @@ class Counter(Artifact):
         pass
 
     @operation
+    def greet(self, name: str, greeting: str = "hello", *more: str):
+        self.log(" ".join([greeting, name, *more]))
+
+    @operation
     def who(self, agent: Out):
         agent.set(self.caller)
 
 
-class Show(Artifact):
-    @operation(name="show")
-    def show_one(self, a: object, shown: Out):
-        shown.set(f"one {a}")
-
-    @operation(name="show")
-    def show_two(self, a: object, b: object, shown: Out):
-        shown.set(f"two {a} {b}")
-
-    @operation(name="sum")
-    def sum_any(self, *args: object):
-        *numbers, total = args
-        total.set(sum(numbers))
-
-    @operation(name="sum")
-    def sum_one(self, a: int, total: Out):
-        total.set(f"exact {a}")
-
-    @operation
-    def greet(self, name: str, greeting: str = "hello", *more: str):
-        self.log(" ".join([greeting, name, *more]))
+pytestmark = pytest.mark.makes(it=Counter)
 
 
-@played(play)
 async def test_a_plain_operation_has_ended_when_execute_returns(stage):
     counter = await stage.make(Counter, 5)
     call = stage.call(counter, "inc")
     assert call.ok
     assert call.execution.ended
     assert stage.property(counter, "count") == (6,)
+    stage.call(counter, "inc", 10)
+    assert stage.property(counter, "count") == (16,), "default values give several arities"
 
 
-@played(play)
-async def test_observers_are_notified_before_the_caller(stage):
-    counter = await stage.make(Counter)
-    stage.watch(counter)
+async def test_observers_are_notified_before_the_caller(stage, it):
+    stage.watch(it)
     stage.story.clear()
-    stage.call(counter, "inc")
+    stage.call(it, "inc")
     assert stage.story == [("main", "-count(0) +count(1)"), ("inc", "ok")]
 
 
-@played(play)
-async def test_default_values_of_parameters_give_several_arities(stage):
-    counter = await stage.make(Counter)
-    stage.call(counter, "inc")
-    stage.call(counter, "inc", 10)
-    assert stage.property(counter, "count") == (11,)
-
-
-@played(play)
-async def test_outputs_count_in_the_arity_and_are_set(stage):
-    counter = await stage.make(Counter)
-    quotient, remainder = Out(), Out()
-    assert stage.call(counter, "divmod", 17, 5, quotient, remainder).ok
-    assert (quotient.value, remainder.value) == (3, 2)
+async def test_outputs_count_in_the_arity_and_are_set(stage, it):
+    quotient = Out()
+    assert await stage.output(it, "divmod", 17, 5, quotient) == 2
+    assert quotient.value == 3
     left = Out()
-    assert stage.call(counter, "unset", left).ok
+    assert stage.call(it, "unset", left).ok
     assert left.value is UNSET
     assert not left.is_set
+    assert await stage.output(it, "who", agent="bob") == "bob"
 
 
-@played(play)
-async def test_overloading_by_number_of_arguments_and_an_exact_number_beats_any_number(stage):
-    show = await stage.make(Show)
-
-    def result(name, *args):
-        out = Out()
-        assert stage.call(show, name, *args, out).ok
-        return out.value
-
-    assert result("show", 1) == "one 1"
-    assert result("show", 1, 2) == "two 1 2"
-    assert result("sum", 1, 2, 3, 4) == 10
-    assert result("sum", 9) == "exact 9"
-    assert result("sum") == 0
-
-
-@played(play)
-async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage):
-    show = await stage.make(Show)
-    assert stage.call(show, "greet", "bob").ok
-    assert stage.call(show, "greet", "bob", "hi", "and", "bye").ok
-    call = stage.call(show, "greet")
-    assert call.reason == Structure("unknown_operation", (show, "greet"))
+async def test_an_operation_with_any_number_of_arguments_still_has_a_least_number(stage, it):
+    assert stage.call(it, "greet", "bob").ok
+    assert stage.call(it, "greet", "bob", "hi", "and", "bye").ok
+    call = stage.call(it, "greet")
+    assert call.reason == Structure("unknown_operation", (it, "greet"))
     assert "greet/any" in call.outcome.message
     assert stage.lines == ["[it] hello bob", "[it] hi bob and bye"]
 
 
-@played(play)
-async def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(stage):
-    counter = await stage.make(Counter)
-    result = Out()
-    assert stage.call(counter, "half", 8.0, result).ok
-    assert result.value == 4.0
-    assert stage.call(counter, "root", 2, Atom("label"), result).ok
-    assert result.value == ["float", "label"]
+async def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(stage, it):
+    assert await stage.output(it, "half", 8.0) == 4.0
+    assert await stage.output(it, "root", 2, Atom("label")) == ["float", "label"]
 
 
 @pytest.mark.parametrize(
@@ -179,69 +136,50 @@ async def test_whole_real_numbers_are_integers_and_integers_are_real_numbers(sta
         ("root", (10**400, "x", Out()), "argument 1 (number)", "a number", "1000"),
     ],
 )
-@played(play)
-async def test_a_wrong_argument_fails_and_is_named(stage, operation, arguments, parameter, expected, got):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, operation, *arguments)
+async def test_a_wrong_argument_fails_and_is_named(stage, it, operation, arguments, parameter, expected, got):
+    call = stage.call(it, operation, *arguments)
     key = f"{operation}/{len(arguments)}"
-    assert call.reason == Structure("wrong_op_arguments", (counter, key))
+    assert call.reason == Structure("wrong_op_arguments", (it, key))
     assert f"operation {key} of artifact it: {parameter}: expected {expected}" in call.outcome.message
     assert f"found {got}" in call.outcome.message
 
 
-@played(play)
-async def test_an_unknown_operation_fails_with_a_suggestion(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "incc")
-    assert call.reason == Structure("unknown_operation", (counter, "incc"))
-    assert "did you mean `inc`?" in call.outcome.message
-    assert "inc/0, inc/1, half/2" in call.outcome.message
+@pytest.mark.parametrize(
+    ("name", "arguments", "parts"),
+    [
+        ("incc", (), ("did you mean `inc`?", "inc/0, inc/1, half/2")),
+        ("inc", (1, 2, 3), ("unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1",)),
+    ],
+)
+async def test_an_unknown_operation_fails_with_a_suggestion(stage, it, name, arguments, parts):
+    call = stage.call(it, name, *arguments)
+    assert call.reason == Structure("unknown_operation", (it, name))
+    assert [part for part in parts if part not in call.outcome.message] == []
     assert call.execution.ended
 
 
-@played(play)
-async def test_the_error_for_a_wrong_arity_lists_the_known_ones(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "inc", 1, 2, 3)
-    assert call.reason == Structure("unknown_operation", (counter, "inc"))
-    assert "unknown operation `inc/3` of artifact it (Counter); it has inc/0, inc/1" in call.outcome.message
-
-
-@played(play)
-async def test_a_failing_operation_has_a_message_and_a_reason(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "refuse", "wrong_key", 3)
+async def test_a_failing_operation_has_a_message_and_perhaps_a_reason(stage, it):
+    call = stage.call(it, "refuse", "wrong_key", 3)
     assert call.outcome.message == "refused"
     assert call.reason == Structure("wrong_key", (3, "text", True))
-
-
-@played(play)
-async def test_a_reason_without_arguments_is_an_atom_and_a_failure_may_have_no_reason(stage):
-    counter = await stage.make(Counter)
-    plain = stage.call(counter, "plain").reason
+    plain = stage.call(it, "plain").reason
     assert plain == Atom("plain")
-    assert isinstance(plain, Atom)
-    jam = stage.call(counter, "jam")
+    assert isinstance(plain, Atom), "a reason without arguments"
+    jam = stage.call(it, "jam")
     assert (jam.outcome.message, jam.reason) == ("jammed", None)
 
 
-@played(play)
-async def test_a_failing_step_is_rolled_back_unobserved(stage):
-    counter = await stage.make(Counter)
-    watcher = stage.watch(counter)
-    watcher.take()
-    stage.call(counter, "refuse", "no", 1)
+async def test_a_failing_step_is_rolled_back_unobserved(stage, it, watcher):
+    stage.call(it, "refuse", "no", 1)
     assert watcher.take() == []
-    assert stage.call(counter, "inc").ok
+    assert stage.call(it, "inc").ok
     assert watcher.take() == ["-count(0) +count(1)"]
 
 
-@played(play)
-async def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(stage):
-    counter = await stage.make(Counter)
-    watcher = stage.watch(counter)
-    watcher.take()
-    call = stage.call(counter, "crash")
+async def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_an_operation_error(
+    stage, it, watcher
+):
+    call = stage.call(it, "crash")
     assert call.reason == Structure("operation_error", ("crash/0",))
     assert "RuntimeError" in call.outcome.message
     assert "boom" in call.outcome.message
@@ -249,82 +187,54 @@ async def test_an_unexpected_error_is_rolled_back_logged_with_its_traceback_and_
     assert stage.logged("in crash")
     assert stage.logged("RuntimeError: boom")
     assert not stage.logged("kernel/steps.py"), "the trace begins in the author's code"
-    assert stage.call(counter, "inc").ok
+    assert stage.call(it, "inc").ok
     assert watcher.take() == ["-count(0) +count(1)"]
 
 
-@played(play, expect_defects=True)
-async def test_an_internal_error_is_reported_and_the_operation_fails(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "defect")
+@pytest.mark.expects_defects
+async def test_an_internal_error_is_reported_and_the_operation_fails(stage, it):
+    call = stage.call(it, "defect")
     assert call.reason == Structure("internal_error", ("defect/0",))
     assert [str(error) for error in stage.defects] == ["our own fault"]
-    assert stage.call(counter, "inc").ok
+    assert stage.call(it, "inc").ok
 
 
-@played(play)
-async def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "badly")
+async def test_a_plain_method_that_returns_a_coroutine_is_an_explained_error(stage, it):
+    call = stage.call(it, "badly")
     assert call.reason == Structure("operation_error", ("badly/0",))
     assert "write async def" in call.outcome.message
 
 
-@played(play)
-async def test_the_caller_is_the_agent_that_asked(stage):
-    counter = await stage.make(Counter)
-    name = Out()
-    stage.call(counter, "who", name, agent="bob")
-    assert name.value == "bob"
-
-
-@played(play)
-async def test_properties_cannot_be_changed_outside_of_operations(stage):
-    kept = []
-
-    class Leaky(Artifact):
-        def init(self):
-            self.define_property("p", 1)
-            kept.append(self)
-
-    await stage.make(Leaky)
-    leaky = kept[0]
+async def test_properties_cannot_be_changed_outside_of_operations(made):
     for misuse in (
-        lambda: leaky.update_property("p", 2),
-        lambda: leaky.define_property("q", 2),
-        lambda: leaky.remove_property("p"),
-        lambda: leaky.signal("s"),
-        leaky.commit,
-        lambda: leaky.current,
+        lambda: made.update_property("count", 2),
+        lambda: made.define_property("q", 2),
+        lambda: made.remove_property("count"),
+        lambda: made.signal("s"),
+        made.commit,
+        lambda: made.current,
     ):
         with pytest.raises(InvalidArtifact, match=r"within an operation.*self\.start"):
             misuse()
-    assert leaky.value("p") == 1, "reading is allowed"
-    assert leaky.values("p") == (1,)
-    assert leaky.has_property("p", 1)
-    assert not leaky.has_property("p", 2)
-    assert leaky.caller is None
+    assert made.value("count") == 0, "reading is allowed"
+    assert made.values("count") == (0,)
+    assert made.has_property("count", 0)
+    assert not made.has_property("count", 2)
+    assert made.caller is None
 
 
-@played(play, expect_defects=True)
-async def test_an_error_in_the_callers_callback_is_reported_without_other_effects(stage):
-    counter = await stage.make(Counter)
-    call = stage.call(counter, "inc")
-    call.execution.request.on_done = None
-
+@pytest.mark.expects_defects
+async def test_an_error_in_the_callers_callback_is_reported_without_other_effects(stage, it):
     def broken(outcome):
         raise ValueError("broken caller")
 
-    request = call.execution.request
-    request.on_done = broken
-    stage.main.execute(request)
+    stage.main.execute(OperationRequest(it, "inc", on_done=broken))
     assert [str(error) for error in stage.defects] == ["broken caller"]
-    assert stage.call(counter, "inc").ok
+    assert stage.call(it, "inc").ok
+    assert stage.property(it, "count") == (2,)
 
 
-@played(play)
-async def test_a_call_from_a_callback_is_served_after_waiting_ones(stage):
-    counter = await stage.make(Counter)
+async def test_a_call_from_a_callback_is_served_after_waiting_ones(stage, it):
     order = []
 
     class Again:
@@ -333,11 +243,11 @@ async def test_a_call_from_a_callback_is_served_after_waiting_ones(stage):
         def observe(self, observation):
             order.append(observation.changed[0][1].values[0] if observation.changed else "focus")
             if len(order) == 2:
-                nested = stage.call(counter, "inc", 100)
+                nested = stage.call(it, "inc", 100)
                 assert not nested.ok, "the artifact is not free while it publishes"
                 order.append("asked")
 
-    stage.main.focus(counter, Again())
-    stage.call(counter, "inc")
+    stage.main.focus(it, Again())
+    stage.call(it, "inc")
     assert order == ["focus", 1, "asked", 101]
     assert stage.story == [("inc", "ok"), ("inc", "ok")]

@@ -1,8 +1,8 @@
 """Pausing: opt-in, immediate where it matters, and with the paused time known."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, link, operation
-from played import played
-from stage_lab import play
 
 
 class Robot(Artifact):
@@ -68,6 +68,9 @@ class Robot(Artifact):
             self.update_property("units", self.value("units") + 1)
 
 
+pytestmark = pytest.mark.makes(it=Robot)
+
+
 class Boss(Artifact):
     ports = ("robot",)
 
@@ -81,98 +84,71 @@ class Boss(Artifact):
         await self.call_linked("robot", "drive", units)
 
 
-def robot_of(stage, name="it"):
-    class Kept(Robot):
-        def init(self):
-            super().init()
-            stage.robot = self
-
-    return stage.make(Kept, name=name)
-
-
 def units(stage, robot):
     return stage.property(robot, "units")[0]
 
 
-@played(play)
-async def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 5)
-    await stage.clock.sleep(1.5)
-    move.execution.pause()
+async def test_a_paused_motion_stops_immediately_and_continues_with_the_rest(stage, it, made):
+    move = stage.call(it, "move", 5)
+    await stage.after(1.5, move.execution.pause)
     assert move.execution.paused
-    assert stage.robot.commands == [("halt", 1.5)]
+    assert made.commands == [("halt", 1.5)]
     await stage.clock.sleep(10.0)
-    assert units(stage, robot) == 2, "it came to its pause point and waits there"
+    assert units(stage, it) == 2, "it came to its pause point and waits there"
     move.execution.resume()
     assert not move.execution.paused
     await move.wait()
-    assert stage.robot.commands == [("halt", 1.5), "pause point", ("lost", 10.0)]
-    assert stage.robot.resumed == [11.5]
-    assert units(stage, robot) == 5
+    assert made.commands == [("halt", 1.5), "pause point", ("lost", 10.0)]
+    assert made.resumed == [11.5]
+    assert units(stage, it) == 5
     assert move.ended_at == 14.5
 
 
-@played(play)
-async def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 2)
-    await stage.clock.sleep(0.2)
-    move.execution.pause()
-    await stage.clock.sleep(0.3)
-    move.execution.resume()
+async def test_a_pause_that_is_over_before_the_pause_point_still_counts_as_lost_time(stage, it, made):
+    move = stage.call(it, "move", 2)
+    await stage.after(0.2, move.execution.pause)
+    await stage.after(0.3, move.execution.resume)
     await move.wait()
-    assert stage.robot.commands == [("halt", 0.2), ("lost", 0.3)]
+    assert made.commands == [("halt", 0.2), ("lost", 0.3)]
 
 
-@played(play)
-async def test_pausing_again_before_it_continues_keeps_it_paused(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 2)
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
-    await stage.clock.sleep(1.0)
-    move.execution.resume()
+async def test_pausing_again_before_it_continues_keeps_it_paused(stage, it, made):
+    move = stage.call(it, "move", 2)
+    await stage.after(0.5, move.execution.pause)
+    await stage.after(1.0, move.execution.resume)
     move.execution.pause()
     await stage.clock.sleep(5.0)
-    assert units(stage, robot) == 1
+    assert units(stage, it) == 1
     move.execution.resume()
     await move.wait()
-    assert stage.robot.commands[-1] == ("lost", 6.0)
+    assert made.commands[-1] == ("lost", 6.0)
 
 
-@played(play)
-async def test_pause_and_resume_are_idempotent(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 1)
+async def test_pause_and_resume_are_idempotent(stage, it, made):
+    move = stage.call(it, "move", 1)
     move.execution.resume()
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
+    await stage.after(0.5, move.execution.pause)
     move.execution.pause()
     move.execution.resume()
     move.execution.resume()
     await move.wait()
     move.execution.pause()
     assert not move.execution.paused
-    assert stage.robot.commands == [("halt", 0.5)]
+    assert made.commands == [("halt", 0.5)]
 
 
-@played(play)
-async def test_an_operation_that_is_not_pausable_continues(stage):
-    robot = await robot_of(stage)
-    deaf = stage.call(robot, "deaf")
+async def test_an_operation_that_is_not_pausable_continues(stage, it):
+    deaf = stage.call(it, "deaf")
     deaf.execution.pause()
     assert not deaf.execution.paused
     await deaf.wait()
     assert deaf.ended_at == 1.0
 
 
-@played(play)
-async def test_others_run_while_one_is_paused_even_those_that_exclude_it(stage):
-    robot = await robot_of(stage)
-    first = stage.call(robot, "move", 2)
+async def test_others_run_while_one_is_paused_even_those_that_exclude_it(stage, it):
+    first = stage.call(it, "move", 2)
     await stage.clock.sleep(0.5)
-    second = stage.call(robot, "move", 1)
+    second = stage.call(it, "move", 1)
     await stage.clock.sleep(0.1)
     assert not second.execution.begun
     first.execution.pause()
@@ -180,15 +156,13 @@ async def test_others_run_while_one_is_paused_even_those_that_exclude_it(stage):
     assert second.ended_at == 1.6
     first.execution.resume()
     await first.wait()
-    assert units(stage, robot) == 3
+    assert units(stage, it) == 3
 
 
-@played(play)
-async def test_an_operation_paused_before_it_begins_does_not_begin_before_resume(stage):
-    robot = await robot_of(stage)
-    stage.call(robot, "move", 1)
+async def test_an_operation_paused_before_it_begins_does_not_begin_before_resume(stage, it):
+    stage.call(it, "move", 1)
     await stage.clock.sleep(0.5)
-    second = stage.call(robot, "move", 1)
+    second = stage.call(it, "move", 1)
     second.execution.pause()
     await stage.clock.sleep(10.0)
     assert not second.execution.begun
@@ -197,39 +171,34 @@ async def test_an_operation_paused_before_it_begins_does_not_begin_before_resume
     assert second.ended_at == 11.5
 
 
-@played(play)
-async def test_a_paused_operation_can_be_cancelled(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 5)
-    await stage.clock.sleep(0.5)
-    move.execution.pause()
-    await stage.clock.sleep(5.0)
-    move.execution.cancel()
+async def test_a_paused_operation_can_be_cancelled(stage, it, made):
+    move = stage.call(it, "move", 5)
+    await stage.after(0.5, move.execution.pause)
+    await stage.after(5.0, move.execution.cancel)
     await stage.clock.sleep(1.0)
     assert move.execution.ended
-    assert stage.robot._motion is None
+    assert made._motion is None
     assert move.outcome is None
 
 
-@played(play)
-async def test_an_operation_may_wait_for_resume_itself(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "waits_itself")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+async def test_an_operation_may_wait_for_resume_itself_unless_it_is_cancelled(stage, it, made):
+    first, second = stage.call(it, "waits_itself"), stage.call(it, "waits_itself")
+    await stage.after(0.5, first.execution.pause)
+    second.execution.pause()
     await stage.clock.sleep(2.0)
-    assert stage.robot.commands == []
-    call.execution.resume()
-    await call.wait()
-    assert (stage.robot.commands, call.ended_at) == (["resumed"], 2.5)
+    assert made.commands == []
+    first.execution.task.cancel()
+    first.execution.resume()
+    second.execution.resume()
+    await second.wait()
+    assert (made.commands, second.ended_at) == (["resumed"], 2.5)
+    await stage.clock.sleep(1.0)
+    assert (made.commands, first.outcome) == (["resumed"], None)
 
 
-@played(play)
-async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "broken_callback")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stage, it):
+    call = stage.call(it, "broken_callback")
+    await stage.after(0.5, call.execution.pause)
     assert call.execution.paused
     assert stage.logged("ZeroDivisionError")
     await stage.clock.sleep(5.0)
@@ -239,64 +208,35 @@ async def test_an_error_in_a_pause_callback_is_logged_and_the_pause_is_kept(stag
     assert call.ok
 
 
-@played(play)
-async def test_a_callback_registered_while_paused_is_called_at_once(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "late_callback")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
+async def test_a_callback_registered_while_paused_is_called_at_once(stage, it, made):
+    call = stage.call(it, "late_callback")
+    await stage.after(0.5, call.execution.pause)
     await call.wait()
-    assert stage.robot.commands == ["told at once"]
+    assert made.commands == ["told at once"]
 
 
-@played(play)
-async def test_a_pause_goes_through_links(stage):
-    robot = await robot_of(stage)
+@pytest.mark.parametrize(
+    ("operation", "target", "before"),
+    [
+        pytest.param("send", 2, 1, id="called before"),
+        pytest.param("send_later", 1, 0, id="called while paused, paused from the beginning"),
+    ],
+)
+async def test_a_pause_goes_through_links(stage, it, made, operation, target, before):
     boss = await stage.make(Boss, name="boss")
-    stage.main.link(boss, "robot", robot)
-    send = stage.call(boss, "send", 2)
-    await stage.clock.sleep(0.5)
-    send.execution.pause()
+    stage.main.link(boss, "robot", it)
+    send = stage.call(boss, operation, target)
+    await stage.after(0.5, send.execution.pause)
     await stage.clock.sleep(10.0)
-    assert stage.robot.commands == ["linked halt"]
-    assert units(stage, robot) == 1
+    assert made.commands == ["linked halt"]
+    assert units(stage, it) == before
     send.execution.resume()
     await send.wait()
     assert send.ended_at == 11.5
 
 
-@played(play)
-async def test_a_linked_operation_called_while_paused_is_paused_from_the_beginning(stage):
-    robot = await robot_of(stage)
-    boss = await stage.make(Boss, name="boss")
-    stage.main.link(boss, "robot", robot)
-    send = stage.call(boss, "send_later", 1)
-    await stage.clock.sleep(0.5)
-    send.execution.pause()
-    await stage.clock.sleep(10.0)
-    assert units(stage, robot) == 0
-    send.execution.resume()
-    await send.wait()
-    assert send.ended_at == 11.5
-
-
-@played(play)
-async def test_a_cancelled_wait_does_not_prevent_the_resume(stage):
-    robot = await robot_of(stage)
-    call = stage.call(robot, "waits_itself")
-    await stage.clock.sleep(0.5)
-    call.execution.pause()
-    await stage.clock.sleep(2.0)
-    call.execution.task.cancel()
-    call.execution.resume()
-    await stage.clock.sleep(1.0)
-    assert (stage.robot.commands, call.outcome) == ([], None)
-
-
-@played(play)
-async def test_observers_may_pause_an_operation_while_they_are_notified(stage):
-    robot = await robot_of(stage)
-    move = stage.call(robot, "move", 3)
+async def test_observers_may_pause_an_operation_while_they_are_notified(stage, it):
+    move = stage.call(it, "move", 3)
     await stage.clock.sleep(0.5)
 
     class Pauser:
@@ -306,26 +246,21 @@ async def test_observers_may_pause_an_operation_while_they_are_notified(stage):
             if observation.changed:
                 move.execution.pause()
 
-    stage.main.focus(robot, Pauser())
-    stage.call(robot, "mark")
+    stage.main.focus(it, Pauser())
+    stage.call(it, "mark")
     await stage.clock.sleep(5.0)
-    assert units(stage, robot) == 101, "the mark, and the move up to its next pause point"
-    stage.main.stop_focus(robot, stage.main.observers(robot)[0])
+    assert units(stage, it) == 101, "the mark, and the move up to its next pause point"
+    stage.main.stop_focus(it, stage.main.observers(it)[0])
     move.execution.resume()
     await move.wait()
-    assert units(stage, robot) == 103
+    assert units(stage, it) == 103
 
 
-@played(play)
-async def test_a_refused_request_can_be_treated_like_any_other(stage):
-    refused = stage.call(await robot_of(stage), "no_such").execution
+async def test_a_refused_request_can_be_treated_like_any_other(stage, it):
+    refused = stage.call(it, "no_such").execution
     refused.pause()
     refused.on_pause(lambda: None)
     refused.resume()
     refused.cancel()
-    assert (refused.ended, refused.paused, refused.pausable, refused.take_paused_time()) == (
-        True,
-        False,
-        False,
-        0.0,
-    )
+    assert (refused.ended, refused.paused, refused.pausable) == (True, False, False)
+    assert refused.take_paused_time() == 0.0

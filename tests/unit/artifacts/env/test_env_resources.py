@@ -1,32 +1,27 @@
 """Operations that use resources: they wait, yield, resume, and always release what they hold."""
 
-import asyncio
-from typing import Any
-
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, operation
 from jacaros.artifacts.env.environment import Environment
-from jacaros.artifacts.env.execution import OperationExecution
-from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
+from jacaros.artifacts.env.operation import OperationRequest
 from jacaros.artifacts.env.values import text
 from jacaros.artifacts.presence.session import Session
-from jacaros.runtime.clock import VirtualClock, run
 from played import played
+from stage_lab import play
 
 
 class Robot(Artifact):
     """A robot that drives by the second, and an arm."""
 
-    def init(self) -> None:
-        self.lines: list[str] = []
+    def init(self):
+        self.lines = []
 
-    def note(self, line: str) -> None:
-        """Take note of a line and the time."""
+    def note(self, line):
         self.lines.append(f"{self.clock.elapsed:g} {line}")
 
     @operation(uses="wheels", pausable=True)
-    async def drive(self, name: str, seconds: float) -> None:
+    async def drive(self, name: str, seconds: float):
         """Drive; braking takes half a second."""
         self.note(f"{name} begins")
         left = float(seconds)
@@ -41,14 +36,14 @@ class Robot(Artifact):
         self.note(f"{name} ends")
 
     @operation(uses="wheels")
-    async def dock(self, name: str, seconds: float) -> None:
+    async def dock(self, name: str, seconds: float):
         """Dock, which cannot be interrupted."""
         self.note(f"{name} begins")
         await self.sleep(seconds)
         self.note(f"{name} ends")
 
     @operation(uses=("wheels", "arm"), when_preempted="cancel")
-    async def grasp(self, name: str, seconds: float) -> None:
+    async def grasp(self, name: str, seconds: float):
         """Grasp; the attempt is lost when it is interrupted."""
         self.note(f"{name} begins")
         try:
@@ -58,46 +53,31 @@ class Robot(Artifact):
 
 
 class Lab:
-    """A robot, and operations that are begun with an urgency."""
+    """Operations of a robot that are begun with an urgency."""
 
-    def __init__(self) -> None:
-        self.clock = VirtualClock()
-        self.logged: list[str] = []
-        self.environment = Environment(self.clock, log=self.logged.append)
-        self.told: list[str] = []
-        self.outcomes: dict[str, str] = {}
+    def __init__(self, environment, robot):
+        self.environment, self.id, self.clock = environment, robot, environment.clock
+        self.lines = environment.artifact(robot).lines
+        self.told, self.outcomes = [], {}
 
-    async def make(self) -> None:
-        self.id = await self.environment.workspace("/main").make_artifact("robot", Robot)
-
-    @property
-    def lines(self) -> list[str]:
-        robot: Any = self.environment.artifact(self.id)
-        return robot.lines  # type: ignore[no-any-return]
-
-    def begin(self, name: str, seconds: float, urgency: int = 0, do: str = "drive") -> OperationExecution:
-        def done(outcome: OperationOutcome) -> None:
+    def begin(self, name, seconds, urgency=0, do="drive"):
+        def done(outcome):
             self.outcomes[name] = "ok" if outcome.ok else text(outcome.reason, True)
 
         request = OperationRequest(self.id, do, (name, seconds), "a", on_done=done, urgency=urgency)
         request.on_preempted = lambda resource: self.told.append(f"{name} {resource}")
-        execution = self.environment.execute(request)
-        assert isinstance(execution, OperationExecution)
-        return execution
+        return self.environment.execute(request)
 
 
-def in_lab(body: Any) -> None:
-    lab = Lab()
+def in_lab(body):
+    async def scene(stage):
+        await body(Lab(stage.environment, await stage.make(Robot, name="robot")))
 
-    async def main() -> None:
-        await lab.make()
-        await body(lab)
-
-    run(main, lab.clock)
+    play(scene)
 
 
 @played(in_lab)
-async def test_operations_with_the_same_resource_run_in_turn(lab: Lab) -> None:
+async def test_operations_with_the_same_resource_run_in_turn(lab):
     lab.begin("one", 1)
     lab.begin("two", 1, do="dock")
     await lab.clock.sleep(3)
@@ -105,9 +85,7 @@ async def test_operations_with_the_same_resource_run_in_turn(lab: Lab) -> None:
 
 
 @played(in_lab)
-async def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues(
-    lab: Lab,
-) -> None:
+async def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_and_the_other_continues(lab):
     lab.begin("tour", 3)
     await lab.clock.sleep(1.05)
     lab.begin("flee", 1, urgency=10)
@@ -126,7 +104,7 @@ async def test_an_urgent_operation_gets_the_wheels_when_the_robot_has_stopped_an
 
 
 @played(in_lab)
-async def test_preemption_finishes_or_cancels_what_cannot_pause(lab: Lab) -> None:
+async def test_preemption_finishes_or_cancels_what_cannot_pause(lab):
     lab.begin("dock", 2, do="dock")
     lab.begin("grasp", 5, do="grasp")
     await lab.clock.sleep(1)
@@ -140,7 +118,7 @@ async def test_preemption_finishes_or_cancels_what_cannot_pause(lab: Lab) -> Non
 
 
 @played(in_lab)
-async def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards(lab: Lab) -> None:
+async def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwards(lab):
     tour = lab.begin("tour", 2)
     await lab.clock.sleep(1.05)
     tour.pause()
@@ -161,7 +139,7 @@ async def test_a_suspended_caller_releases_the_wheels_and_waits_for_them_afterwa
 
 
 @played(in_lab)
-async def test_a_preempted_operation_that_is_suspended_does_not_continue(lab: Lab) -> None:
+async def test_a_preempted_operation_that_is_suspended_does_not_continue(lab):
     tour = lab.begin("tour", 2)
     await lab.clock.sleep(1.05)
     lab.begin("flee", 1, urgency=1)
@@ -176,7 +154,7 @@ async def test_a_preempted_operation_that_is_suspended_does_not_continue(lab: La
 
 
 @played(in_lab)
-async def test_the_end_of_an_agent_releases_what_it_held_and_waited_for(lab: Lab) -> None:
+async def test_the_end_of_an_agent_releases_what_it_held_and_waited_for(lab):
     first, second = lab.begin("first", 9), lab.begin("second", 9)
     lab.begin("third", 1)
     await lab.clock.sleep(0.05)
@@ -195,9 +173,9 @@ async def test_the_end_of_an_agent_releases_what_it_held_and_waited_for(lab: Lab
 
 
 @played(in_lab)
-async def test_a_claim_that_must_not_wait_is_refused_immediately(lab: Lab) -> None:
+async def test_a_claim_that_must_not_wait_is_refused_immediately(lab):
     lab.begin("tour", 2)
-    outcomes: list[OperationOutcome] = []
+    outcomes = []
     request = OperationRequest(lab.id, "drive", ("x", 1), "a", on_done=outcomes.append, policy="refuse")
     lab.environment.execute(request)
     assert text(outcomes[0].reason, True) == "resource_busy(wheels)"
@@ -213,29 +191,25 @@ async def test_a_claim_that_must_not_wait_is_refused_immediately(lab: Lab) -> No
         ({"uses": "x", "when_preempted": "never"}, "expected pause, cancel or finish"),
     ],
 )
-def test_wrong_declarations_are_refused_when_the_class_is_made(arguments: Any, message: str) -> None:
-    def work(self: Artifact) -> None:
-        """Do nothing."""
+def test_wrong_declarations_are_refused_when_the_class_is_made(arguments, message):
+    def work(self): ...
 
     with pytest.raises(InvalidArtifact, match=message):
         type("Wrong", (Artifact,), {"work": operation(**arguments)(work)})
 
 
 @played(in_lab)
-async def test_two_environments_share_nothing(lab: Lab) -> None:
-    other = Lab()
-    other.clock = lab.clock
-    other.environment = Environment(lab.clock)
-    await other.make()
+async def test_two_environments_share_nothing(lab):
+    environment = Environment(lab.clock)
+    other = Lab(environment, await environment.workspace("/main").make_artifact("robot", Robot))
     lab.begin("one", 1)
     other.begin("two", 1)
-    await asyncio.sleep(0)
     await lab.clock.sleep(1.5)
     assert other.lines == ["0 two begins", "1 two ends"]
 
 
 @played(in_lab)
-async def test_operations_of_a_session_have_an_urgency(lab: Lab) -> None:
+async def test_operations_of_a_session_have_an_urgency(lab):
     session = Session(lab.environment, "script")
     tour = session.begin("drive", "tour", 2)
     await lab.clock.sleep(1.05)
@@ -245,31 +219,26 @@ async def test_operations_of_a_session_have_an_urgency(lab: Lab) -> None:
 
 
 class Clumsy(Artifact):
-    """Starts an operation that uses its arm."""
-
-    def init(self) -> None:
+    def init(self):
         self.carried = 0
 
     @operation(uses="arm")
-    def carry(self) -> None:
-        """Carry something."""
+    def carry(self):
         self.carried += 1
 
     @operation(uses="arm")
-    async def rest(self) -> None:
-        """Keep the arm for a while."""
+    async def rest(self):
         await self.sleep(1)
 
     @operation
-    def ask_for_it(self) -> None:
-        """Start the operation from within another one."""
+    def ask_for_it(self):
         self.start(self.carry)
 
 
 @played(in_lab)
-async def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources(lab: Lab) -> None:
+async def test_an_operation_that_its_artifact_starts_does_not_begin_without_its_resources(lab):
     clumsy = await lab.environment.workspace("/main").make_artifact("clumsy", Clumsy)
-    artifact: Any = lab.environment.artifact(clumsy)
+    artifact = lab.environment.artifact(clumsy)
     lab.environment.execute(OperationRequest(clumsy, "rest"))
     artifact.start("carry")
     lab.environment.execute(OperationRequest(clumsy, "ask_for_it"))

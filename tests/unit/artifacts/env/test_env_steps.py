@@ -5,7 +5,6 @@ import asyncio
 import pytest
 
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, Structure, operation
-from played import played
 from stage_lab import play
 
 
@@ -85,217 +84,154 @@ class Lane(Artifact):
         raise RuntimeError("boom")
 
     @operation
+    def sleep_in_a_plain_operation(self):
+        self.sleep(1.0).send(None)
+
+    @operation
+    async def await_a_cancelled_future(self):
+        future = asyncio.get_running_loop().create_future()
+        future.cancel()
+        await self.step(future)
+
+    @operation
     async def at_once(self):
         self._append("at once")
+
+
+pytestmark = pytest.mark.makes(it=Lane)
 
 
 def trace(stage, lane):
     return stage.property(lane, "trace")[0]
 
 
-@played(play)
-async def test_pausing_operations_interleave_and_between_pauses_they_are_atomic(stage):
-    lane = await stage.make(Lane)
-    a = stage.call(lane, "run", "a", 3, 0.4)
-    await stage.clock.sleep(0.13)
-    b = stage.call(lane, "run", "b", 2, 0.4)
-    await stage.clock.sleep(0.13)
-    assert stage.call(lane, "mark", "x").ok
-    await a.wait()
-    assert trace(stage, lane) == ["a1", "b1", "x", "a2", "b2", "a3"]
-    assert (b.ended_at, a.ended_at) == (0.93, 1.2)
-
-
-@played(play)
-async def test_a_pause_publishes_the_changes_so_far(stage):
-    lane = await stage.make(Lane)
-    watcher = stage.watch(lane)
-    stage.call(lane, "run", "a", 2, 0.1)
+async def test_a_pause_publishes_the_changes_so_far(stage, it, watcher):
+    stage.call(it, "run", "a", 2, 0.1)
     await stage.clock.sleep(0.05)
     assert watcher.notes[-1] == "-trace([]) +trace(['a1'])"
     await stage.clock.sleep(0.1)
     assert watcher.notes[-1] == "-trace(['a1']) +trace(['a1', 'a2'])"
 
 
-@played(play)
-async def test_awaiting_without_a_step_boundary_blocks_the_artifact(stage):
-    lane = await stage.make(Lane)
-    watcher = stage.watch(lane)
-    watcher.take()
-    hold = stage.call(lane, "hold", "a", 1.0)
+async def test_awaiting_without_a_step_boundary_blocks_the_artifact(stage, it, watcher):
+    hold = stage.call(it, "hold", "a", 1.0)
     await stage.clock.sleep(0.5)
-    mark = stage.call(lane, "mark", "x")
+    mark = stage.call(it, "mark", "x")
     assert mark.outcome is None
     assert watcher.take() == [], "nothing of the step is published"
     await mark.wait()
     assert (hold.ended_at, mark.ended_at) == (1.0, 1.0)
-    assert trace(stage, lane) == ["a begins", "a ends", "x"]
+    assert trace(stage, it) == ["a begins", "a ends", "x"]
     assert len(watcher.take()) == 2
 
 
-@played(play)
-async def test_operations_that_wait_for_the_artifact_are_served_in_their_order(stage):
-    lane = await stage.make(Lane)
-    stage.call(lane, "hold", "a", 1.0)
-    stage.call(lane, "mark", "x")
-    stage.call(lane, "at_once")
-    last = stage.call(lane, "mark", "y")
-    await last.wait()
-    assert trace(stage, lane) == ["a begins", "a ends", "x", "at once", "y"]
+async def test_operations_that_wait_for_the_artifact_are_served_in_their_order(stage, it):
+    stage.call(it, "hold", "a", 1.0)
+    stage.call(it, "mark", "x")
+    stage.call(it, "at_once")
+    await stage.ended(it, "mark", "y")
+    assert trace(stage, it) == ["a begins", "a ends", "x", "at once", "y"]
 
 
-@played(play)
-async def test_an_operation_that_resumes_queues_behind_waiting_ones(stage):
-    lane = await stage.make(Lane)
-    run = stage.call(lane, "run", "r", 2, 1.0)
+async def test_an_operation_that_resumes_queues_behind_waiting_ones(stage, it):
+    run = stage.call(it, "run", "r", 2, 1.0)
     await stage.clock.sleep(0.9)
-    stage.call(lane, "hold", "h", 1.0)
-    stage.call(lane, "mark", "x")
+    stage.call(it, "hold", "h", 1.0)
+    stage.call(it, "mark", "x")
     await run.wait()
-    assert trace(stage, lane) == ["r1", "h begins", "h ends", "x", "r2"]
+    assert trace(stage, it) == ["r1", "h begins", "h ends", "x", "r2"]
 
 
-@played(play)
-async def test_until_continues_when_a_step_of_another_operation_makes_it_true(stage):
-    lane = await stage.make(Lane)
-    first, second = stage.call(lane, "wait", "1"), stage.call(lane, "wait", "2")
+async def test_until_continues_when_a_step_of_another_operation_makes_it_true(stage, it):
+    first, second = stage.call(it, "wait", "1"), stage.call(it, "wait", "2")
     await stage.clock.sleep(1.0)
-    stage.call(lane, "mark", "x")
+    stage.call(it, "mark", "x")
     assert first.outcome is None
-    stage.call(lane, "openGate")
+    stage.call(it, "openGate")
     await second.wait()
-    assert trace(stage, lane) == ["x", "1", "2"]
-    third = stage.call(lane, "wait", "3")
-    await third.wait()
+    assert trace(stage, it) == ["x", "1", "2"]
+    third = await stage.ended(it, "wait", "3")
     assert third.ended_at == 1.0, "a condition that is true at once does not delay"
 
 
-@played(play)
-async def test_an_error_in_a_condition_fails_the_operation(stage):
-    lane = await stage.make(Lane)
-    now, later = stage.call(lane, "wait_wrong"), stage.call(lane, "wait_wrong_later")
+async def test_an_error_in_a_condition_fails_the_operation(stage, it):
+    now, later = stage.call(it, "wait_wrong"), stage.call(it, "wait_wrong_later")
     await now.wait()
     assert now.reason == Structure("operation_error", ("wait_wrong/0",))
-    stage.call(lane, "openGate")
+    stage.call(it, "openGate")
     await later.wait()
     assert later.reason == Structure("operation_error", ("wait_wrong_later/0",))
-    assert stage.call(lane, "mark", "x").ok
+    assert stage.call(it, "mark", "x").ok
 
 
-@played(play)
-async def test_anything_can_be_awaited_in_a_step_of_its_own(stage):
-    lane = await stage.make(Lane)
+async def test_anything_can_be_awaited_in_a_step_of_its_own(stage, it):
     given = Out()
-    result = stage.call(lane, "result", given)
+    result = stage.call(it, "result", given)
     await stage.clock.sleep(0.5)
-    assert stage.call(lane, "mark", "meanwhile").ok
+    assert stage.call(it, "mark", "meanwhile").ok
     await result.wait()
     assert given.value == 42
 
 
-@played(play)
-async def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(stage):
-    lane = await stage.make(Lane)
-    call = stage.call(lane, "awaiting_fails")
-    await call.wait()
+async def test_an_error_in_an_awaitable_is_raised_in_the_operation_on_its_turn(stage, it):
+    call = await stage.ended(it, "awaiting_fails")
     assert call.ok
-    assert trace(stage, lane) == ["before", "caught"]
+    assert trace(stage, it) == ["before", "caught"]
 
 
 @pytest.mark.parametrize(
     ("name", "reason"),
     [("late", Structure("late", (2,))), ("crash", Structure("operation_error", ("crash/0",)))],
 )
-@played(play)
-async def test_only_the_failing_step_is_rolled_back(stage, name, reason):
-    lane = await stage.make(Lane)
-    call = stage.call(lane, name)
-    await call.wait()
+async def test_only_the_failing_step_is_rolled_back(stage, it, name, reason):
+    call = await stage.ended(it, name)
     assert call.reason == reason
-    assert trace(stage, lane) == ["first"]
+    assert trace(stage, it) == ["first"]
     assert call.ended_at == 0.05
 
 
-@played(play)
-async def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(stage):
-    lane = await stage.make(Lane)
-    stage.call(lane, "hold", "a", 1.0)
+async def test_an_agent_that_focuses_in_mid_step_sees_what_is_committed(stage, it):
+    stage.call(it, "hold", "a", 1.0)
     await stage.clock.sleep(0.5)
-    watcher = stage.watch(lane)
+    watcher = stage.watch(it)
     assert watcher.notes == ["+trace([])"]
     await stage.clock.sleep(1.0)
     assert watcher.notes[-1] == "-trace([]) +trace(['a begins', 'a ends'])"
 
 
-def test_only_a_coroutine_may_end_its_step_in_the_middle():
-    kept = []
-
-    class Plain(Artifact):
-        @operation
-        def run(self):
-            kept.append(self.sleep(1.0))
-            kept[0].send(None)
-
-    async def scene(stage):
-        call = stage.call(await stage.make(Plain), "run")
-        assert call.reason == Structure("operation_error", ("run/0",))
-        assert "async def" in call.outcome.message
-
-    play(scene)
+async def test_only_a_coroutine_may_end_its_step_in_the_middle(stage, it):
+    call = stage.call(it, "sleep_in_a_plain_operation")
+    assert call.reason == Structure("operation_error", ("sleep_in_a_plain_operation/0",))
+    assert "async def" in call.outcome.message
 
 
-def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn():
-    class Held(Artifact):
-        def init(self):
-            self.define_property("p", 0)
-            kept.append(self)
-
-        @operation
-        async def hold(self):
-            await self.clock.sleep(1.0)
-
-    kept = []
-
-    async def scene(stage):
-        held = await stage.make(Held)
-        stage.call(held, "hold")
-        await stage.clock.sleep(0.5)
-        with pytest.raises(InvalidArtifact, match=r"self\.start"):
-            kept[0].update_property("p", 1)
-        with pytest.raises(InvalidArtifact, match=r"self\.start"):
-            await kept[0].sleep(1.0)
-        with pytest.raises(InvalidArtifact, match=r"self\.start"):
-            await kept[0].step(asyncio.get_running_loop().create_future())
-
-    play(scene)
+async def test_callbacks_cannot_pretend_to_be_the_operation_that_has_the_turn(stage, it, made):
+    stage.call(it, "hold", "a", 1.0)
+    await stage.clock.sleep(0.5)
+    with pytest.raises(InvalidArtifact, match=r"self\.start"):
+        made.update_property("trace", 1)
+    with pytest.raises(InvalidArtifact, match=r"self\.start"):
+        await made.sleep(1.0)
+    with pytest.raises(InvalidArtifact, match=r"self\.start"):
+        await made.step(asyncio.get_running_loop().create_future())
 
 
-def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only():
-    class Waiting(Artifact):
-        @operation
-        async def wait(self):
-            future = asyncio.get_running_loop().create_future()
-            future.cancel()
-            await self.step(future)
-
-    async def scene(stage):
-        call = stage.call(await stage.make(Waiting), "wait")
-        await call.wait()
-        assert call.reason == Structure("operation_error", ("wait/0",))
-
-    play(scene)
+async def test_a_cancelled_future_that_is_awaited_is_an_error_of_the_operation_only(stage, it):
+    call = await stage.ended(it, "await_a_cancelled_future")
+    assert call.reason == Structure("operation_error", ("await_a_cancelled_future/0",))
 
 
 def test_many_operations_on_many_artifacts_run_in_the_same_order_each_time():
-    def once():
-        async def scene(stage):
-            lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]
-            for number in range(20):
-                for index, lane in enumerate(lanes):
-                    stage.call(lane, "run", f"{index}.{number}.", 3, 0.01 * (number % 7 + 1))
-            await stage.clock.sleep(10.0)
-            stage.result = [trace(stage, lane) for lane in lanes]
+    traces = []
 
-        return play(scene).result
+    async def scene(stage):
+        lanes = [await stage.make(Lane, name=f"lane{i}") for i in range(5)]
+        for number in range(20):
+            for index, lane in enumerate(lanes):
+                stage.call(lane, "run", f"{index}.{number}.", 3, 0.01 * (number % 7 + 1))
+        await stage.clock.sleep(10.0)
+        traces.append([trace(stage, lane) for lane in lanes])
 
-    assert once() == once()
+    play(scene)
+    play(scene)
+    assert traces[0] == traces[1]

@@ -3,8 +3,9 @@
 import asyncio
 import threading
 
+import pytest
+
 from jacaros.artifacts import Artifact, InvalidArtifact, Out, Structure, operation
-from played import played
 from stage_lab import play
 
 
@@ -35,70 +36,54 @@ class Blocking(Artifact):
         self.update_property("count", self.value("count") + 10)
 
 
-def blocking_of(stage):
-    class Kept(Blocking):
-        def init(self):
-            super().init()
-            stage.it = self
-
-    return stage.make(Kept)
+pytestmark = pytest.mark.makes(it=Blocking)
 
 
-async def until_inside(stage):
+async def until_inside(made):
     """Wait until the worker thread reaches its gate. Virtual time does not advance meanwhile."""
-    await asyncio.get_running_loop().run_in_executor(None, stage.it.inside.wait, 60.0)
+    await asyncio.get_running_loop().run_in_executor(None, made.inside.wait, 60.0)
 
 
-@played(play)
-async def test_others_use_the_artifact_while_a_thread_works_for_an_operation(stage):
-    blocking = await blocking_of(stage)
+async def test_others_use_the_artifact_while_a_thread_works_for_an_operation(stage, it, made):
     result = Out()
-    call = stage.call(blocking, "work", result)
-    await until_inside(stage)
-    assert stage.property(blocking, "count") == (1,)
-    assert stage.call(blocking, "inc").ok
-    stage.it.gate.set()
+    call = stage.call(it, "work", result)
+    await until_inside(made)
+    assert stage.property(it, "count") == (1,)
+    assert stage.call(it, "inc").ok
+    made.gate.set()
     await call.wait()
-    assert (result.value, stage.property(blocking, "count")) == (42, (12,))
+    assert (result.value, stage.property(it, "count")) == (42, (12,))
     assert stage.elapsed == 0.0, "virtual time stood still"
 
 
-@played(play)
-async def test_disposal_does_not_wait_for_a_thread(stage):
-    blocking = await blocking_of(stage)
-    call = stage.call(blocking, "work", Out())
-    await until_inside(stage)
-    stage.main.dispose_artifact(blocking)
+async def test_disposal_does_not_wait_for_a_thread(stage, it, made):
+    call = stage.call(it, "work", Out())
+    await until_inside(made)
+    stage.main.dispose_artifact(it)
     await call.wait()
     assert call.reason == Structure("artifact_disposed", ("it",))
     await stage.environment.close()
-    stage.it.gate.set()
+    made.gate.set()
 
 
-@played(play)
-async def test_a_thread_changes_nothing_itself(stage):
-    blocking = await blocking_of(stage)
-    call = stage.call(blocking, "meddle")
-    await call.wait()
+async def test_a_thread_changes_nothing_itself(stage, it):
+    call = await stage.ended(it, "meddle")
     assert call.outcome.message.startswith(InvalidArtifact.__name__)
     assert "self.start(...)" in call.outcome.message
-    assert stage.property(blocking, "count") == (0,)
+    assert stage.property(it, "count") == (0,)
 
 
-@played(play)
-async def test_any_thread_may_start_a_process(stage):
-    blocking = await blocking_of(stage)
-    await asyncio.get_running_loop().run_in_executor(None, stage.it.start, "inc")
+async def test_any_thread_may_start_a_process(stage, it, made):
+    await asyncio.get_running_loop().run_in_executor(None, made.start, "inc")
     await stage.clock.sleep(0)
-    assert stage.property(blocking, "count") == (10,)
+    assert stage.property(it, "count") == (10,)
 
 
 def test_a_thread_that_starts_a_process_after_the_end_of_the_loop_does_no_harm():
     kept = []
 
     async def scene(stage):
-        await blocking_of(stage)
-        kept.append(stage.it)
+        kept.append(stage.environment.artifact(await stage.make(Blocking)))
 
     play(scene)
     kept[0].start("inc")

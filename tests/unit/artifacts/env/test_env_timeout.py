@@ -3,8 +3,6 @@
 import pytest
 
 from jacaros.artifacts import Artifact, Structure, link, operation
-from played import played
-from stage_lab import play
 
 
 class Slow(Artifact):
@@ -55,35 +53,27 @@ class Slow(Artifact):
             await self.pause_point()
 
 
-@played(play)
-async def test_an_operation_that_ends_in_time_succeeds(stage):
-    it = await stage.make(Slow)
+pytestmark = pytest.mark.makes(it=Slow)
+
+
+async def test_an_operation_that_ends_in_time_succeeds(stage, it):
     assert stage.call(it, "quick", timeout=1.0).ok
     assert (await stage.call(it, "work", 0.9, timeout=1.0).wait()).ok
     assert stage.clock.pending() == [], "no timer is left behind"
 
 
-@played(play)
-async def test_one_that_takes_longer_is_stopped_and_its_finally_runs(stage):
-    it = await stage.make(Slow)
-    watcher = stage.watch(it)
-    call = stage.call(it, "work", 60, timeout=0.5)
-    await call.wait()
+async def test_one_that_takes_longer_is_stopped_and_its_finally_runs(stage, it, watcher):
+    call = await stage.ended(it, "work", 60, timeout=0.5)
     assert stage.elapsed == 0.5
     assert call.reason == Structure("operation_timeout", ("work/1", 500.0))
     assert call.outcome.message == "operation work/1 of artifact it did not end within 500 ms"
-    assert watcher.notes[1:] == [
-        "-state('idle') +state('working')",
-        "-state('working') +state('stopped')",
-    ]
+    assert watcher.notes == ["-state('idle') +state('working')", "-state('working') +state('stopped')"]
     assert call.execution.ended
     assert stage.clock.pending() == []
 
 
 @pytest.mark.parametrize("op", ["guarded", "quick", "pausable"])
-@played(play)
-async def test_waiting_for_a_guard_the_artifact_or_the_end_of_a_pause_counts(stage, op):
-    it = await stage.make(Slow)
+async def test_waiting_for_a_guard_the_artifact_or_the_end_of_a_pause_counts(stage, it, op):
     if op == "quick":
         stage.call(it, "hold", 10)
         await stage.clock.sleep(0)
@@ -95,26 +85,20 @@ async def test_waiting_for_a_guard_the_artifact_or_the_end_of_a_pause_counts(sta
     assert call.outcome.message.endswith("did not end within 2 s")
 
 
-@played(play)
 async def test_a_linked_call_is_stopped_with_its_caller(stage):
     it, target = await stage.make(Slow), await stage.make(Slow, name="target")
     stage.main.link(it, "out", target)
-    call = stage.call(it, "through", 10, timeout=1)
-    await call.wait()
+    call = await stage.ended(it, "through", 10, timeout=1)
     assert call.reason == Structure("operation_timeout", ("through/1", 1000))
     assert stage.property(target, "state") == ("linked stopped",)
 
 
-@played(play)
-async def test_cancelled_and_disposed_before_the_time_limit(stage):
-    it = await stage.make(Slow)
+async def test_cancelled_and_disposed_before_the_time_limit(stage, it):
     dropped, waiting = stage.call(it, "work", 60, timeout=5), stage.call(it, "guarded", timeout=5)
     gone = stage.call(it, "work", 60, timeout=5)
-    await stage.clock.sleep(1)
-    dropped.execution.cancel()
+    await stage.after(1, dropped.execution.cancel)
     waiting.execution.cancel()
-    await stage.clock.sleep(1)
-    stage.main.dispose_artifact(it)
+    await stage.after(1, stage.main.dispose_artifact, it)
     await gone.wait()
     assert gone.reason == Structure("artifact_disposed", ("it",))
     assert (dropped.outcome, waiting.outcome) == (None, None)

@@ -1,8 +1,8 @@
 """Errors with ``await`` and ``return`` that Python itself does not report."""
 
+import pytest
+
 from jacaros.artifacts import Artifact, internal_operation, operation
-from played import played
-from stage_lab import play
 
 
 class Forgetful(Artifact):
@@ -58,12 +58,12 @@ class Forgetful(Artifact):
         self.sleep(1)
 
 
-def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created():
-    async def scene(stage):
-        for name in ("a", "b"):
-            await stage.make(Forgetful, name=name)
+pytestmark = pytest.mark.makes(it=Forgetful)
 
-    found = [line for line in play(scene).lines if "without await" in line]
+
+async def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(stage, it):
+    await stage.make(Forgetful, name="another")
+    found = [line for line in stage.lines if "without await" in line]
     assert [line.partition(" (line ")[0].rpartition(".")[2] for line in found] == [
         "sleeping",
         "plainly",
@@ -78,21 +78,15 @@ def test_coroutines_without_await_are_logged_when_the_first_artifact_is_created(
     assert "self.until(lambda: False) has no effect" in found[2]
 
 
-@played(play)
-async def test_a_coroutine_that_is_awaited_later_has_its_effect(stage):
-    it = await stage.make(Forgetful)
+async def test_a_coroutine_that_is_awaited_later_has_its_effect(stage, it):
     assert (await stage.call(it, "thrice").wait()).ok
     assert stage.property(it, "count") == (5,)
     assert stage.elapsed == 3
 
 
-def test_a_lost_return_value_is_reported_once():
-    async def scene(stage):
-        it = await stage.make(Forgetful)
-        for name in ("answer", "answer", "late_answer"):
-            assert (await stage.call(it, name).wait()).ok
-
-    stage = play(scene)
+async def test_a_lost_return_value_is_reported_once(stage, it):
+    for name in ("answer", "answer", "late_answer"):
+        assert (await stage.call(it, name).wait()).ok
     assert [line.partition(" is lost")[0] for line in stage.lines if "is lost" in line] == [
         "[it] the return value of Forgetful.answer",
         "[it] the return value of Forgetful.late_answer",

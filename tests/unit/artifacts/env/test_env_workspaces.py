@@ -10,8 +10,6 @@ from jacaros.artifacts import (
     UnknownWorkspace,
     operation,
 )
-from played import played
-from stage_lab import play
 
 
 class Counter(Artifact):
@@ -31,7 +29,6 @@ class Other(Artifact):
     def inc_any(self, *x: object): ...
 
 
-@played(play)
 async def test_main_exists_with_its_standard_artifacts(stage):
     assert stage.environment.workspaces() == (stage.main,)
     assert (stage.main.path, stage.main.name) == ("/main", "main")
@@ -45,21 +42,15 @@ async def test_main_exists_with_its_standard_artifacts(stage):
     assert stage.main.lookup("console").creator is None
 
 
-@played(play)
 async def test_workspaces_form_a_tree(stage):
     lab = stage.environment.create_workspace("/main/lab")
     inner = stage.environment.create_workspace("/main/lab/inner")
     assert (inner.path, inner.name) == ("/main/lab/inner", "inner")
     assert stage.environment.workspace("/main/lab") is lab
-    assert [each.path for each in stage.environment.workspaces()] == [
-        "/main",
-        "/main/lab",
-        "/main/lab/inner",
-    ]
+    assert [each.path for each in stage.environment.workspaces()] == ["/main", "/main/lab", "/main/lab/inner"]
     assert lab.lookup("console") is not stage.main.lookup("console")
 
 
-@played(play)
 async def test_a_workspace_that_exists_or_has_no_parent_is_refused(stage):
     with pytest.raises(OperationFailed, match="workspace `/main` already exists") as present:
         stage.environment.create_workspace("/main")
@@ -73,26 +64,18 @@ async def test_a_workspace_that_exists_or_has_no_parent_is_refused(stage):
         stage.environment.workspace("/main/lab")
 
 
-@played(play)
-async def test_each_workspace_has_names_of_its_own(stage):
+async def test_each_workspace_has_names_of_its_own_and_ids_are_valid_in_the_whole_environment(stage):
     lab = stage.environment.create_workspace("/main/lab")
     here, there = await stage.make(Counter, 1), await lab.make_artifact("it", Counter, [100])
     assert stage.main.lookup("it") is here
     assert lab.lookup("it") is there
     assert (here.path, there.path) == ("/main/it", "/main/lab/it")
-
-
-@played(play)
-async def test_ids_are_valid_in_the_whole_environment(stage):
-    lab = stage.environment.create_workspace("/main/lab")
-    there = await lab.make_artifact("it", Counter)
     watcher = stage.watch(there)
     assert stage.call(there, "inc").ok
-    assert watcher.notes[-1] == "-count(0) +count(1)"
+    assert watcher.notes[-1] == "-count(100) +count(101)"
     assert stage.main.observers(there) == (watcher,)
 
 
-@played(play)
 async def test_lookup_of_an_unknown_artifact_suggests_a_name(stage):
     await stage.make(Counter, name="battery")
     with pytest.raises(
@@ -102,7 +85,6 @@ async def test_lookup_of_an_unknown_artifact_suggests_a_name(stage):
     assert caught.value.reason == Structure("artifact_not_available", ("batery",))
 
 
-@played(play)
 async def test_providers_of_an_operation_are_found_in_the_order_of_creation(stage):
     assert stage.main.providers("inc", 0) == ()
     first, second = await stage.make(Counter, name="a"), await stage.make(Other, name="b")
@@ -114,7 +96,6 @@ async def test_providers_of_an_operation_are_found_in_the_order_of_creation(stag
     assert stage.main.providers("inc", 0) == (second,)
 
 
-@played(play)
 async def test_creation_and_disposal_can_be_watched(stage):
     seen = []
     stop = stage.main.watch(lambda artifact, present: seen.append((artifact.name, present)))
@@ -126,7 +107,7 @@ async def test_creation_and_disposal_can_be_watched(stage):
     assert seen == [("it", True), ("it", False)]
 
 
-@played(play, expect_defects=True)
+@pytest.mark.expects_defects
 async def test_a_broken_watcher_is_reported(stage):
     stop = stage.main.watch(lambda artifact, present: 1 / 0)
     await stage.make(Counter)

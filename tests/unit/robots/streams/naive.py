@@ -67,9 +67,4 @@ def _absent(spec: Spec, past: Sequence[Event], now: float) -> Values | None:
     return () if newest + spec.options["for"] <= now else None
 
 
-_STATES = {
-    "count": _count,
-    "hysteresis": _hysteresis,
-    "held": _held,
-    "absent": _absent,
-}
+_STATES = {"count": _count, "hysteresis": _hysteresis, "held": _held, "absent": _absent}

@@ -113,10 +113,7 @@ def _size(thing: object, seen: set[int]) -> int:
     )
 
 
-EVERYTHING = [
-    *STATES,
-    Spec("together", ("a", "b"), {"within": 0.1}, lateness=1.0),
-]
+EVERYTHING = [*STATES, Spec("together", ("a", "b"), {"within": 0.1}, lateness=1.0)]
 
 
 @pytest.mark.parametrize("spec", EVERYTHING, ids=lambda spec: f"{spec.operator}-{len(spec.options)}")
@@ -147,9 +144,7 @@ def test_samples_with_nearby_stamps_are_joined() -> None:
     assert pattern.dropped == 1
 
 
-@given(
-    st.lists(st.tuples(st.integers(0, 1), st.integers(0, 40)), max_size=40),
-)
+@given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 40)), max_size=40))
 @settings(max_examples=25, deadline=None)
 def test_sets_are_close_ordered_and_disjoint(events: list[tuple[int, int]]) -> None:
     made: list[Values] = []

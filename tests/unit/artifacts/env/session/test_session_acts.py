@@ -6,13 +6,9 @@ import pytest
 from session_lab import Counter, Wheels, session_in
 
 from jacaros.artifacts import Atom, OperationFailed, Out, Structure, WorkspaceError
-from played import played
-from stage_lab import play
 
 
-@played(play)
-async def test_an_operation_is_awaited_and_its_result_is_seen(stage):
-    session = session_in(stage)
+async def test_an_operation_is_awaited_and_its_result_is_seen(session):
     counter = await session.make_artifact("counter", Counter, [1])
     session.focus(counter)
     assert session.value("count") == 1
@@ -21,7 +17,6 @@ async def test_an_operation_is_awaited_and_its_result_is_seen(stage):
     assert counter.creator == "painter"
 
 
-@played(play)
 async def test_types_are_found_by_name(stage):
     stage.types["Counter"] = Counter
     session = session_in(stage)
@@ -34,9 +29,7 @@ async def test_types_are_found_by_name(stage):
     assert raised.value.reason == Structure("makeArtifactFailure", ("unknown_artifact_template", "Countr"))
 
 
-@played(play)
-async def test_values_of_out_arguments_are_returned(stage):
-    session = session_in(stage)
+async def test_values_of_out_arguments_are_returned(session):
     await session.make_artifact("wheels", Wheels)
     assert await session.act("getCurrentPose", Out(), Out()) == (0.0, 0.0)
     assert await session.act("x", Out()) == 0.0
@@ -45,9 +38,7 @@ async def test_values_of_out_arguments_are_returned(stage):
         await session.act("x", Out)
 
 
-@played(play)
-async def test_a_failure_is_raised_with_its_reason(stage):
-    session = session_in(stage)
+async def test_a_failure_is_raised_with_its_reason(session):
     await session.make_artifact("counter", Counter)
     with pytest.raises(OperationFailed, match="it never works") as raised:
         await session.act("never")
@@ -66,7 +57,6 @@ async def test_a_failure_is_raised_with_its_reason(stage):
     assert raised.value.reason.functor == "wrong_op_arguments"
 
 
-@played(play)
 async def test_own_artifacts_come_before_focused_ones_and_those_before_others(stage):
     first = await stage.make(Counter, name="first", creator="other")
     second = await stage.make(Counter, name="second", creator="other")
@@ -82,9 +72,7 @@ async def test_own_artifacts_come_before_focused_ones_and_those_before_others(st
     assert stage.property(own, "count") == (1,)
 
 
-@played(play)
-async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage):
-    session = session_in(stage)
+async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage, session):
     stage.environment.create_workspace("/main/lab")
     await session.make_artifact("counter", Counter)
     session.join("lab")
@@ -101,7 +89,6 @@ async def test_an_operation_is_directed_to_an_artifact_or_a_workspace(stage):
     assert session.value("count") == 11
 
 
-@played(play)
 async def test_a_closed_session_holds_nothing_and_does_nothing(stage):
     with session_in(stage) as session:
         wheels = session.focus(await session.make_artifact("wheels", Wheels))
@@ -141,7 +128,6 @@ class Books:
         self.passive -= 1
 
 
-@played(play)
 async def test_waits_are_counted(stage):
     books = Books()
     with session_in(stage, account=books) as session:

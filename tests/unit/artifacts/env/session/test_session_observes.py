@@ -3,16 +3,12 @@
 import asyncio
 
 import pytest
-from session_lab import Counter, Wheels, session_in
+from session_lab import Counter, session_in
 
 from jacaros.artifacts import Artifact, Atom, UnknownArtifact, UnknownProperty, internal_operation
-from played import played
-from stage_lab import play
 
 
-@played(play)
-async def test_focusing_again_has_no_effect(stage):
-    session = session_in(stage)
+async def test_focusing_again_has_no_effect(session):
     await session.make_artifact("counter", Counter)
     changes = []
     session.on_change(changes.append)
@@ -24,9 +20,7 @@ async def test_focusing_again_has_no_effect(stage):
     assert [(change.before, change.now) for change in changes] == [(None, (0,)), ((0,), None)]
 
 
-@played(play)
-async def test_an_artifact_is_focused_as_soon_as_it_exists(stage):
-    session = session_in(stage)
+async def test_an_artifact_is_focused_as_soon_as_it_exists(stage, session):
     waiting = asyncio.ensure_future(session.focus_when_available("counter"))
     await asyncio.sleep(1)
     assert not waiting.done()
@@ -38,11 +32,7 @@ async def test_an_artifact_is_focused_as_soon_as_it_exists(stage):
     assert session.focused == (counter, session.lookup("it"))
 
 
-@played(play)
-async def test_properties_are_found_by_name_and_values(stage):
-    session = session_in(stage)
-    wheels = session.focus(await session.make_artifact("wheels", Wheels))
-    session.focus(await session.make_artifact("counter", Counter))
+async def test_properties_are_found_by_name_and_values(session, wheels, counter):
     assert [each.values for each in session.properties("cell")] == [(1, "free"), (2, "wall")]
     assert session.properties("cell", None, "wall")[0].artifact is wheels
     assert session.has_property("cell", 2, None)
@@ -55,9 +45,7 @@ async def test_properties_are_found_by_name_and_values(stage):
     assert session.value("battery", default=100) == 100
 
 
-@played(play)
-async def test_the_error_for_an_unknown_property_lists_known_ones(stage):
-    session = session_in(stage)
+async def test_the_error_for_an_unknown_property_lists_known_ones(session):
     counter = await session.make_artifact("counter", Counter)
     with pytest.raises(UnknownProperty, match="no artifact is focused"):
         session.value("count")
@@ -72,24 +60,18 @@ async def test_the_error_for_an_unknown_property_lists_known_ones(stage):
         session.value("count", artifact="cuonter")
 
 
-def test_observed_values_are_copies():
+async def test_observed_values_are_copies(stage):
     class Route(Artifact):
         def init(self):
             self.define_property("route", ["a", "b"])
 
-    async def scene(stage):
-        session = session_in(stage)
-        session.focus(await session.make_artifact("route", Route))
-        session.value("route").append("c")
-        assert session.value("route") == ["a", "b"]
-
-    play(scene)
-
-
-@played(play)
-async def test_callbacks_see_what_was_published_together(stage):
     session = session_in(stage)
-    session.focus(await session.make_artifact("counter", Counter))
+    session.focus(await session.make_artifact("route", Route))
+    session.value("route").append("c")
+    assert session.value("route") == ["a", "b"]
+
+
+async def test_callbacks_see_what_was_published_together(session, counter):
     seen = []
     session.on_signal(lambda signal: seen.append((signal.name, session.value("count"))))
     stop = session.on_change(lambda change: seen.append((change.name, change.before, change.now)))
@@ -101,10 +83,7 @@ async def test_callbacks_see_what_was_published_together(stage):
     assert seen[2:] == [("tick", 2)]
 
 
-@played(play)
-async def test_a_callback_that_raises_has_no_other_effect(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("counter", Counter))
+async def test_a_callback_that_raises_has_no_other_effect(stage, session, counter):
     session.on_change(lambda change: 1 / 0)
     session.on_signal(lambda signal: {}["no"])
     operation = session.begin("inc")
@@ -120,10 +99,7 @@ async def test_a_callback_that_raises_has_no_other_effect(stage):
         assert stage.logged(what), what
 
 
-@played(play)
-async def test_a_condition_that_holds_for_one_step_only_is_not_missed(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("wheels", Wheels))
+async def test_a_condition_that_holds_for_one_step_only_is_not_missed(session, wheels):
     waiting = asyncio.ensure_future(session.until(lambda: session.value("speed") > 4 and "fast"))
     await asyncio.sleep(0)
     await session.act("flash")
@@ -131,10 +107,7 @@ async def test_a_condition_that_holds_for_one_step_only_is_not_missed(stage):
     assert await session.until(lambda: session.has_property("pose")) is True
 
 
-@played(play)
-async def test_a_condition_that_raises_raises_in_the_waiting_task(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("counter", Counter))
+async def test_a_condition_that_raises_raises_in_the_waiting_task(session, counter):
     with pytest.raises(UnknownProperty):
         await session.until(lambda: session.value("battery") < 20)
     waiting = asyncio.ensure_future(session.until(lambda: 1 / (1 - session.value("count")) > 1))
@@ -144,16 +117,13 @@ async def test_a_condition_that_raises_raises_in_the_waiting_task(stage):
         await waiting
 
 
-@played(play)
-async def test_a_condition_is_waited_for_so_long(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("counter", Counter))
+async def test_a_condition_is_waited_for_so_long(stage, session, counter):
     with pytest.raises(TimeoutError, match="within 2 s"):
         await session.until(lambda: session.value("count") > 1, timeout=2.0)
     assert stage.elapsed == 2.0
 
 
-def test_what_an_artifact_does_by_itself_is_observed():
+async def test_what_an_artifact_does_by_itself_is_observed(stage):
     class Clock(Artifact):
         def init(self):
             self.define_property("nticks", 0)
@@ -165,16 +135,12 @@ def test_what_an_artifact_does_by_itself_is_observed():
                 await self.sleep(1)
                 self.update_property("nticks", self.value("nticks") + 1)
 
-    async def scene(stage):
-        with session_in(stage) as session:
-            session.focus(await session.make_artifact("clock", Clock))
-            await session.until(lambda: session.value("nticks") == 3)
-            assert stage.elapsed == 3
-
-    play(scene)
+    with session_in(stage) as session:
+        session.focus(await session.make_artifact("clock", Clock))
+        await session.until(lambda: session.value("nticks") == 3)
+        assert stage.elapsed == 3
 
 
-@played(play)
 async def test_a_personal_artifact_that_was_disposed_is_no_longer_focused(stage):
     body = stage.main.offer("body_bob", Counter, personal=True)
     session = session_in(stage)

@@ -3,17 +3,12 @@
 import asyncio
 
 import pytest
-from session_lab import Counter, Wheels, session_in
+from session_lab import Counter
 
 from jacaros.artifacts import Atom, OperationFailed, Structure
-from played import played
-from stage_lab import play
 
 
-@played(play)
-async def test_a_handle_is_paused_resumed_and_awaited(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("wheels", Wheels))
+async def test_a_handle_is_paused_resumed_and_awaited(stage, session, wheels):
     operation = session.begin("moveForward", 1.0)
     ended = []
     operation.on_end(ended.append)
@@ -31,10 +26,7 @@ async def test_a_handle_is_paused_resumed_and_awaited(stage):
     assert 10 < stage.elapsed < 12
 
 
-@played(play)
-async def test_a_cancelled_operation_ends_at_once_and_its_finally_runs(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("wheels", Wheels))
+async def test_a_cancelled_operation_ends_at_once_and_its_finally_runs(session, wheels):
     operation = session.begin("moveForward", 1.0)
     await asyncio.sleep(0.25)
     operation.cancel()
@@ -50,10 +42,7 @@ async def test_a_cancelled_operation_ends_at_once_and_its_finally_runs(stage):
     assert session.value("pose") == 0.2
 
 
-@played(play)
-async def test_a_cancelled_task_cancels_the_operation_that_it_awaits(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("wheels", Wheels))
+async def test_a_cancelled_task_cancels_the_operation_that_it_awaits(session, wheels):
     task = asyncio.ensure_future(session.act("moveForward", 1.0))
     await asyncio.sleep(0.25)
     task.cancel()
@@ -64,10 +53,7 @@ async def test_a_cancelled_task_cancels_the_operation_that_it_awaits(stage):
     assert session.value("speed") == 0.0
 
 
-@played(play)
-async def test_an_operation_may_take_so_long(stage):
-    session = session_in(stage)
-    session.focus(await session.make_artifact("wheels", Wheels))
+async def test_an_operation_may_take_so_long(session, wheels):
     with pytest.raises(OperationFailed, match="did not end within 250 ms") as raised:
         await session.act("moveForward", 1.0, timeout=0.25)
     assert raised.value.reason == Structure("operation_timeout", ("moveForward/1", 250.0))
@@ -77,9 +63,7 @@ async def test_an_operation_may_take_so_long(stage):
     assert session.value("pose") == 0.3
 
 
-@played(play)
-async def test_an_operation_that_cannot_begin_has_failed(stage):
-    session = session_in(stage)
+async def test_an_operation_that_cannot_begin_has_failed(stage, session):
     operation = session.begin("fly")
     assert operation.done
     assert operation.outcome.reason == Structure("unknown_operation", ("fly/0",))
@@ -90,10 +74,7 @@ async def test_an_operation_that_cannot_begin_has_failed(stage):
     )
 
 
-@played(play)
-async def test_a_disposed_artifact_fails_what_waits_and_its_properties_are_gone(stage):
-    session = session_in(stage)
-    wheels = session.focus(await session.make_artifact("wheels", Wheels))
+async def test_a_disposed_artifact_fails_what_waits_and_its_properties_are_gone(stage, session, wheels):
     changes = []
     session.on_change(changes.append)
     operation = session.begin("moveForward", 1.0)

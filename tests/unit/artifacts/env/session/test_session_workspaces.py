@@ -6,13 +6,9 @@ import pytest
 from session_lab import Counter, session_in
 
 from jacaros.artifacts import OperationFailed, Structure, UnknownWorkspace
-from played import played
-from stage_lab import play
 
 
-@played(play)
-async def test_workspaces_are_joined_and_left(stage):
-    session = session_in(stage)
+async def test_workspaces_are_joined_and_left(stage, session):
     stage.environment.create_workspace("/main/lab")
     with pytest.raises(UnknownWorkspace, match="unknown workspace `/main/lob`; did you mean"):
         session.join("lob")
@@ -30,19 +26,12 @@ async def test_workspaces_are_joined_and_left(stage):
     assert raised.value.reason == Structure("workspace_not_joined", ("lab",))
     with pytest.raises(OperationFailed, match="/main/lab has not been joined"):
         session.focus("/main/lab/counter")
-
-
-@played(play)
-async def test_a_session_begins_in_its_home(stage):
-    stage.environment.create_workspace("/main/lab")
     with pytest.raises(UnknownWorkspace):
         session_in(stage, home="/main/lob")
-    assert session_in(stage, home="/main/lab").joined == ("/main/lab",)
+    assert session_in(stage, home="/main/lab").joined == ("/main/lab",), "it begins in its home"
 
 
-@played(play)
-async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage):
-    session = session_in(stage)
+async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage, session):
     stage.environment.create_workspace("/main/lab")
     session.join("lab")
     await session.make_artifact("counter", Counter)
@@ -53,20 +42,12 @@ async def test_a_joined_workspace_is_also_meant_by_a_link_to_it(stage):
     assert session.value("count") == 1
 
 
-@played(play)
-async def test_what_was_quit_cannot_be_quit_again(stage):
-    session = session_in(stage)
+async def test_outside_all_workspaces_nothing_can_be_done_but_join(session):
+    await session.make_artifact("counter", Counter)
     session.quit("main")
     with pytest.raises(OperationFailed) as failure:
         session.quit("main")
     assert failure.value.reason == Structure("workspace_not_joined", ("main",))
-
-
-@played(play)
-async def test_outside_all_workspaces_nothing_can_be_done_but_join(stage):
-    session = session_in(stage)
-    await session.make_artifact("counter", Counter)
-    session.quit("main")
     for request in (session.act("inc"), session.act("inc", artifact="counter")):
         with pytest.raises(OperationFailed, match="workspace /main has not been joined; join it first"):
             await request
@@ -74,9 +55,7 @@ async def test_outside_all_workspaces_nothing_can_be_done_but_join(stage):
     await session.act("inc")
 
 
-@played(play)
-async def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(stage):
-    session = session_in(stage)
+async def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_path(stage, session):
     stage.environment.create_workspace("/main/lab")
     await session.make_artifact("lab/counter", Counter)
     with pytest.raises(OperationFailed) as failure:
@@ -84,9 +63,7 @@ async def test_an_operation_does_not_reach_a_workspace_that_was_not_joined_by_a_
     assert failure.value.reason == Structure("workspace_not_joined", ("/main/lab",))
 
 
-@played(play)
-async def test_waiting_for_an_artifact_fails_when_its_workspace_was_quit(stage):
-    session = session_in(stage)
+async def test_waiting_for_an_artifact_fails_when_its_workspace_was_quit(stage, session):
     stage.environment.create_workspace("/main/lab")
     session.join("lab")
     waiting = asyncio.ensure_future(session.focus_when_available("counter"))
