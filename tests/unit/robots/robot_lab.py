@@ -5,6 +5,8 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+import pytest
+
 from jacaros.artifacts import (
     Artifact,
     ArtifactId,
@@ -17,12 +19,18 @@ from jacaros.artifacts import (
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.node import Sample
 from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world import SimNode, World
 from jacaros.robots.world.files.world import load_world
 from jacaros.runtime.clock import VirtualClock, run
 
 TWIST = "geometry_msgs/msg/Twist"
 STANDSTILL = (0.0, 0.0)
+
+
+def made(kind: type[Artifact], *arguments: object, recorded: bool = False) -> pytest.MarkDecorator:
+    """The mark of a test whose parameters are an `artifact` of that kind, and the `watcher` that observes it."""
+    return pytest.mark.makes.with_args(kind, *arguments, recorded=recorded)
 
 
 class Watcher:
@@ -80,6 +88,17 @@ class Run:
         assert self.outcome is not None
         return str(self.outcome.reason)
 
+    @property
+    def ok(self) -> bool:
+        """Whether it has succeeded; it must have ended."""
+        assert self.outcome is not None
+        return self.outcome.ok
+
+    async def resumed(self) -> None:
+        """Resume its suspended intention, and wait for its end."""
+        self.execution.resume()
+        await self.done
+
 
 class Lab:
     """One run: a world, and artifacts that reach it over topics.
@@ -114,6 +133,17 @@ class Lab:
         number = len(self.workspace.artifacts())
         return await self.workspace.make_artifact(name or f"a{number}", kind, arguments)
 
+    def say(self, topic: str, kind: str, *qos: QoS, **fields: object) -> None:
+        """Publish one message."""
+        publisher = self.backend.publisher(topic, kind, *qos)
+        publisher.publish(publisher.message(**fields))
+
+    def hear(self, topic: str, kind: str) -> list[Any]:
+        """The messages of a topic from now on."""
+        heard: list[Any] = []
+        self.backend.subscription(topic, kind, lambda sample: heard.append(sample.message))
+        return heard
+
     def watch(self, artifact: ArtifactId) -> Watcher:
         watcher = Watcher(self.clock)
         self.workspace.focus(artifact, watcher)
@@ -123,6 +153,12 @@ class Lab:
         done: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
         request = OperationRequest(artifact, operation, arguments, "tester", None, done.set_result)
         return Run(self.workspace.execute(request), done)
+
+    async def begun(self, seconds: float, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
+        """Begin an operation, and wait that many seconds."""
+        run = self.begin(artifact, operation, *arguments)
+        await self.sleep(seconds)
+        return run
 
     async def call(self, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
         """Run an operation to its end."""

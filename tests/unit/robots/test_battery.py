@@ -5,9 +5,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab, Watcher, in_lab, made
 
-from jacaros.artifacts import Out, Structure
+from jacaros.artifacts import ArtifactId, Out, Structure
 from jacaros.look.page.graph_scene import SeenRobot
 from jacaros.robots.artifacts.battery import ArtSimBattery, diagnosis
 from jacaros.robots.artifacts.velocity import ArtCmdVelMuxAndOdometry
@@ -18,6 +18,9 @@ FULL, MEDIUM, LOW = "Full Battery", "Medium Battery", "Low Battery"
 
 def option(name: str, value: Any) -> Structure:
     return Structure(name, (value,))
+
+
+pytestmark = made(ArtSimBattery, "bot")
 
 
 @pytest.mark.parametrize(
@@ -75,8 +78,7 @@ async def test_nothing_drains_while_the_battery_is_charged_and_other_operations_
     """Defect 5: it kept draining, and could not be queried."""
     battery = await lab.make(ArtSimBattery, option("level", 10), option("drain", 5))
     watcher = lab.watch(battery)
-    charging = lab.begin(battery, "operationRecharge")
-    await lab.sleep(2.1)
+    charging = await lab.begun(2.1, battery, "operationRecharge")
     out = Out()
     await lab.do(battery, "getCurrentBattery", out)
     assert out.value == 60
@@ -86,18 +88,16 @@ async def test_nothing_drains_while_the_battery_is_charged_and_other_operations_
     assert levels == sorted(levels)  # type: ignore[type-var]
 
 
+@made(ArtSimBattery, option("level", 50))
 async def test_a_second_recharge_waits_for_the_first_and_a_dropped_one_lets_the_battery_drain_again(
-    lab: Lab,
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:
-    battery = await lab.make(ArtSimBattery, option("level", 50))
-    watcher = lab.watch(battery)
-    runs = [lab.begin(battery, "operationRecharge") for _ in range(2)]
+    runs = [lab.begin(artifact, "operationRecharge") for _ in range(2)]
     for each in runs:
         await each.done
     assert lab.clock.elapsed == pytest.approx(2.5)
     await lab.sleep(20)
-    dropped = lab.begin(battery, "operationRecharge")
-    await lab.sleep(0.2)
+    dropped = await lab.begun(0.2, artifact, "operationRecharge")
     dropped.execution.cancel()
     level = watcher.holds("battery")[0][0]
     await lab.sleep(3)
@@ -166,8 +166,7 @@ async def test_a_recharge_that_loses_the_dock_fails(lab: Lab) -> None:
     battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
     publisher = charge(lab.backend, "/bot/battery_state")
     publisher(0.3, "CHARGING")
-    charging = lab.begin(battery, "operationRecharge")
-    await lab.sleep(1)
+    charging = await lab.begun(1, battery, "operationRecharge")
     publisher(0.4, "CHARGING")
     await lab.sleep(1.5)
     assert not charging.done.done()
@@ -186,16 +185,14 @@ async def test_a_driver_that_knows_no_status_is_understood_by_its_rising_charge(
         await lab.sleep(1)
         publish(percent / 100, "UNKNOWN")
     await charging.done
-    assert charging.outcome is not None
-    assert charging.outcome.ok
+    assert charging.ok
     assert lab.clock.elapsed == pytest.approx(10, abs=0.6)
 
 
-async def test_a_driver_that_charges_for_ever_is_full_all_the_same(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, "bot")
+async def test_a_driver_that_charges_for_ever_is_full_all_the_same(lab: Lab, artifact: ArtifactId) -> None:
     publish = charge(lab.backend, "/bot/battery_state")
     publish(1.0, "CHARGING")
-    await lab.do(battery, "operationRecharge")
+    await lab.do(artifact, "operationRecharge")
     assert lab.clock.elapsed < 7
 
 
@@ -218,11 +215,10 @@ async def test_a_battery_that_is_almost_full_is_not_full(lab: Lab, status: str) 
     assert watcher.holds("battery") == [(100,)]
 
 
-async def test_an_old_battery_is_full_when_its_charge_stops_rising(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, "bot")
+async def test_an_old_battery_is_full_when_its_charge_stops_rising(lab: Lab, artifact: ArtifactId) -> None:
     publish = charge(lab.backend, "/bot/battery_state")
     publish(0.996, "NOT_CHARGING")
-    await lab.do(battery, "operationRecharge")
+    await lab.do(artifact, "operationRecharge")
     assert lab.clock.elapsed < 7
 
 
@@ -251,9 +247,8 @@ async def test_a_battery_of_unknown_charge_is_not_shown(lab: Lab) -> None:
     assert watcher.holds("diagnostics") == [(MEDIUM,)]
 
 
-async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab) -> None:
-    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
-    watcher = lab.watch(artifact)
+@made(ArtSimBattery, option("source", "robot"))
+async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab, watcher: Watcher) -> None:
     tell = charge(lab.backend, "/battery_state")
     for share in (0.5, -1.0, -0.01, 0.4):
         tell(share, "DISCHARGING")
@@ -264,9 +259,8 @@ async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab) -> None:
     ]
 
 
-async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab) -> None:
-    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
-    watcher = lab.watch(artifact)
+@made(ArtSimBattery, option("source", "robot"))
+async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab, watcher: Watcher) -> None:
     tell = charge(lab.backend, "/battery_state")
     for percent in (98.2, 55.0, 19.6, 1.0):
         tell(percent, "DISCHARGING")

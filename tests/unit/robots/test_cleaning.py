@@ -4,9 +4,9 @@ import re
 from typing import Any
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, made
 
-from jacaros.artifacts import Environment, Out, Structure
+from jacaros.artifacts import ArtifactId, Environment, Out, Structure
 from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.robots.artifacts.thesis import ArtCleaning
 from jacaros.runtime.clock import VirtualClock, run
@@ -16,6 +16,9 @@ def heard(lab: Lab, topic: str = "/cleaning/task") -> list[str]:
     texts: list[str] = []
     lab.backend.subscription(topic, "std_msgs/msg/String", lambda sample: texts.append(sample.message.data))
     return texts
+
+
+pytestmark = made(ArtCleaning)
 
 
 async def test_each_room_has_its_tasks_and_takes_its_time(lab: Lab) -> None:
@@ -46,8 +49,7 @@ async def test_each_room_has_its_tasks_and_takes_its_time(lab: Lab) -> None:
 async def test_work_rests_while_the_intention_is_suspended(lab: Lab) -> None:
     tasks = heard(lab)
     cleaner = await lab.make(ArtCleaning)
-    cleaning = lab.begin(cleaner, "clean", 3)
-    await lab.sleep(0.4)
+    cleaning = await lab.begun(0.4, cleaner, "clean", 3)
     cleaning.execution.pause()
     await lab.sleep(10)
     assert tasks == ["scrub tub bathroom"]
@@ -73,19 +75,16 @@ async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_en
         lambda sample: tools.append((round(lab.clock.elapsed, 2), sample.message.data)),
     )
     cleaner = await lab.make(ArtCleaning)
-    cleaning = lab.begin(cleaner, "clean", 3)
-    await lab.sleep(0.4)
+    cleaning = await lab.begun(0.4, cleaner, "clean", 3)
     cleaning.execution.pause()
     await lab.sleep(0.1)  # shorter than the sleep that goes on
     cleaning.execution.resume()
     await lab.sleep(2.0)
     cleaning.execution.pause()
     await lab.sleep(10)
-    cleaning.execution.resume()
-    await cleaning.done
+    await cleaning.resumed()
     assert tools == [(0.4, ""), (0.5, "scrub"), (2.5, ""), (12.5, "mop"), (13.6, "")]
-    dropped = lab.begin(cleaner, "clean", 1)
-    await lab.sleep(1)
+    dropped = await lab.begun(1, cleaner, "clean", 1)
     dropped.execution.cancel()
     await lab.sleep(5)
     assert tools[5:] == [(14.6, "")]
@@ -115,9 +114,8 @@ async def test_rooms_follow_each_other_and_one_can_ask_where_one_is(lab: Lab) ->
     assert (room.value, name.value) == (1, "living Room")
 
 
-async def test_a_room_that_is_not_there_is_refused(lab: Lab) -> None:
-    cleaner = await lab.make(ArtCleaning)
-    assert (await lab.call(cleaner, "clean", 4)).reason == "unknown_room(4)"
+async def test_a_room_that_is_not_there_is_refused(lab: Lab, artifact: ArtifactId) -> None:
+    assert (await lab.call(artifact, "clean", 4)).reason == "unknown_room(4)"
     assert lab.clock.elapsed == 0
 
 
@@ -156,8 +154,7 @@ async def test_wrong_rooms_are_refused(lab: Lab, value: object, told: str) -> No
 async def test_other_operations_are_served_while_a_room_is_cleaned(lab: Lab) -> None:
     cleaner = await lab.make(ArtCleaning)
     watcher = lab.watch(cleaner)
-    cleaning = lab.begin(cleaner, "clean", 3)
-    await lab.sleep(0.5)
+    cleaning = await lab.begun(0.5, cleaner, "clean", 3)
     await lab.do(cleaner, "updateWhereAmI")
     assert lab.clock.elapsed == 0.5
     assert watcher.holds("scrub") == [("Tub", "bathroom")]

@@ -5,7 +5,7 @@ import math
 from typing import Any
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import Environment, Out, Structure
 from jacaros.robots.artifacts.connection_artifact import ArtRos
@@ -27,9 +27,8 @@ def test_it_is_found_under_its_names() -> None:
     assert find_type("ArtRos") is find_type("jacaros.ArtRos") is ArtRos
 
 
-async def test_it_shows_the_connection(lab: Lab) -> None:
-    artifact = await lab.make(ArtRos)
-    watcher = lab.watch(artifact)
+@made(ArtRos)
+async def test_it_shows_the_connection(lab: Lab, watcher: Watcher) -> None:
     assert watcher.holds("middleware") == [("memory",)]
     assert watcher.holds("node") == [("/lab",)]
     assert watcher.holds("connected") == [()]

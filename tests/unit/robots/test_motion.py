@@ -4,9 +4,9 @@ import math
 from itertools import pairwise
 
 import pytest
-from robot_lab import STANDSTILL, Lab, apart, assert_at, in_lab
+from robot_lab import STANDSTILL, Lab, Watcher, apart, assert_at, in_lab, made
 
-from jacaros.artifacts import OperationFailed, Out, Structure
+from jacaros.artifacts import ArtifactId, OperationFailed, Out, Structure
 from jacaros.robots.artifacts.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
@@ -16,7 +16,7 @@ from jacaros.robots.artifacts.velocity import (
 )
 from jacaros.robots.ros.node import Sample
 
-pytestmark = pytest.mark.world("empty")
+pytestmark = [pytest.mark.world("empty"), made(ArtCmdVel, recorded=True)]
 
 # Accuracy.
 
@@ -42,9 +42,8 @@ async def test_four_rounds_of_a_square_stay_on_the_square(lab: Lab) -> None:
             assert_at(lab, *corner, metres=0.01 * round_, degrees=0.3 * round_)
 
 
-async def test_out_and_back_by_time_comes_back(lab: Lab) -> None:
+async def test_out_and_back_by_time_comes_back(lab: Lab, artifact: ArtifactId) -> None:
     """The thesis's scenario 8.2.1: two times ``move(25); rotate(180)``."""
-    artifact = await lab.make(ArtCmdVel)
     farthest = 0.0
     for _ in range(2):
         await lab.do(artifact, "move", 25)
@@ -110,8 +109,7 @@ async def test_driving_to_poses_ends_at_the_poses(lab: Lab) -> None:
 async def test_a_disturbed_heading_is_corrected_while_driving(lab: Lab) -> None:
     assert lab.world is not None
     artifact = await lab.make(ArtCmdVel, Structure("speed", (0.3,)))
-    driving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+    driving = await lab.begun(2, artifact, "moveForward", 2)
     robot = lab.world.robot()
     robot.yaw += 0.2
     robot.odometry.yaw += 0.2
@@ -208,9 +206,8 @@ async def test_commands_obey_the_limits_and_never_pause_longer_than_the_base_all
     assert [event.kind for event in lab.world.log] == []
 
 
-async def test_the_cruise_speed_is_an_option(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel, Structure("speed", (0.25,)), {"turn_speed": 30})
+@made(ArtCmdVel, Structure("speed", (0.25,)), {"turn_speed": 30}, recorded=True)
+async def test_the_cruise_speed_is_an_option(lab: Lab, artifact: ArtifactId) -> None:
     await lab.do(artifact, "moveForward", 1)
     await lab.do(artifact, "rotate", 90)
     assert max(linear for _, linear, _ in lab.commands) == pytest.approx(0.25)
@@ -225,8 +222,7 @@ async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab
     lab.record("/cmd_vel_mux/input/navi")
     artifact = await lab.make(ArtCmdVelMuxAndOdometry)
     watcher = lab.watch(artifact)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+    moving = await lab.begun(2, artifact, "moveForward", 2)
     before = lab.pose()[0]
     begin = lab.clock.elapsed
     await lab.do(artifact, "getCurrentOdom")
@@ -244,8 +240,7 @@ async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab
 async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(lab: Lab) -> None:
     artifact = await lab.make(ArtCmdVel)
     await lab.do(artifact, "abortMoving")
-    turning = lab.begin(artifact, "rotate", -180)
-    await lab.sleep(1.5)
+    turning = await lab.begun(1.5, artifact, "rotate", -180)
     heading = lab.pose()[2]
     await lab.do(artifact, "abortMoving")
     await turning.done
@@ -256,12 +251,10 @@ async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(
     await lab.do(artifact, "moveForward", 0.2)
 
 
-async def test_dropping_a_motion_stops_the_robot_without_an_outcome(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    watcher = lab.watch(artifact)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+async def test_dropping_a_motion_stops_the_robot_without_an_outcome(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     begin = lab.clock.elapsed
     moving.execution.cancel()
     await lab.sleep(2)
@@ -273,25 +266,19 @@ async def test_dropping_a_motion_stops_the_robot_without_an_outcome(lab: Lab) ->
     await lab.do(artifact, "rotate", 10)
 
 
-async def test_disposing_the_artifact_stops_the_robot(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+async def test_disposing_the_artifact_stops_the_robot(lab: Lab, artifact: ArtifactId) -> None:
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     lab.workspace.dispose_artifact(artifact)
     await moving.done
-    assert moving.outcome is not None
-    assert not moving.outcome.ok
+    assert not moving.ok
     await lab.sleep(1)
     assert lab.last_command == STANDSTILL
     other = await lab.make(ArtCmdVel)
     await lab.do(other, "rotate", 10)
 
 
-async def test_the_end_of_the_process_stops_the_robot(lab: Lab) -> None:
+async def test_the_end_of_the_process_stops_the_robot(lab: Lab, artifact: ArtifactId) -> None:
     """The backend runs its exit hooks at signals and at the end; closing it does the same."""
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
     lab.begin(artifact, "moveForward", 2)
     await lab.sleep(1.5)
     assert lab.last_command != STANDSTILL
@@ -335,9 +322,8 @@ robots:
 
 
 @pytest.mark.world(None)
-async def test_without_odometry_a_motion_fails_and_never_drives(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel, Structure("odometry_timeout", (3,)))
+@made(ArtCmdVel, Structure("odometry_timeout", (3,)), recorded=True)
+async def test_without_odometry_a_motion_fails_and_never_drives(lab: Lab, artifact: ArtifactId) -> None:
     failed = await lab.call(artifact, "moveForward", 1)
     assert failed.reason == "no_odometry(3)"
     assert lab.clock.elapsed == pytest.approx(3, abs=0.2)
@@ -361,8 +347,7 @@ async def test_the_robot_stands_while_odometry_is_lost_and_then_continues(lab: L
     lab.record()
     relay = Relay(lab)
     artifact = await lab.make(ArtCmdVel, Structure("odometry_topic", ("relayed",)))
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     relay.on = False
     await lab.sleep(2)
     assert lab.last_command == STANDSTILL
@@ -370,8 +355,7 @@ async def test_the_robot_stands_while_odometry_is_lost_and_then_continues(lab: L
     relay.on = True
     await moving.done
     assert_at(lab, 2, 0, 0)
-    moving = lab.begin(artifact, "moveReverse", 2)
-    await lab.sleep(1.5)
+    moving = await lab.begun(1.5, artifact, "moveReverse", 2)
     relay.on = False
     await moving.done
     assert moving.reason == "no_odometry(5)"
@@ -386,8 +370,7 @@ async def test_a_motion_that_takes_too_long_fails(lab: Lab) -> None:
     assert lab.speed() == (0, 0)
 
 
-async def test_nonsense_numbers_are_refused(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+async def test_nonsense_numbers_are_refused(lab: Lab, artifact: ArtifactId) -> None:
     for operation, arguments in [
         ("moveForward", (math.inf,)),
         ("rotate", (math.nan,)),

@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab, Watcher, in_lab, made
 
 from jacaros.artifacts import OperationFailed, Out, Structure
 from jacaros.robots.artifacts.odometry import ArtOdometry, ArtOdometryOnDemand
@@ -54,9 +54,8 @@ async def test_properties_change_in_steps_of_the_artifact_with_the_cause_of_the_
     assert kinds == {"sample"}
 
 
-async def test_pose_has_the_heading_in_degrees(lab: Lab) -> None:
-    odometry = await lab.make(ArtOdometry)
-    watcher = lab.watch(odometry)
+@made(ArtOdometry)
+async def test_pose_has_the_heading_in_degrees(lab: Lab, watcher: Watcher) -> None:
     motion = await lab.make(ArtCmdVel)
     await lab.do(motion, "goTo", 1, 0, 135)
     await lab.sleep(0.2)

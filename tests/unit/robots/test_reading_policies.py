@@ -230,8 +230,7 @@ async def test_at_most_one_update_waits_while_an_operation_keeps_the_artifact(la
     artifact = await lab.make(Holder)
     watcher = lab.watch(artifact)
     [made] = Holder.made
-    holding = lab.begin(artifact, "hold")
-    await lab.sleep(0.1)
+    holding = await lab.begun(0.1, artifact, "hold")
     for number in range(1, 100):
         made.level.take((number,))
         await lab.sleep(0.001)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 from mapped_lab import mapped, settle, with_mapped
-from robot_lab import Lab
+from robot_lab import Lab, made
 
 from jacaros.artifacts import ArtifactId, Out
 from jacaros.robots.mapping.checking import check_mapping
@@ -53,8 +53,10 @@ def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
     return events
 
 
-async def test_a_goal_with_feedback_and_result(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+pytestmark = made(mapped(COUNT.replace("MORE", "")))
+
+
+async def test_a_goal_with_feedback_and_result(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab)
     watcher, out = lab.watch(artifact), Out()
     await lab.do(artifact, "count", 3, 1, out)
@@ -64,12 +66,10 @@ async def test_a_goal_with_feedback_and_result(lab: Lab) -> None:
     assert watcher.holds("at") == []
 
 
-async def test_a_cancelled_operation_cancels_its_goal(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+async def test_a_cancelled_operation_cancels_its_goal(lab: Lab, artifact: ArtifactId) -> None:
     events = offer(lab)
     watcher = lab.watch(artifact)
-    run = lab.begin(artifact, "count", 9, 1, Out())
-    await lab.sleep(1.5)
+    run = await lab.begun(1.5, artifact, "count", 9, 1, Out())
     assert watcher.holds("at") == [(1,)]
     run.execution.cancel()
     await lab.sleep(0.1)
@@ -77,14 +77,12 @@ async def test_a_cancelled_operation_cancels_its_goal(lab: Lab) -> None:
     assert watcher.holds("at") == []
 
 
-async def test_an_aborted_goal_fails_with_the_reason(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+async def test_an_aborted_goal_fails_with_the_reason(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab)
     assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
 
 
-async def test_a_goal_that_is_rejected(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+async def test_a_goal_that_is_rejected(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab, ActionPolicy(accept=lambda goal: "no"))
     assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
 
@@ -108,13 +106,11 @@ async def test_a_suspended_goal_is_cancelled_and_sent_again(lab: Lab) -> None:
     artifact = await lab.make(mapped(COUNT.replace("MORE", "suspend: cancel")))
     events = offer(lab)
     out = Out()
-    run = lab.begin(artifact, "count", 3, 1, out)
-    await lab.sleep(1.5)
+    run = await lab.begun(1.5, artifact, "count", 3, 1, out)
     run.execution.pause()
     await lab.sleep(1)
     assert events == ["begin", "cancelled"]
-    run.execution.resume()
-    await run.done
+    await run.resumed()
     assert events == ["begin", "cancelled", "begin"]
     assert out.value == 3
 
@@ -122,12 +118,10 @@ async def test_a_suspended_goal_is_cancelled_and_sent_again(lab: Lab) -> None:
 def test_a_goal_is_cancelled_while_suspended_by_default() -> None:
     async def suspended(lab: Lab, artifact: ArtifactId) -> list[str]:
         events = offer(lab)
-        run = lab.begin(artifact, "count", 3, 1, Out())
-        await lab.sleep(1.5)
+        run = await lab.begun(1.5, artifact, "count", 3, 1, Out())
         run.execution.pause()
         await lab.sleep(1)
-        run.execution.resume()
-        await run.done
+        await run.resumed()
         return events
 
     async def stops(lab: Lab, artifact: ArtifactId) -> None:
@@ -224,8 +218,7 @@ async def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing(lab: 
 
     lab.backend.action_server("count", "jacaros_interfaces/action/Count", brake)
     watcher = lab.watch(artifact)
-    run = lab.begin(artifact, "count", 9, 1, Out())
-    await lab.sleep(1)
+    run = await lab.begun(1, artifact, "count", 9, 1, Out())
     assert watcher.holds("at") == [(1,)]
     run.execution.pause()
     await lab.sleep(2)
@@ -278,13 +271,11 @@ def test_a_goal_is_paused_and_resumed_by_services(type_key: str) -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         server = Holding(lab)
         out = Out()
-        run = lab.begin(artifact, "count", 4, 1, out)
-        await lab.sleep(1.5)
+        run = await lab.begun(1.5, artifact, "count", 4, 1, out)
         run.execution.pause()
         await lab.sleep(10)
         assert server.held
-        run.execution.resume()
-        await run.done
+        await run.resumed()
         assert lab.clock.elapsed == pytest.approx(14)
         assert (server.asked, server.cancelled, out.value) == ([True, False], 0, 4)
         await lab.do(artifact, "hold")  # they are operations like any others
@@ -297,18 +288,15 @@ def test_a_goal_is_paused_and_resumed_by_services(type_key: str) -> None:
 def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         server = Holding(lab, agrees=False)
-        run = lab.begin(artifact, "count", 2, 1, Out())
-        await lab.sleep(0.5)
+        run = await lab.begun(0.5, artifact, "count", 2, 1, Out())
         run.execution.pause()
         await lab.sleep(5)
         assert server.cancelled == 1
         assert any(
             "could not be paused: OperationFailed: service /hold refused: no brakes" in t for t in lab.logged
         )
-        run.execution.resume()
-        await run.done
-        assert run.outcome is not None
-        assert run.outcome.ok
+        await run.resumed()
+        assert run.ok
 
     text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace(
         "TYPE", "type: std_srvs/srv/SetBool, "
@@ -330,22 +318,19 @@ async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab) 
     held: list[bool] = []
     lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
     offer(lab)
-    run = lab.begin(artifact, "count", 3, 1, Out())
-    await lab.sleep(0.5)
+    run = await lab.begun(0.5, artifact, "count", 3, 1, Out())
     run.execution.pause()
     await lab.sleep(1)
     assert held == [True]
     assert await own.get("speed") == 0
-    run.execution.resume()
-    await run.done
+    await run.resumed()
     assert await own.get("speed") == 1
 
 
 def test_a_dropped_goal_leaves_no_paused_server_behind() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
         server = Holding(lab)
-        run = lab.begin(artifact, "count", 4, 1, Out())
-        await lab.sleep(0.5)
+        run = await lab.begun(0.5, artifact, "count", 4, 1, Out())
         run.execution.pause()
         await lab.sleep(1)
         run.execution.cancel()

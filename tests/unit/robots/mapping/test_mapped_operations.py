@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 from mapped_lab import mapped, settle
-from robot_lab import STANDSTILL, Lab, in_lab
+from robot_lab import STANDSTILL, Lab, in_lab, made
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.robots.artifacts.motion_claim import motions_of
@@ -30,17 +30,16 @@ operations:
 # ---- publishing
 
 
-async def test_publishing_once(lab: Lab) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
+pytestmark = made(mapped(DRIVE), recorded=True)
+
+
+async def test_publishing_once(lab: Lab, artifact: ArtifactId) -> None:
     await lab.do(artifact, "go", 0.5)
     await settle()
     assert lab.last_command == (0.5, 0.0)
 
 
-async def test_publishing_for_a_while_ends_with_zero(lab: Lab) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
+async def test_publishing_for_a_while_ends_with_zero(lab: Lab, artifact: ArtifactId) -> None:
     await lab.do(artifact, "drive", 0.5, 180, 1)
     await settle()
     times = [time for time, *_ in lab.commands]
@@ -49,11 +48,8 @@ async def test_publishing_for_a_while_ends_with_zero(lab: Lab) -> None:
     assert lab.last_command == STANDSTILL
 
 
-async def test_a_robot_stops_when_its_operation_is_cancelled(lab: Lab) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
-    run = lab.begin(artifact, "drive", 0.5, 0, 10)
-    await lab.sleep(1)
+async def test_a_robot_stops_when_its_operation_is_cancelled(lab: Lab, artifact: ArtifactId) -> None:
+    run = await lab.begun(1, artifact, "drive", 0.5, 0, 10)
     run.execution.cancel()
     await settle()
     assert lab.last_command == STANDSTILL
@@ -62,8 +58,7 @@ async def test_a_robot_stops_when_its_operation_is_cancelled(lab: Lab) -> None:
 async def test_publishing_for_a_while_fails_when_the_process_was_frozen_meanwhile(lab: Lab) -> None:
     artifact = await lab.make(mapped(DRIVE))
     lab.record()
-    run = lab.begin(artifact, "drive", 0.5, 0, 10)
-    await lab.sleep(1)
+    run = await lab.begun(1, artifact, "drive", 0.5, 0, 10)
     lab.clock.busy(2000 * lab.clock.CYCLES_PER_MILLISECOND)
     await run.done
     await settle()
@@ -74,8 +69,7 @@ async def test_publishing_for_a_while_fails_when_the_process_was_frozen_meanwhil
 async def test_publishing_for_a_while_fails_when_a_guard_has_stopped_the_robot(lab: Lab) -> None:
     artifact = await lab.make(mapped(DRIVE))
     lab.record()
-    run = lab.begin(artifact, "drive", 0.5, 0, 10)
-    await lab.sleep(1)
+    run = await lab.begun(1, artifact, "drive", 0.5, 0, 10)
     guarded_by(lab.backend).interrupt()
     await run.done
     await settle()
@@ -83,26 +77,20 @@ async def test_publishing_for_a_while_fails_when_a_guard_has_stopped_the_robot(l
     assert lab.last_command == STANDSTILL
 
 
-async def test_a_pause_stops_the_robot_and_does_not_count(lab: Lab) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
-    run = lab.begin(artifact, "drive", 0.5, 0, 2)
-    await lab.sleep(1.05)
+async def test_a_pause_stops_the_robot_and_does_not_count(lab: Lab, artifact: ArtifactId) -> None:
+    run = await lab.begun(1.05, artifact, "drive", 0.5, 0, 2)
     run.execution.pause()
     await settle()
     assert lab.last_command == STANDSTILL
     count = len(lab.commands)
     await lab.sleep(5)
     assert len(lab.commands) == count
-    run.execution.resume()
-    await run.done
+    await run.resumed()
     assert lab.clock.elapsed == pytest.approx(7.0)
     assert lab.last_command == STANDSTILL
 
 
-async def test_one_motion_waits_for_another(lab: Lab) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
+async def test_one_motion_waits_for_another(lab: Lab, artifact: ArtifactId) -> None:
     first = lab.begin(artifact, "drive", 0.5, 0, 1)
     second = lab.begin(artifact, "drive", -0.5, 0, 1)
     await first.done
@@ -116,8 +104,7 @@ async def test_a_motion_that_is_suspended_while_it_waits_does_not_stop_the_one_t
     artifact = await lab.make(mapped(DRIVE))
     lab.record()
     first = lab.begin(artifact, "drive", 0.5, 0, 2)
-    second = lab.begin(artifact, "drive", -0.5, 0, 1)
-    await lab.sleep(1.05)
+    second = await lab.begun(1.05, artifact, "drive", -0.5, 0, 1)
     second.execution.pause()
     await lab.sleep(0.5)
     assert STANDSTILL not in [command for _, *command in lab.commands]
@@ -156,10 +143,8 @@ async def test_a_robot_that_was_sent_a_velocity_stops_when_the_process_ends(lab:
     ],
 )
 async def test_a_value_that_does_not_fit_fails_and_sends_nothing(
-    lab: Lab, arguments: tuple[object, ...], reason: str
+    lab: Lab, artifact: ArtifactId, arguments: tuple[object, ...], reason: str
 ) -> None:
-    artifact = await lab.make(mapped(DRIVE))
-    lab.record()
     assert (await lab.call(artifact, "go", *arguments)).reason == reason
     await settle()
     assert lab.commands == []
@@ -224,8 +209,7 @@ def on_a_graph(text: str, body: Callable[[Lab, ArtifactId], Awaitable[None]], *a
 
 def test_the_first_message_waits_until_a_subscriber_is_matched() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
-        said = lab.begin(artifact, "say", "first")
-        await lab.sleep(1.0)
+        said = await lab.begun(1.0, artifact, "say", "first")
         heard: list[str] = []
         lab.backend.subscription(
             "speech", "std_msgs/msg/String", lambda sample: heard.append(sample.message.data)
@@ -271,8 +255,7 @@ def test_settings_missing_in_the_mapping_are_options_of_the_artifact() -> None:
 
 def test_velocities_wait_until_the_base_is_matched() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
-        run = lab.begin(artifact, "drive", 0.5, 0, 1)
-        await lab.sleep(1.0)
+        run = await lab.begun(1.0, artifact, "drive", 0.5, 0, 1)
         lab.record()
         await run.done
         await settle()
@@ -294,8 +277,7 @@ def test_zero_velocity_never_waits() -> None:
 
 def test_a_velocity_that_waits_for_its_base_is_not_sent_after_a_stop() -> None:
     async def body(lab: Lab, artifact: ArtifactId) -> None:
-        run = lab.begin(artifact, "go", 0.5)
-        await lab.sleep(0.5)
+        run = await lab.begun(0.5, artifact, "go", 0.5)
         await lab.do(artifact, "go", 0)
         assert lab.clock.elapsed == pytest.approx(0.5)
         lab.record()
