@@ -1,7 +1,7 @@
 """Lets the tests of this folder import its laboratory, which pytest's importlib mode does not, and run in it.
 
 A test that is a coroutine runs in a laboratory, its parameter ``lab``: in the world of the mark ``world``, or in none.
-The laboratory of a module that has one of its own is what its function ``play`` passes to the scene.
+Its class, the annotation, may have a function ``play`` that makes it and plays the scene.
 Its parameters ``artifact`` and ``watcher`` are the artifact of the mark ``makes``, and what observes it.
 """
 
@@ -47,13 +47,14 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     test = pyfuncitem.obj
     if not inspect.iscoroutinefunction(test):
         return None
-    given = {name: pyfuncitem.funcargs[name] for name in inspect.signature(test).parameters}
-    if "lab" not in pyfuncitem.fixturenames:
+    parameters = inspect.signature(test).parameters
+    given = {name: pyfuncitem.funcargs[name] for name in parameters}
+    if "lab" not in given:
         run(lambda: test(**given), WallClock())
         return True
     from robot_lab import in_lab
 
-    play = getattr(pyfuncitem.module, "play", in_lab)
+    play = getattr(parameters["lab"].annotation, "play", in_lab)
     mark, makes = map(pyfuncitem.get_closest_marker, ("world", "makes"))
 
     async def body(lab: "Lab") -> None:
