@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "world(name): text or name of the world of a coroutine's laboratory")
     config.addinivalue_line(
-        "markers", "makes(kind, *arguments, recorded): the artifact of a coroutine's laboratory"
+        "markers", "makes(kind, *arguments, recorded, on_graph): the artifact of a coroutine's laboratory"
     )
 
 
@@ -60,8 +60,10 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     async def body(lab: "Lab") -> None:
         given["lab"] = lab
         if makes is not None and not given.keys().isdisjoint(("artifact", "watcher")):
-            if makes.kwargs.get("recorded"):
+            if makes.kwargs["recorded"]:
                 lab.record()
+            if makes.kwargs["on_graph"]:
+                lab.match_late()
             artifact = await lab.make(*makes.args)
             made = {"artifact": artifact, "watcher": lab.watch(artifact) if "watcher" in given else None}
             given.update((name, thing) for name, thing in made.items() if name in given)

@@ -17,7 +17,7 @@ from jacaros.artifacts import (
     OperationRequest,
 )
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.node import Capability, Sample
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world import SimNode, World
@@ -28,9 +28,14 @@ TWIST = "geometry_msgs/msg/Twist"
 STANDSTILL = (0.0, 0.0)
 
 
-def made(kind: type[Artifact], *arguments: object, recorded: bool = False) -> pytest.MarkDecorator:
-    """The mark of a test whose parameters are an `artifact` of that kind, and the `watcher` that observes it."""
-    return pytest.mark.makes.with_args(kind, *arguments, recorded=recorded)
+def made(
+    kind: type[Artifact], *arguments: object, recorded: bool = False, on_graph: bool = False
+) -> pytest.MarkDecorator:
+    """The mark of a test whose parameters are an `artifact` of that kind, and the `watcher` that observes it.
+
+    *on_graph*: a subscription that the test makes later is like one that is matched late.
+    """
+    return pytest.mark.makes.with_args(kind, *arguments, recorded=recorded, on_graph=on_graph)
 
 
 class Watcher:
@@ -89,6 +94,12 @@ class Run:
         return str(self.outcome.reason)
 
     @property
+    def message(self) -> str:
+        """What the failure says to people."""
+        assert self.outcome is not None
+        return self.outcome.message or ""
+
+    @property
     def ok(self) -> bool:
         """Whether it has succeeded; it must have ended."""
         assert self.outcome is not None
@@ -117,6 +128,10 @@ class Lab:
 
     def take_log(self, text: str) -> None:
         self.logged.append(text)
+
+    def match_late(self) -> None:
+        """From now on a subscription that a test makes is like one that is matched late."""
+        self.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
 
     def record(self, topic: str = "/cmd_vel") -> None:
         self.backend.subscription(topic, TWIST, self._command)

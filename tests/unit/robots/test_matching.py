@@ -11,12 +11,7 @@ from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
 from jacaros.robots.ros.backend import Sample
 from jacaros.robots.ros.guarded import guarded_by
-from jacaros.robots.ros.node import Capability, Publisher
-
-
-def on_a_graph(lab: Lab) -> None:
-    """From now on a subscription that a test makes is like one that is matched late."""
-    lab.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+from jacaros.robots.ros.node import Publisher
 
 
 def driving(lab: Lab) -> list[float]:
@@ -29,7 +24,7 @@ def warnings(lab: Lab) -> list[str]:
 
 
 async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     motion = lab.begin(wheels, "move", 25)
     await lab.sleep(1.0)
@@ -43,7 +38,7 @@ async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_la
 
 
 async def test_a_motion_begins_immediately_when_a_base_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     lab.record()
     await lab.do(await lab.make(ArtCmdVel), "move", 4)
     await lab.sleep(0.1)
@@ -57,7 +52,7 @@ async def test_in_the_graph_inside_the_process_nothing_waits(lab: Lab) -> None:
 
 
 async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     for ends in (3.5, 7.0):
         await lab.do(wheels, "move", 4)
@@ -70,7 +65,7 @@ async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab) -> None:
 
 
 async def test_a_base_that_left_is_waited_for_again(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     base = lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", lambda sample: None)
     await lab.do(wheels, "move", 4)
@@ -84,7 +79,7 @@ async def test_a_base_that_left_is_waited_for_again(lab: Lab) -> None:
 
 
 async def test_a_motion_fails_by_option_when_no_base_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,)))
     run = await lab.call(wheels, "move", 4)
     assert lab.clock.elapsed == pytest.approx(1.0)
@@ -93,7 +88,7 @@ async def test_a_motion_fails_by_option_when_no_base_is_matched(lab: Lab) -> Non
 
 
 async def test_a_motion_that_waits_for_its_base_is_aborted_immediately(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     motion = lab.begin(wheels, "move", 25)
     await lab.sleep(0.5)
@@ -104,7 +99,7 @@ async def test_a_motion_that_waits_for_its_base_is_aborted_immediately(lab: Lab)
 
 
 async def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     motion = lab.begin(wheels, "move", 25)
     await lab.sleep(0.5)
@@ -117,7 +112,7 @@ async def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives
 async def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_when_it_is_resumed(
     lab: Lab,
 ) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     wheels = await lab.make(ArtCmdVel)
     motion = lab.begin(wheels, "move", 4)
     await lab.sleep(0.5)
@@ -132,7 +127,7 @@ async def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_whe
 
 
 async def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     household = await lab.make(ArtCleaning)
     work = lab.begin(household, "clean", 3)
     await lab.sleep(1.0)
@@ -147,7 +142,7 @@ async def test_the_first_task_of_the_household_is_published_when_its_listener_is
 
 
 async def test_a_household_without_subscribers_is_delayed_once(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     household = await lab.make(ArtCleaning)
     await lab.do(household, "clean", 1)
     assert lab.clock.elapsed == pytest.approx(5.5)
@@ -199,7 +194,7 @@ def test_a_message_that_is_suspended_while_it_waits_does_not_block_the_others() 
 
 
 async def test_the_first_command_waits_until_the_guard_has_found_the_base(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     guarded = guarded_by(lab.backend)
     guarded.found["guard"] = {}
     lab.record()
@@ -215,7 +210,7 @@ async def test_the_first_command_waits_until_the_guard_has_found_the_base(lab: L
 
 
 async def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     guarded_by(lab.backend).found["guard"] = {"/cmd_vel": 1}
     lab.record()
     lab.record()
@@ -225,7 +220,7 @@ async def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_no
 
 
 async def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     guarded_by(lab.backend).found["guard"] = {"/other": 1}
     lab.record()
     wheels = await lab.make(ArtCmdVel)
@@ -240,7 +235,7 @@ async def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_repor
 
 
 async def test_topics_that_drive_nothing_do_not_wait_for_a_guard(lab: Lab) -> None:
-    on_a_graph(lab)
+    lab.match_late()
     guarded_by(lab.backend).found["guard"] = {}
     household = await lab.make(ArtCleaning)
     lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", lambda sample: None)
