@@ -80,8 +80,10 @@ class Watcher:
 class Run:
     """An operation that was asked for."""
 
-    def __init__(self, execution: OperationExecution, done: "asyncio.Future[OperationOutcome]") -> None:
-        self.execution, self.done = execution, done
+    def __init__(
+        self, execution: OperationExecution, done: "asyncio.Future[OperationOutcome]", clock: VirtualClock
+    ) -> None:
+        self.execution, self.done, self.clock = execution, done, clock
 
     @property
     def outcome(self) -> OperationOutcome | None:
@@ -104,6 +106,16 @@ class Run:
         """Whether it has succeeded; it must have ended."""
         assert self.outcome is not None
         return self.outcome.ok
+
+    async def pause(self, seconds: float) -> None:
+        """Suspend its intention, and wait that long."""
+        self.execution.pause()
+        await self.clock.sleep(seconds)
+
+    async def drop(self, seconds: float) -> None:
+        """Drop its intention, and wait that long."""
+        self.execution.cancel()
+        await self.clock.sleep(seconds)
 
     async def resumed(self) -> None:
         """Resume its suspended intention, and wait for its end."""
@@ -167,7 +179,7 @@ class Lab:
     def begin(self, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
         done: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
         request = OperationRequest(artifact, operation, arguments, "tester", None, done.set_result)
-        return Run(self.workspace.execute(request), done)
+        return Run(self.workspace.execute(request), done, self.clock)
 
     async def begun(self, seconds: float, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
         """Begin an operation, and wait that many seconds."""

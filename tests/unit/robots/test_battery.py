@@ -292,8 +292,7 @@ async def test_agent_and_page_read_the_charge_of_a_driver_alike(lab: Lab) -> Non
     lab.backend.subscription("/battery_state", "sensor_msgs/msg/BatteryState", seen.hear_battery)
     watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
     pose = SimpleNamespace(
-        position=SimpleNamespace(x=0.0, y=0.0, z=0.0),
-        orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0),
+        position=SimpleNamespace(x=0.0, y=0.0, z=0.0), orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     )
     seen.odometry = SimpleNamespace(header=SimpleNamespace(frame_id="odom"), pose=SimpleNamespace(pose=pose))
     for told, percent in ((0.5, 50), (1.2, 100), (80.0, 80), (1.4, 1), (1.0, 1)):

@@ -50,8 +50,7 @@ async def test_work_rests_while_the_intention_is_suspended(lab: Lab) -> None:
     tasks = heard(lab)
     cleaner = await lab.make(ArtCleaning)
     cleaning = await lab.begun(0.4, cleaner, "clean", 3)
-    cleaning.execution.pause()
-    await lab.sleep(10)
+    await cleaning.pause(10)
     assert tasks == ["scrub tub bathroom"]
     cleaning.execution.resume()
     await lab.sleep(0.59)
@@ -59,8 +58,7 @@ async def test_work_rests_while_the_intention_is_suspended(lab: Lab) -> None:
     await lab.sleep(0.02)
     assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
     for _ in range(3):
-        cleaning.execution.pause()
-        await lab.sleep(0.5)
+        await cleaning.pause(0.5)
         cleaning.execution.resume()
         await lab.sleep(0.5)
     await cleaning.done
@@ -80,13 +78,11 @@ async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_en
     await lab.sleep(0.1)  # shorter than the sleep that goes on
     cleaning.execution.resume()
     await lab.sleep(2.0)
-    cleaning.execution.pause()
-    await lab.sleep(10)
+    await cleaning.pause(10)
     await cleaning.resumed()
     assert tools == [(0.4, ""), (0.5, "scrub"), (2.5, ""), (12.5, "mop"), (13.6, "")]
     dropped = await lab.begun(1, cleaner, "clean", 1)
-    dropped.execution.cancel()
-    await lab.sleep(5)
+    await dropped.drop(5)
     assert tools[5:] == [(14.6, "")]
 
 
@@ -158,8 +154,7 @@ async def test_other_operations_are_served_while_a_room_is_cleaned(lab: Lab) -> 
     await lab.do(cleaner, "updateWhereAmI")
     assert lab.clock.elapsed == 0.5
     assert watcher.holds("scrub") == [("Tub", "bathroom")]
-    cleaning.execution.cancel()
-    await lab.sleep(5)
+    await cleaning.drop(5)
     assert watcher.holds("mop") == [("", "")], "a dropped cleaning does nothing more"
 
 

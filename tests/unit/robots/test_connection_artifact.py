@@ -104,10 +104,7 @@ async def test_frames_are_looked_up_in_metres_and_degrees(lab: Lab) -> None:
         {
             "header": {"frame_id": "map", "stamp": lab.clock.now()},
             "child_frame_id": "shelf",
-            "transform": {
-                "translation": {"x": 1.0, "y": -2.0, "z": 0.0},
-                "rotation": {"z": half, "w": half},
-            },
+            "transform": {"translation": {"x": 1.0, "y": -2.0, "z": 0.0}, "rotation": {"z": half, "w": half}},
         },
         static=True,
     )

@@ -17,11 +17,7 @@ pytestmark = made(ArtBumper)
 
 async def test_a_bumper_is_a_state_of_its_side_and_a_signal_when_it_is_pressed(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtBumper))
-    assert watcher.holds("bumper") == [
-        ("left", "released"),
-        ("center", "released"),
-        ("right", "released"),
-    ]
+    assert watcher.holds("bumper") == [("left", "released"), ("center", "released"), ("right", "released")]
     send(lab, "/mobile_base/events/bumper", "BumperEvent", bumper=2, state=1)
     await lab.sleep(0.1)
     assert ("right", "pressed") in watcher.holds("bumper")

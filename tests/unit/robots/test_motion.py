@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from robot_lab import STANDSTILL, Lab, Watcher, apart, assert_at, in_lab, made
+from robot_lab import STANDSTILL, Lab, Run, Watcher, apart, assert_at, made
 
 from jacaros.artifacts import ArtifactId, OperationFailed, Out, Structure
 from jacaros.robots.artifacts.velocity import (
@@ -88,14 +88,8 @@ async def test_left_and_right_and_reverse_have_operations_of_their_own(lab: Lab)
 
 async def test_driving_to_poses_ends_at_the_poses(lab: Lab) -> None:
     artifact = await lab.make(ArtCmdVelMuxAndOdometry)
-    for x, y, heading in [
-        (2, 0, 90),
-        (2, 2, 180),
-        (1, 1, 0),
-        (1.02, 1, -30),
-        (-2, 1.5, 179),
-        (0, 0, -179),
-    ]:
+    poses = [(2, 0, 90), (2, 2, 180), (1, 1, 0), (1.02, 1, -30), (-2, 1.5, 179), (0, 0, -179)]
+    for x, y, heading in poses:
         await lab.do(artifact, "goTo", x, y, heading)
         assert_at(lab, x, y, heading, metres=0.02, degrees=0.5)
     await lab.do(artifact, "driveTo", 0.5, 0.5)
@@ -117,24 +111,18 @@ async def test_a_disturbed_heading_is_corrected_while_driving(lab: Lab) -> None:
     assert_at(lab, 2, 0, 0, metres=0.01, degrees=2)
 
 
-def test_noise_of_odometry_does_not_keep_a_motion_from_ending() -> None:
-    world = """
-name: noisy
+NOISY = """
 bounds: {from: [-5, -5], to: [5, 5]}
-robots:
-  - name: turtlebot
-    pose: {x: 0, y: 0, yaw_degrees: 0}
-    odometry: {noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}
+robots: [{name: r, odometry: {noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}}]
 """
 
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtCmdVel)
-        for _ in range(4):
-            await lab.do(artifact, "moveForward", 1)
-            await lab.do(artifact, "rotate", 90)
-        assert_at(lab, 0, 0, 0, metres=0.2, degrees=15)
 
-    in_lab(body, world)
+@pytest.mark.world(NOISY)
+async def test_noise_of_odometry_does_not_keep_a_motion_from_ending(lab: Lab, artifact: ArtifactId) -> None:
+    for _ in range(4):
+        await lab.do(artifact, "moveForward", 1)
+        await lab.do(artifact, "rotate", 90)
+    assert_at(lab, 0, 0, 0, metres=0.2, degrees=15)
 
 
 # Commands.
@@ -217,14 +205,14 @@ async def test_the_cruise_speed_is_an_option(lab: Lab, artifact: ArtifactId) -> 
 # Ends.
 
 
-async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab: Lab) -> None:
+@made(ArtCmdVelMuxAndOdometry)
+async def test_abort_interrupts_immediately_and_reports_the_covered_distance(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     """Defect 1: abortMoving waited until the motion was over; defect 5: so did every other operation."""
     lab.record("/cmd_vel_mux/input/navi")
-    artifact = await lab.make(ArtCmdVelMuxAndOdometry)
-    watcher = lab.watch(artifact)
     moving = await lab.begun(2, artifact, "moveForward", 2)
-    before = lab.pose()[0]
-    begin = lab.clock.elapsed
+    before, begin = lab.pose()[0], lab.clock.elapsed
     await lab.do(artifact, "getCurrentOdom")
     await lab.do(artifact, "abortMoving")
     await moving.done
@@ -237,17 +225,24 @@ async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab
     assert lab.pose()[0] < before + 0.3
 
 
-async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+def amount(run: Run, functor: str) -> object:
+    """The argument of a failure reason."""
+    assert run.outcome is not None
+    reason = run.outcome.reason
+    assert isinstance(reason, Structure)
+    assert reason.functor == functor
+    return reason.arguments[0]
+
+
+async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     await lab.do(artifact, "abortMoving")
     turning = await lab.begun(1.5, artifact, "rotate", -180)
     heading = lab.pose()[2]
     await lab.do(artifact, "abortMoving")
     await turning.done
-    assert turning.outcome is not None
-    assert isinstance(turning.outcome.reason, Structure)
-    assert turning.outcome.reason.functor == "aborted"
-    assert turning.outcome.reason.arguments[0] == pytest.approx(-heading, abs=5)
+    assert amount(turning, "aborted") == pytest.approx(-heading, abs=5)
     await lab.do(artifact, "moveForward", 0.2)
 
 
@@ -256,8 +251,7 @@ async def test_dropping_a_motion_stops_the_robot_without_an_outcome(
 ) -> None:
     moving = await lab.begun(1.5, artifact, "moveForward", 2)
     begin = lab.clock.elapsed
-    moving.execution.cancel()
-    await lab.sleep(2)
+    await moving.drop(2)
     assert not moving.done.done()
     assert lab.last_command == STANDSTILL
     assert lab.commands[-1][0] == pytest.approx(begin)
@@ -273,52 +267,33 @@ async def test_disposing_the_artifact_stops_the_robot(lab: Lab, artifact: Artifa
     assert not moving.ok
     await lab.sleep(1)
     assert lab.last_command == STANDSTILL
-    other = await lab.make(ArtCmdVel)
-    await lab.do(other, "rotate", 10)
+    await lab.do(await lab.make(ArtCmdVel), "rotate", 10)
 
 
-async def test_the_end_of_the_process_stops_the_robot(lab: Lab, artifact: ArtifactId) -> None:
+@pytest.mark.parametrize("drives", [True, False])
+async def test_the_end_of_the_process_stops_the_robot_unless_it_stands(
+    lab: Lab, artifact: ArtifactId, drives: bool
+) -> None:
     """The backend runs its exit hooks at signals and at the end; closing it does the same."""
-    lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
-    assert lab.last_command != STANDSTILL
+    if drives:
+        await lab.begun(1.5, artifact, "moveForward", 2)
+        assert lab.last_command != STANDSTILL
     lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # of the memory backend
     await lab.sleep(0.01)
+    assert lab.last_command == STANDSTILL if drives else lab.commands == []
+
+
+WALL = "bounds: {from: [-1, -1], to: [1, 1]}\nborder: walls\nrobots: [{name: turtlebot}]\n"
+
+
+@pytest.mark.world(WALL)
+async def test_a_motion_against_a_wall_fails_as_blocked(lab: Lab, artifact: ArtifactId) -> None:
+    blocked = await lab.call(artifact, "moveForward", 2)
+    assert amount(blocked, "blocked") == pytest.approx(lab.pose()[0], abs=0.02)
+    assert lab.clock.elapsed < 8
+    await lab.sleep(0.1)
     assert lab.last_command == STANDSTILL
-
-
-async def test_a_standing_robot_gets_no_command_at_the_end_of_the_process(lab: Lab) -> None:
-    lab.record()
-    await lab.make(ArtCmdVel)
-    lab.backend.lifetime.stop()  # type: ignore[attr-defined]
-    await lab.sleep(0.01)
-    assert lab.commands == []
-
-
-def test_a_motion_against_a_wall_fails_as_blocked() -> None:
-    world = """
-name: wall
-bounds: {from: [-1, -1], to: [1, 1]}
-border: walls
-robots:
-  - name: turtlebot
-    pose: {x: 0, y: 0, yaw_degrees: 0}
-"""
-
-    async def body(lab: Lab) -> None:
-        lab.record()
-        artifact = await lab.make(ArtCmdVel)
-        blocked = await lab.call(artifact, "moveForward", 2)
-        assert blocked.outcome is not None
-        assert isinstance(blocked.outcome.reason, Structure)
-        assert blocked.outcome.reason.functor == "blocked"
-        assert blocked.outcome.reason.arguments[0] == pytest.approx(lab.pose()[0], abs=0.02)
-        assert lab.clock.elapsed < 8
-        await lab.sleep(0.1)
-        assert lab.last_command == STANDSTILL
-        await lab.do(artifact, "moveReverse", 0.5)
-
-    in_lab(body, world)
+    await lab.do(artifact, "moveReverse", 0.5)
 
 
 @pytest.mark.world(None)
@@ -362,22 +337,18 @@ async def test_the_robot_stands_while_odometry_is_lost_and_then_continues(lab: L
     assert lab.speed() == (0, 0)
 
 
-async def test_a_motion_that_takes_too_long_fails(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel, Structure("timeout", (2,)))
-    failed = await lab.call(artifact, "moveForward", 2.5)
-    assert failed.reason == "timeout(2)"
+@made(ArtCmdVel, Structure("timeout", (2,)))
+async def test_a_motion_that_takes_too_long_fails(lab: Lab, artifact: ArtifactId) -> None:
+    assert (await lab.call(artifact, "moveForward", 2.5)).reason == "timeout(2)"
     await lab.sleep(1)
     assert lab.speed() == (0, 0)
 
 
 async def test_nonsense_numbers_are_refused(lab: Lab, artifact: ArtifactId) -> None:
-    for operation, arguments in [
-        ("moveForward", (math.inf,)),
-        ("rotate", (math.nan,)),
-        ("goTo", (0, math.nan, 0)),
-    ]:
+    nonsense = [("moveForward", (math.inf,)), ("rotate", (math.nan,)), ("goTo", (0, math.nan, 0))]
+    for operation, arguments in nonsense:
         assert (await lab.call(artifact, operation, *arguments)).reason.startswith("wrong_number(")
-    assert not (await lab.call(artifact, "moveForward", "far")).outcome.ok  # type: ignore[union-attr]
+    assert not (await lab.call(artifact, "moveForward", "far")).ok
 
 
 # Odometry of the moving artifacts.

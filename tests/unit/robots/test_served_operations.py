@@ -130,11 +130,7 @@ async def test_a_failing_goal_is_aborted_with_the_code_of_its_reason(lab: Lab) -
     await lab.make(Desk, "r1")
     goal = await lab.backend.action_client("/r1/go", FOLLOW).send({}, timeout=5)
     outcome = await goal.outcome(5)
-    assert (outcome.status, outcome.text, outcome.result.error_code) == (
-        GoalStatus.ABORTED,
-        "no path",
-        203,
-    )
+    assert (outcome.status, outcome.text, outcome.result.error_code) == (GoalStatus.ABORTED, "no path", 203)
 
 
 async def test_clients_are_notified_when_the_artifact_is_disposed(lab: Lab, artifact: ArtifactId) -> None:

@@ -258,10 +258,7 @@ def _problems(entry: str) -> list[str]:
         ("x: {count: hit, within: 1, lateness: 1}", "40: `count` waits for nothing | leave `lateness` out"),
         ("x: {absent: hit, for: 1, wait: 2}", "28: `absent` has no option `wait` | options: for"),
         ("x: {together: [a], within: 1}", "6: `together` needs two streams or more | write them as a list"),
-        (
-            "x: {together: [a, a], within: 1}",
-            "6: `together` names a stream twice | name each stream once",
-        ),
+        ("x: {together: [a, a], within: 1}", "6: `together` names a stream twice | name each stream once"),
         ("x: hit", "6: `x` has no operator | write one, such as"),
         (
             "a: {count: hit, within: 1}",

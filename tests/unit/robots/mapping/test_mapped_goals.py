@@ -82,8 +82,7 @@ async def test_a_cancelled_operation_cancels_its_goal(lab: Lab, artifact: Artifa
     watcher = lab.watch(artifact)
     run = await lab.begun(1.5, artifact, "count", 9, 1, Out())
     assert watcher.holds("at") == [(1,)]
-    run.execution.cancel()
-    await lab.sleep(0.1)
+    await run.drop(0.1)
     assert events == ["begin", "cancelled"]
     assert watcher.holds("at") == []
 
@@ -123,8 +122,7 @@ async def test_a_suspended_goal_is_cancelled_and_sent_again_unless_it_goes_on(
 ) -> None:
     events, out = offer(lab), Out()
     run = await lab.begun(1.5, await lab.make(count(more)), "count", 3, 1, out)
-    run.execution.pause()
-    await lab.sleep(1)
+    await run.pause(1)
     assert events == while_suspended
     await run.resumed()
     assert events == afterwards
@@ -260,8 +258,7 @@ async def test_a_goal_is_paused_and_resumed_by_services(lab: Lab, type_key: str)
     artifact = await lab.make(held(type_key))
     server, out = Holding(lab), Out()
     run = await lab.begun(1.5, artifact, "count", 4, 1, out)
-    run.execution.pause()
-    await lab.sleep(10)
+    await run.pause(10)
     assert server.held
     await run.resumed()
     assert lab.clock.elapsed == pytest.approx(14)
@@ -276,8 +273,7 @@ async def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again(
 ) -> None:
     server = Holding(lab, agrees=False)
     run = await lab.begun(0.5, artifact, "count", 2, 1, Out())
-    run.execution.pause()
-    await lab.sleep(5)
+    await run.pause(5)
     assert server.cancelled == 1
     told = "could not be paused: OperationFailed: service /hold refused: no brakes"
     assert any(told in line for line in lab.logged)
@@ -298,8 +294,7 @@ async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab, 
     held = lab.hear("hold", "std_msgs/msg/Bool")
     offer(lab)
     run = await lab.begun(0.5, artifact, "count", 3, 1, Out())
-    run.execution.pause()
-    await lab.sleep(1)
+    await run.pause(1)
     assert [each.data for each in held] == [True]
     assert await own.get("speed") == 0
     await run.resumed()
@@ -310,8 +305,6 @@ async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab, 
 async def test_a_dropped_goal_leaves_no_paused_server_behind(lab: Lab, artifact: ArtifactId) -> None:
     server = Holding(lab)
     run = await lab.begun(0.5, artifact, "count", 4, 1, Out())
-    run.execution.pause()
-    await lab.sleep(1)
-    run.execution.cancel()
-    await lab.sleep(1)
+    await run.pause(1)
+    await run.drop(1)
     assert (server.asked, server.held, server.cancelled) == ([True, False], False, 1)

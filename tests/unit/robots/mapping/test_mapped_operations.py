@@ -101,8 +101,7 @@ async def test_a_motion_that_is_suspended_while_it_waits_does_not_stop_the_one_t
 ) -> None:
     first = lab.begin(artifact, "drive", 0.5, 0, 2)
     second = await lab.begun(1.05, artifact, "drive", -0.5, 0, 1)
-    second.execution.pause()
-    await lab.sleep(0.5)
+    await second.pause(0.5)
     assert STANDSTILL not in [command for _, *command in lab.commands]
     assert all(speed == 0.5 for _, speed, _ in lab.commands)
     second.execution.cancel()

@@ -40,11 +40,7 @@ Lab.play = staticmethod(play)
 
 def stamped(x: float, stamp: float, child: str = "base", **rotation: float) -> dict[str, Any]:
     transform = {"translation": {"x": x}, "rotation": rotation}
-    return {
-        "header": {"frame_id": "odom", "stamp": stamp},
-        "child_frame_id": child,
-        "transform": transform,
-    }
+    return {"header": {"frame_id": "odom", "stamp": stamp}, "child_frame_id": child, "transform": transform}
 
 
 async def test_a_short_wait_is_silent_and_a_long_one_is_logged(lab: Lab) -> None:

@@ -219,9 +219,7 @@ def test_served_worlds_write_their_ground_truth_and_it_reads_back_the_same(tmp_p
     assert records[-1] == {"kind": "end", "time": 5.0}
 
 
-def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(
-    tmp_path: Path,
-) -> None:
+def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(tmp_path: Path) -> None:
     path, world = tmp_path / "truth.jsonl", World.load("empty")
     with GroundTruthFile(path, world, 0.0):
         world.command("turtlebot", 0.3, 0.0)
