@@ -135,6 +135,7 @@ class Lab:
         self.environment = Environment(clock, {"ros": backend}, log=self.take_log)
         self.workspace = self.environment.workspace("/main")
         self.logged: list[str] = []
+        self.nodes: list[Backend] = []
         self.commands: list[tuple[float, float, float]] = []
         self.sim = SimNode(world, backend, clock) if world is not None else None
 
@@ -155,6 +156,13 @@ class Lab:
     @property
     def last_command(self) -> tuple[float, float]:
         return self.commands[-1][1:]
+
+    async def node(self, name: str) -> Any:
+        """Another node of the graph, which is closed with the laboratory."""
+        node = open_backend("memory", self.clock, name, log=lambda text: None, graph=self.backend.graph)  # type: ignore[attr-defined]
+        await node.start()
+        self.nodes.append(node)
+        return node
 
     async def make(self, kind: type[Artifact], *arguments: object, name: str = "") -> ArtifactId:
         number = len(self.workspace.artifacts())
@@ -244,6 +252,8 @@ def in_lab(body: Callable[[Lab], Awaitable[Any]], world: str | None = "empty") -
             await body(lab)
         finally:
             await lab.environment.close()
+            for node in lab.nodes:
+                await node.close()
             if lab.sim is not None:
                 lab.sim.close()
             await backend.close()

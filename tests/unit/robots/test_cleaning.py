@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 import pytest
-from robot_lab import Lab, made
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import ArtifactId, Environment, Out, Structure
 from jacaros.artifacts.env.errors import OperationFailed
@@ -21,14 +21,13 @@ def heard(lab: Lab, topic: str = "/cleaning/task") -> list[str]:
 pytestmark = made(ArtCleaning)
 
 
-async def test_each_room_has_its_tasks_and_takes_its_time(lab: Lab) -> None:
-    tasks = heard(lab)
-    cleaner = await lab.make(ArtCleaning)
-    watcher = lab.watch(cleaner)
-    times = []
+async def test_each_room_has_its_tasks_and_takes_its_time(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    tasks, times = heard(lab), []
     for room in range(4):
         begin = lab.clock.elapsed
-        await lab.do(cleaner, "clean", room)
+        await lab.do(artifact, "clean", room)
         times.append(round(lab.clock.elapsed - begin, 6))
     assert times == [2.5, 2.5, 2.5, 3.5]
     assert watcher.changes[4:] == [
@@ -37,19 +36,14 @@ async def test_each_room_has_its_tasks_and_takes_its_time(lab: Lab) -> None:
         ("scrub", ("Tub", "bathroom")),
         ("mop", ("Floor", "bathroom")),
     ]
-    assert tasks == [
-        "vacuum carpet living_room",
-        "mop floor kitchen",
-        "scrub tub bathroom",
-        "mop floor bathroom",
-    ]
+    bathroom = ["scrub tub bathroom", "mop floor bathroom"]
+    assert tasks == ["vacuum carpet living_room", "mop floor kitchen", *bathroom]
     assert watcher.signals == []
 
 
-async def test_work_rests_while_the_intention_is_suspended(lab: Lab) -> None:
+async def test_work_rests_while_the_intention_is_suspended(lab: Lab, artifact: ArtifactId) -> None:
     tasks = heard(lab)
-    cleaner = await lab.make(ArtCleaning)
-    cleaning = await lab.begun(0.4, cleaner, "clean", 3)
+    cleaning = await lab.begun(0.4, artifact, "clean", 3)
     await cleaning.pause(10)
     assert tasks == ["scrub tub bathroom"]
     cleaning.execution.resume()
@@ -65,23 +59,23 @@ async def test_work_rests_while_the_intention_is_suspended(lab: Lab) -> None:
     assert round(lab.clock.elapsed, 2) == 10 + 3 * 0.5 + 3.5
 
 
-async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_end(lab: Lab) -> None:
+async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_end(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     tools: list[tuple[float, str]] = []
     lab.backend.subscription(
         "/cleaning/tool",
         "std_msgs/msg/String",
         lambda sample: tools.append((round(lab.clock.elapsed, 2), sample.message.data)),
     )
-    cleaner = await lab.make(ArtCleaning)
-    cleaning = await lab.begun(0.4, cleaner, "clean", 3)
-    cleaning.execution.pause()
-    await lab.sleep(0.1)  # shorter than the sleep that goes on
+    cleaning = await lab.begun(0.4, artifact, "clean", 3)
+    await cleaning.pause(0.1)  # shorter than the sleep that goes on
     cleaning.execution.resume()
     await lab.sleep(2.0)
     await cleaning.pause(10)
     await cleaning.resumed()
     assert tools == [(0.4, ""), (0.5, "scrub"), (2.5, ""), (12.5, "mop"), (13.6, "")]
-    dropped = await lab.begun(1, cleaner, "clean", 1)
+    dropped = await lab.begun(1, artifact, "clean", 1)
     await dropped.drop(5)
     assert tools[5:] == [(14.6, "")]
 
@@ -95,40 +89,36 @@ async def test_the_world_logs_each_task_with_the_true_place(lab: Lab) -> None:
     assert event.data == {"task": "mop floor kitchen", "room": "hallway"}
 
 
-async def test_rooms_follow_each_other_and_one_can_ask_where_one_is(lab: Lab) -> None:
+async def test_rooms_follow_each_other_and_one_can_ask_where_one_is(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     """Defect 9: programs removed atRoom themselves, without effect; here an update is enough."""
-    cleaner = await lab.make(ArtCleaning)
-    watcher = lab.watch(cleaner)
-    for _ in range(5):
-        await lab.do(cleaner, "updateWhereAmI")
-    assert watcher.values("atRoom") == [(0,), (1,), (2,), (3,), (0,), (1,)]
-    assert watcher.holds("atRoom") == [(1,)]
-    await lab.do(cleaner, "whereAmI")
-    assert watcher.values("atRoom")[-2:] == [(1,), (1,)]
-    room, name = Out(), Out()
-    await lab.do(cleaner, "whereAmI", room, name)
-    assert (room.value, name.value) == (1, "living Room")
-
-
-async def test_a_room_that_is_not_there_is_refused(lab: Lab, artifact: ArtifactId) -> None:
     assert (await lab.call(artifact, "clean", 4)).reason == "unknown_room(4)"
     assert lab.clock.elapsed == 0
+    for _ in range(5):
+        await lab.do(artifact, "updateWhereAmI")
+    assert watcher.values("atRoom") == [(0,), (1,), (2,), (3,), (0,), (1,)]
+    assert watcher.holds("atRoom") == [(1,)]
+    await lab.do(artifact, "whereAmI")
+    assert watcher.values("atRoom")[-2:] == [(1,), (1,)]
+    room, name = Out(), Out()
+    await lab.do(artifact, "whereAmI", room, name)
+    assert (room.value, name.value) == (1, "living Room")
 
 
 STUDY = Structure("room", ("study", [Structure("vacuum", ("Carpet",)), Structure("mop", ("Floor",))]))
 
 
-async def test_a_house_may_have_more_rooms(lab: Lab) -> None:
+@made(ArtCleaning, Structure("more_rooms", ([STUDY],)))
+async def test_a_house_may_have_more_rooms(lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
     tasks = heard(lab)
-    cleaner = await lab.make(ArtCleaning, Structure("more_rooms", ([STUDY],)))
-    watcher = lab.watch(cleaner)
     for _ in range(5):
-        await lab.do(cleaner, "updateWhereAmI")
+        await lab.do(artifact, "updateWhereAmI")
     assert watcher.values("atRoom") == [(0,), (1,), (2,), (3,), (4,), (0,)]
-    await lab.do(cleaner, "clean", 4)
+    await lab.do(artifact, "clean", 4)
     assert tasks == ["vacuum carpet study", "mop floor study"]
     assert watcher.holds("vacuum") == [("Carpet", "study")]
-    assert (await lab.call(cleaner, "clean", 5)).reason == "unknown_room(5)"
+    assert (await lab.call(artifact, "clean", 5)).reason == "unknown_room(5)"
 
 
 WRONG_ROOMS: list[tuple[object, str]] = [
