@@ -65,12 +65,7 @@ class Navigator(RosArtifact):
     async def go_or_wait(self, x: float) -> None:
         """Drive; paused while suspended."""
         await self.act(
-            self.goer,
-            {"x": x},
-            timeout=self.limit,
-            suspend="pause",
-            pause=self._pause,
-            resume=self._resume,
+            self.goer, {"x": x}, timeout=self.limit, suspend="pause", pause=self._pause, resume=self._resume
         )
 
     async def _pause(self) -> None:

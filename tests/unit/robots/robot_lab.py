@@ -5,6 +5,8 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+import pytest
+
 from jacaros.artifacts import (
     Artifact,
     ArtifactId,
@@ -15,14 +17,25 @@ from jacaros.artifacts import (
     OperationRequest,
 )
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.node import Capability, Sample
 from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world import SimNode, World
 from jacaros.robots.world.files.world import load_world
 from jacaros.runtime.clock import VirtualClock, run
 
 TWIST = "geometry_msgs/msg/Twist"
 STANDSTILL = (0.0, 0.0)
+
+
+def made(
+    kind: type[Artifact], *arguments: object, recorded: bool = False, on_graph: bool = False
+) -> pytest.MarkDecorator:
+    """The mark of a test whose parameters are an `artifact` of that kind, and the `watcher` that observes it.
+
+    *on_graph*: a subscription that the test makes later is like one that is matched late.
+    """
+    return pytest.mark.makes.with_args(kind, *arguments, recorded=recorded, on_graph=on_graph)
 
 
 class Watcher:
@@ -67,8 +80,10 @@ class Watcher:
 class Run:
     """An operation that was asked for."""
 
-    def __init__(self, execution: OperationExecution, done: "asyncio.Future[OperationOutcome]") -> None:
-        self.execution, self.done = execution, done
+    def __init__(
+        self, execution: OperationExecution, done: "asyncio.Future[OperationOutcome]", clock: VirtualClock
+    ) -> None:
+        self.execution, self.done, self.clock = execution, done, clock
 
     @property
     def outcome(self) -> OperationOutcome | None:
@@ -79,6 +94,33 @@ class Run:
         """The failure reason as text."""
         assert self.outcome is not None
         return str(self.outcome.reason)
+
+    @property
+    def message(self) -> str:
+        """What the failure says to people."""
+        assert self.outcome is not None
+        return self.outcome.message or ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether it has succeeded; it must have ended."""
+        assert self.outcome is not None
+        return self.outcome.ok
+
+    async def pause(self, seconds: float) -> None:
+        """Suspend its intention, and wait that long."""
+        self.execution.pause()
+        await self.clock.sleep(seconds)
+
+    async def drop(self, seconds: float) -> None:
+        """Drop its intention, and wait that long."""
+        self.execution.cancel()
+        await self.clock.sleep(seconds)
+
+    async def resumed(self) -> None:
+        """Resume its suspended intention, and wait for its end."""
+        self.execution.resume()
+        await self.done
 
 
 class Lab:
@@ -93,11 +135,16 @@ class Lab:
         self.environment = Environment(clock, {"ros": backend}, log=self.take_log)
         self.workspace = self.environment.workspace("/main")
         self.logged: list[str] = []
+        self.nodes: list[Backend] = []
         self.commands: list[tuple[float, float, float]] = []
         self.sim = SimNode(world, backend, clock) if world is not None else None
 
     def take_log(self, text: str) -> None:
         self.logged.append(text)
+
+    def match_late(self) -> None:
+        """From now on a subscription that a test makes is like one that is matched late."""
+        self.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
 
     def record(self, topic: str = "/cmd_vel") -> None:
         self.backend.subscription(topic, TWIST, self._command)
@@ -110,9 +157,27 @@ class Lab:
     def last_command(self) -> tuple[float, float]:
         return self.commands[-1][1:]
 
+    async def node(self, name: str) -> Any:
+        """Another node of the graph, which is closed with the laboratory."""
+        node = open_backend("memory", self.clock, name, log=lambda text: None, graph=self.backend.graph)  # type: ignore[attr-defined]
+        await node.start()
+        self.nodes.append(node)
+        return node
+
     async def make(self, kind: type[Artifact], *arguments: object, name: str = "") -> ArtifactId:
         number = len(self.workspace.artifacts())
         return await self.workspace.make_artifact(name or f"a{number}", kind, arguments)
+
+    def say(self, topic: str, kind: str, *qos: QoS, **fields: object) -> None:
+        """Publish one message."""
+        publisher = self.backend.publisher(topic, kind, *qos)
+        publisher.publish(publisher.message(**fields))
+
+    def hear(self, topic: str, kind: str) -> list[Any]:
+        """The messages of a topic from now on."""
+        heard: list[Any] = []
+        self.backend.subscription(topic, kind, lambda sample: heard.append(sample.message))
+        return heard
 
     def watch(self, artifact: ArtifactId) -> Watcher:
         watcher = Watcher(self.clock)
@@ -122,7 +187,13 @@ class Lab:
     def begin(self, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
         done: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
         request = OperationRequest(artifact, operation, arguments, "tester", None, done.set_result)
-        return Run(self.workspace.execute(request), done)
+        return Run(self.workspace.execute(request), done, self.clock)
+
+    async def begun(self, seconds: float, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
+        """Begin an operation, and wait that many seconds."""
+        run = self.begin(artifact, operation, *arguments)
+        await self.sleep(seconds)
+        return run
 
     async def call(self, artifact: ArtifactId, operation: str, *arguments: object) -> Run:
         """Run an operation to its end."""
@@ -181,6 +252,8 @@ def in_lab(body: Callable[[Lab], Awaitable[Any]], world: str | None = "empty") -
             await body(lab)
         finally:
             await lab.environment.close()
+            for node in lab.nodes:
+                await node.close()
             if lab.sim is not None:
                 lab.sim.close()
             await backend.close()

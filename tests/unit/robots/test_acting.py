@@ -156,8 +156,7 @@ async def test_a_goal_that_does_not_fit_is_never_sent(lab: Lab) -> None:
 
 async def test_dropping_cancels_the_goal_without_waiting(lab: Lab) -> None:
     server, going = await begun(lab, "go", ending=None)
-    going.execution.cancel()
-    await lab.sleep(0.005)
+    await going.drop(0.005)
     assert going.execution.ended
     assert server.events == [(0, "accepted 0"), (1, "cancel 0")]
     assert not going.done.done()
@@ -165,8 +164,7 @@ async def test_dropping_cancels_the_goal_without_waiting(lab: Lab) -> None:
 
 async def test_dropping_before_the_server_has_accepted_cancels_the_goal_as_soon_as_it_does(lab: Lab) -> None:
     server, going = await begun(lab, "go", accepting=2)
-    going.execution.cancel()
-    await lab.sleep(0.1)
+    await going.drop(0.1)
     assert going.execution.ended
     await lab.sleep(2)
     assert server.events == [(2, "accepted 0"), (2, "cancel 0"), (2.11, "canceled 0")]
@@ -194,8 +192,7 @@ async def test_two_goals_are_pursued_side_by_side_and_one_of_them_dropped(lab: L
     outs = Out(), Out()
     first, second = (lab.begin(artifact, "go", x, out) for x, out in zip((1, 2), outs, strict=True))
     await lab.sleep(1)
-    first.execution.cancel()
-    await lab.sleep(1)
+    await first.drop(1)
     assert [goal.over for goal in server.goals] == [True, False]
     server.goals[1].end(x=2)
     await second.done
@@ -211,8 +208,7 @@ async def test_feedback_during_the_end_of_a_dropped_goal_is_ignored(lab: Lab) ->
     going = lab.begin(artifact, "go", 3, Out())
     await lab.sleep(1)
     server.goals[0].feedback(distance=2)
-    going.execution.cancel()
-    await lab.sleep(0.5)
+    await going.drop(0.5)
     server.goals[0].feedback(distance=1)
     await lab.sleep(1)
     assert watcher.values("distance") == [(-1,), (2,)]
@@ -222,8 +218,7 @@ async def test_feedback_during_the_end_of_a_dropped_goal_is_ignored(lab: Lab) ->
 async def test_the_end_of_a_dropped_goal_is_not_reported(lab: Lab) -> None:
     for end in (lambda server: None, FakeServer.leave):
         server, going = await begun(lab, "go", ending=3.0)
-        going.execution.cancel()
-        await lab.sleep(1)
+        await going.drop(1)
         end(server)
         await lab.sleep(10)
     assert lab.logged == []
@@ -231,8 +226,7 @@ async def test_the_end_of_a_dropped_goal_is_not_reported(lab: Lab) -> None:
 
 async def test_a_server_without_time_to_accept_is_reported_with_the_total_time(lab: Lab) -> None:
     server, going = await begun(lab, "goOrRest", Structure("timeout", (4,)))
-    going.execution.pause()
-    await lab.sleep(1)
+    await going.pause(1)
     server.accepting = 10
     going.execution.resume()
     await failed(going, "timeout(4)")

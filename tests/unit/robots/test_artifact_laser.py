@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import Out, Structure
 from jacaros.robots.artifacts.sensors import ArtBaseScan, ArtScan, sampled
@@ -45,9 +45,8 @@ async def test_scans_of_any_size_are_shown(lab: Lab) -> None:
     assert len(watcher.values("laserrange")) == 2
 
 
-async def test_the_range_of_no_echo_is_an_option(lab: Lab) -> None:
-    artifact = await lab.make(ArtScan, Structure("max", (50000,)), {"topic": "base_scan"})
-    watcher = lab.watch(artifact)
+@made(ArtScan, Structure("max", (50000,)), {"topic": "base_scan"})
+async def test_the_range_of_no_echo_is_an_option(lab: Lab, watcher: Watcher) -> None:
     scan(lab, [math.nan] * 5, "/base_scan")
     await lab.sleep(0.1)
     assert watcher.holds("laserrange") == [(50000,) * 5]

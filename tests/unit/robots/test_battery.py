@@ -5,9 +5,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import Out, Structure
+from jacaros.artifacts import ArtifactId, Out, Structure
 from jacaros.look.page.graph_scene import SeenRobot
 from jacaros.robots.artifacts.battery import ArtSimBattery, diagnosis
 from jacaros.robots.artifacts.velocity import ArtCmdVelMuxAndOdometry
@@ -20,23 +20,15 @@ def option(name: str, value: Any) -> Structure:
     return Structure(name, (value,))
 
 
+pytestmark = made(ArtSimBattery, "bot")
+
+
 @pytest.mark.parametrize(
-    ("percent", "words"),
-    [
-        (100, FULL),
-        (99, FULL),
-        (51, FULL),
-        (50, MEDIUM),
-        (35, MEDIUM),
-        (21, MEDIUM),
-        (20, LOW),
-        (7, LOW),
-        (0, LOW),
-    ],
+    ("words", "percents"), [(FULL, (100, 99, 51)), (MEDIUM, (50, 35, 21)), (LOW, (20, 7, 0))]
 )
-def test_every_charge_has_its_diagnosis(percent: int, words: str) -> None:
+def test_every_charge_has_its_diagnosis(words: str, percents: tuple[int, ...]) -> None:
     """Defect 5: the thresholds were compared for equality, so a charge could jump over them."""
-    assert diagnosis(percent) == words
+    assert {diagnosis(each) for each in percents} == {words}
 
 
 async def test_the_timer_drains_one_percent_a_second_and_stops_at_zero(lab: Lab) -> None:
@@ -75,8 +67,7 @@ async def test_nothing_drains_while_the_battery_is_charged_and_other_operations_
     """Defect 5: it kept draining, and could not be queried."""
     battery = await lab.make(ArtSimBattery, option("level", 10), option("drain", 5))
     watcher = lab.watch(battery)
-    charging = lab.begin(battery, "operationRecharge")
-    await lab.sleep(2.1)
+    charging = await lab.begun(2.1, battery, "operationRecharge")
     out = Out()
     await lab.do(battery, "getCurrentBattery", out)
     assert out.value == 60
@@ -86,29 +77,28 @@ async def test_nothing_drains_while_the_battery_is_charged_and_other_operations_
     assert levels == sorted(levels)  # type: ignore[type-var]
 
 
+@made(ArtSimBattery, option("level", 50))
 async def test_a_second_recharge_waits_for_the_first_and_a_dropped_one_lets_the_battery_drain_again(
-    lab: Lab,
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:
-    battery = await lab.make(ArtSimBattery, option("level", 50))
-    watcher = lab.watch(battery)
-    runs = [lab.begin(battery, "operationRecharge") for _ in range(2)]
+    runs = [lab.begin(artifact, "operationRecharge") for _ in range(2)]
     for each in runs:
         await each.done
     assert lab.clock.elapsed == pytest.approx(2.5)
     await lab.sleep(20)
-    dropped = lab.begin(battery, "operationRecharge")
-    await lab.sleep(0.2)
+    dropped = await lab.begun(0.2, artifact, "operationRecharge")
     dropped.execution.cancel()
     level = watcher.holds("battery")[0][0]
     await lab.sleep(3)
     assert level - watcher.holds("battery")[0][0] == 3  # type: ignore[operator]
 
 
-async def test_an_empty_battery_drains_again_after_recharging(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, option("level", 2))
-    watcher = lab.watch(battery)
+@made(ArtSimBattery, option("level", 2))
+async def test_an_empty_battery_drains_again_after_recharging(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     await lab.sleep(5)
-    await lab.do(battery, "operationRecharge")
+    await lab.do(artifact, "operationRecharge")
     await lab.sleep(2.5)
     assert watcher.holds("battery") == [(98,)]
 
@@ -121,53 +111,45 @@ async def test_the_speed_of_draining_is_an_option_and_may_be_nought(lab: Lab) ->
     assert never.values("battery") == [(42,)]
 
 
-def test_a_robots_battery_is_shown_charges_in_the_dock_and_is_waited_for() -> None:
-    world = """
-name: dock
+WITH_DOCK = """
 bounds: {from: [-3, -3], to: [3, 3]}
-docks:
-  - {name: dock, x: 1, y: 0, yaw_degrees: 0, radius: 0.25}
-robots:
-  - name: turtlebot
-    pose: {x: 0, y: 0, yaw_degrees: 0}
-    battery: {level: 22, drain_per_second: 0.3, charge_per_second: 5}
+docks: [{name: dock, x: 1, y: 0, yaw_degrees: 0, radius: 0.25}]
+robots: [{name: turtlebot, battery: {level: 22, drain_per_second: 0.3, charge_per_second: 5}}]
 """
 
-    async def body(lab: Lab) -> None:
-        battery = await lab.make(ArtSimBattery, option("source", "robot"))
-        watcher = lab.watch(battery)
-        assert watcher.held == {}
-        out = Out()
-        await lab.do(battery, "getCurrentBattery", out)
-        assert out.value == 21
-        assert watcher.values("diagnostics") == [(MEDIUM,)]
-        failed = await lab.call(battery, "operationRecharge")
-        assert failed.reason == "not_docked"
-        assert 5 <= lab.clock.elapsed < 6.5
-        await lab.sleep(3)
-        assert watcher.holds("diagnostics") == [(LOW,)]
-        motion = await lab.make(ArtCmdVelMuxAndOdometry)
-        await lab.do(motion, "driveTo", 1, 0)
-        begin = lab.clock.elapsed
-        await lab.do(battery, "operationRecharge")
-        assert lab.clock.elapsed - begin == pytest.approx(16, abs=2)
-        assert watcher.holds("battery") == [(100,)]
-        words = [values[0] for values in watcher.values("diagnostics")]
-        assert words == [MEDIUM, LOW, MEDIUM, FULL]
-        await lab.do(battery, "operationRecharge")
-        await lab.do(motion, "driveTo", 0, 0)
-        await lab.sleep(10)
-        assert watcher.holds("battery")[0][0] in range(90, 99)
 
-    in_lab(body, world)
+@pytest.mark.world(WITH_DOCK)
+@made(ArtSimBattery, option("source", "robot"))
+async def test_a_robots_battery_is_shown_charges_in_the_dock_and_is_waited_for(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    assert watcher.held == {}
+    out = Out()
+    await lab.do(artifact, "getCurrentBattery", out)
+    assert out.value == 21
+    assert watcher.values("diagnostics") == [(MEDIUM,)]
+    assert (await lab.call(artifact, "operationRecharge")).reason == "not_docked"
+    assert 5 <= lab.clock.elapsed < 6.5
+    await lab.sleep(3)
+    assert watcher.holds("diagnostics") == [(LOW,)]
+    motion = await lab.make(ArtCmdVelMuxAndOdometry)
+    await lab.do(motion, "driveTo", 1, 0)
+    begin = lab.clock.elapsed
+    await lab.do(artifact, "operationRecharge")
+    assert lab.clock.elapsed - begin == pytest.approx(16, abs=2)
+    assert watcher.holds("battery") == [(100,)]
+    assert watcher.values("diagnostics") == [(MEDIUM,), (LOW,), (MEDIUM,), (FULL,)]
+    await lab.do(artifact, "operationRecharge")
+    await lab.do(motion, "driveTo", 0, 0)
+    await lab.sleep(10)
+    assert watcher.holds("battery")[0][0] in range(90, 99)
 
 
 async def test_a_recharge_that_loses_the_dock_fails(lab: Lab) -> None:
     battery = await lab.make(ArtSimBattery, "bot", option("dock_timeout", 2))
     publisher = charge(lab.backend, "/bot/battery_state")
     publisher(0.3, "CHARGING")
-    charging = lab.begin(battery, "operationRecharge")
-    await lab.sleep(1)
+    charging = await lab.begun(1, battery, "operationRecharge")
     publisher(0.4, "CHARGING")
     await lab.sleep(1.5)
     assert not charging.done.done()
@@ -186,16 +168,16 @@ async def test_a_driver_that_knows_no_status_is_understood_by_its_rising_charge(
         await lab.sleep(1)
         publish(percent / 100, "UNKNOWN")
     await charging.done
-    assert charging.outcome is not None
-    assert charging.outcome.ok
+    assert charging.ok
     assert lab.clock.elapsed == pytest.approx(10, abs=0.6)
 
 
-async def test_a_driver_that_charges_for_ever_is_full_all_the_same(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, "bot")
-    publish = charge(lab.backend, "/bot/battery_state")
-    publish(1.0, "CHARGING")
-    await lab.do(battery, "operationRecharge")
+@pytest.mark.parametrize(("share", "status"), [(1.0, "CHARGING"), (0.996, "NOT_CHARGING")])
+async def test_a_battery_is_full_though_its_driver_charges_for_ever_or_its_charge_stops_rising(
+    lab: Lab, artifact: ArtifactId, share: float, status: str
+) -> None:
+    charge(lab.backend, "/bot/battery_state")(share, status)
+    await lab.do(artifact, "operationRecharge")
     assert lab.clock.elapsed < 7
 
 
@@ -216,14 +198,6 @@ async def test_a_battery_that_is_almost_full_is_not_full(lab: Lab, status: str) 
     publish(1.0, "FULL")
     await charging.done
     assert watcher.holds("battery") == [(100,)]
-
-
-async def test_an_old_battery_is_full_when_its_charge_stops_rising(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, "bot")
-    publish = charge(lab.backend, "/bot/battery_state")
-    publish(0.996, "NOT_CHARGING")
-    await lab.do(battery, "operationRecharge")
-    assert lab.clock.elapsed < 7
 
 
 def charge(backend: Backend, topic: str) -> Any:
@@ -251,26 +225,28 @@ async def test_a_battery_of_unknown_charge_is_not_shown(lab: Lab) -> None:
     assert watcher.holds("diagnostics") == [(MEDIUM,)]
 
 
-async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab) -> None:
-    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
-    watcher = lab.watch(artifact)
+ROBOT = (ArtSimBattery, option("source", "robot"))
+
+
+async def told(lab: Lab, *shares: float) -> None:
+    """Let the driver report some charges."""
     tell = charge(lab.backend, "/battery_state")
-    for share in (0.5, -1.0, -0.01, 0.4):
+    for share in shares:
         tell(share, "DISCHARGING")
         await lab.sleep(0.1)
+
+
+@made(*ROBOT)
+async def test_an_impossible_charge_is_reported_and_not_shown(lab: Lab, watcher: Watcher) -> None:
+    await told(lab, 0.5, -1.0, -0.01, 0.4)
     assert watcher.values("battery") == [(50,), (40,)]
-    assert [(name, *map(str, told)) for name, told in watcher.signals] == [
-        ("bad_message", "/battery_state", 'out_of_range("percentage")')
-    ]
+    [(name, why)] = watcher.signals
+    assert (name, *map(str, why)) == ("bad_message", "/battery_state", 'out_of_range("percentage")')
 
 
-async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab) -> None:
-    artifact = await lab.make(ArtSimBattery, option("source", "robot"))
-    watcher = lab.watch(artifact)
-    tell = charge(lab.backend, "/battery_state")
-    for percent in (98.2, 55.0, 19.6, 1.0):
-        tell(percent, "DISCHARGING")
-        await lab.sleep(0.1)
+@made(*ROBOT)
+async def test_a_driver_that_counts_in_percent_is_understood(lab: Lab, watcher: Watcher) -> None:
+    await told(lab, 98.2, 55.0, 19.6, 1.0)
     assert watcher.values("battery") == [(98,), (55,), (19,), (1,)]
     assert watcher.values("diagnostics")[-1] == (LOW,)
     assert len(lab.logged) == 1
@@ -298,8 +274,7 @@ async def test_agent_and_page_read_the_charge_of_a_driver_alike(lab: Lab) -> Non
     lab.backend.subscription("/battery_state", "sensor_msgs/msg/BatteryState", seen.hear_battery)
     watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
     pose = SimpleNamespace(
-        position=SimpleNamespace(x=0.0, y=0.0, z=0.0),
-        orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0),
+        position=SimpleNamespace(x=0.0, y=0.0, z=0.0), orientation=SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     )
     seen.odometry = SimpleNamespace(header=SimpleNamespace(frame_id="odom"), pose=SimpleNamespace(pose=pose))
     for told, percent in ((0.5, 50), (1.2, 100), (80.0, 80), (1.4, 1), (1.0, 1)):

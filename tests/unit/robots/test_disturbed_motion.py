@@ -3,8 +3,9 @@
 from typing import Any
 
 import pytest
-from robot_lab import STANDSTILL, Lab, assert_at
+from robot_lab import STANDSTILL, Lab, assert_at, made
 
+from jacaros.artifacts import ArtifactId
 from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
@@ -48,11 +49,9 @@ async def test_positions_that_overtake_each_other_are_never_shown_backwards(lab:
     assert shown[: there + 1] == sorted(shown[: there + 1])
 
 
-async def test_odometry_that_is_lost_for_good_stops_the_robot(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    moving = lab.begin(artifact, "moveForward", 5)
-    await lab.sleep(2)
+@made(ArtCmdVel, recorded=True)
+async def test_odometry_that_is_lost_for_good_stops_the_robot(lab: Lab, artifact: ArtifactId) -> None:
+    moving = await lab.begun(2, artifact, "moveForward", 5)
     disturb(lab, "/odom", dropped())
     await moving.done
     assert moving.reason == "no_odometry(5)"

@@ -84,8 +84,7 @@ async def test_without_localisation_the_robot_stands_and_the_motion_fails(lab: L
 
 async def test_localisation_that_dies_on_the_way_stops_the_robot(lab: Lab) -> None:
     wheels = await lab.make(ArtCmdVel, ON_MAP)
-    driving = lab.begin(wheels, "moveForward", 5)
-    await lab.sleep(3)
+    driving = await lab.begun(3, wheels, "moveForward", 5)
     backend = lab.backend
     backend.graph.disturb("/tf", lambda message: ())  # type: ignore[attr-defined]
     await lab.sleep(3)

@@ -4,9 +4,9 @@ import math
 from typing import Any
 
 import pytest
-from robot_lab import STANDSTILL, Lab, Watcher
+from robot_lab import STANDSTILL, TWIST, Lab, Watcher, made
 
-from jacaros.artifacts import Atom, Structure
+from jacaros.artifacts import ArtifactId, Atom, Structure
 from jacaros.robots.artifacts.battery import ArtSimBattery
 from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
@@ -18,24 +18,11 @@ from jacaros.runtime.clock import VirtualClock
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 
-class Robot:
-    """A robot whose odometry is made by tests, with faults."""
-
-    def __init__(self, lab: Lab) -> None:
-        self._lab = lab
-        self._publisher = lab.backend.publisher("/odom", ODOMETRY)
-
-    async def say(
-        self, x: float, stamp: float | None = 0.0, frame: str = "odom", **orientation: float
-    ) -> None:
-        """Publish a position; the stamp is in seconds from now, None for none."""
-        header = {
-            "frame_id": frame,
-            "stamp": 0 if stamp is None else self._lab.clock.now() + stamp,
-        }
-        pose = {"pose": {"position": {"x": x}, "orientation": orientation}}
-        self._publisher.publish(self._publisher.message(header=header, pose=pose))
-        await self._lab.sleep(0.02)
+async def say(lab: Lab, x: float, stamp: float | None = 0.0, frame: str = "odom", **turn: float) -> None:
+    """Publish a position; the stamp is in seconds from now, None for none."""
+    header = {"frame_id": frame, "stamp": 0 if stamp is None else lab.clock.now() + stamp}
+    lab.say("/odom", ODOMETRY, header=header, pose={"pose": {"position": {"x": x}, "orientation": turn}})
+    await lab.sleep(0.02)
 
 
 def whys(watcher: Watcher) -> list[str]:
@@ -52,61 +39,62 @@ def test_bad_messages_are_reported_on_the_1st_10th_and_100th_occurrence() -> Non
         faults.not_finite("x", math.nan)
         if number == 30:
             faults.add(Structure("wrong_frame", ("map",)), "the frame is map")
-    assert [str(why) for why, _ in told] == [
-        'not_finite("x")',
-        'not_finite("x")',
-        'wrong_frame("map")',
-        'not_finite("x")',
-    ]
+    x = 'not_finite("x")'
+    assert [str(why) for why, _ in told] == [x, x, 'wrong_frame("map")', x]
     assert told[0][1] == "/odom: x is nan; message dropped"
     assert told[1][1] == "/odom: x is nan; message dropped (10 times so far)"
     assert faults.total == 251
     assert faults.counts == {"not_finite": 250, "wrong_frame": 1}
 
 
+pytestmark = made(ArtOdometry)
+
+
 @pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
-async def test_a_number_that_is_not_finite_is_reported_and_not_shown(lab: Lab, number: float) -> None:
-    robot = Robot(lab)
-    artifact = await lab.make(ArtOdometry)
-    watcher = lab.watch(artifact)
-    await robot.say(1)
-    await robot.say(number)
-    await robot.say(2, w=number)
-    await robot.say(3)
+async def test_a_number_that_is_not_finite_is_reported_and_not_shown(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher, number: float
+) -> None:
+    await say(lab, 1)
+    await say(lab, number)
+    await say(lab, 2, w=number)
+    await say(lab, 3)
     assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (3, 0, 0)]
     assert all(math.isfinite(each) for values in watcher.values("pose") for each in values)
     assert whys(watcher) == ["not_finite(pose.pose.position.x)"]
     assert lab.logged == [f"[{artifact.name}] /odom: pose.pose.position.x is {number}; message dropped"]
 
 
-async def test_older_odometry_is_dropped_and_repeated_odometry_is_ignored(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry))
-    await robot.say(1)
-    await robot.say(2)
-    await robot.say(1, stamp=-0.5)
-    await robot.say(2, stamp=-0.04)
-    await robot.say(3)
-    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)]
-    assert whys(watcher) == ["out_of_order(0.48)"]
+@pytest.mark.parametrize(
+    ("messages", "shown", "told"),
+    [
+        ([(1, 0), (2, 0), (1, -0.5), (2, -0.04), (3, 0)], [1, 2, 3], ["out_of_order(0.48)"]),
+        (
+            [(1, 0), (2, -5), (3, -5), (4, -5), (5, -5)],
+            [1, 4, 5],
+            ["out_of_order(4.98)", "clock_jumped(4.94)"],
+        ),
+        ([(1, None), (2, -1000), (3, FAR - 1)], [1, 2, 3], ["stamp_off(-1000)"]),
+    ],
+    ids=["older or repeated", "a clock that jumped back is believed", "far off our clock"],
+)
+async def test_stamps_decide_what_is_shown_and_reported(
+    lab: Lab,
+    watcher: Watcher,
+    messages: list[tuple[float, float | None]],
+    shown: list[float],
+    told: list[str],
+) -> None:
+    for x, stamp in messages:
+        await say(lab, x, stamp)
+    assert watcher.values("odom") == [(x, 0, 0) for x in (0, *shown)]
+    assert whys(watcher) == told
+    assert ("use_sim_time" in lab.logged[0]) == told[0].startswith("stamp_off")
 
 
-async def test_a_clock_that_jumped_back_is_believed_after_a_few_messages(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry))
-    await robot.say(1)
-    for x in (2, 3, 4, 5):
-        await robot.say(x, stamp=-5)
-    assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0), (4, 0, 0), (5, 0, 0)]
-    assert whys(watcher) == ["out_of_order(4.98)", "clock_jumped(4.94)"]
-
-
-async def test_late_messages_between_good_ones_are_not_a_jump(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry))
+async def test_late_messages_between_good_ones_are_not_a_jump(lab: Lab, watcher: Watcher) -> None:
     for x in range(1, 9):
-        await robot.say(x)
-        await robot.say(-x, stamp=-1)
+        await say(lab, x)
+        await say(lab, -x, stamp=-1)
     assert watcher.values("odom") == [(x, 0, 0) for x in range(9)]
 
 
@@ -157,17 +145,6 @@ def test_a_constant_stamp_is_ignored() -> None:
     assert judged(*[(float(n), 100.0) for n in range(10)]) == ([], [0.0] * 10)
 
 
-async def test_a_stamp_far_off_our_clock_is_used_and_reported(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry))
-    await robot.say(1, stamp=None)
-    await robot.say(2, stamp=-1000)
-    await robot.say(3, stamp=FAR - 1)
-    assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
-    assert whys(watcher) == ["stamp_off(-1000)"]
-    assert "use_sim_time" in lab.logged[0]
-
-
 def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
     """A clock that follows ``/clock`` stands at 0 until its first message."""
     told: list[str] = []
@@ -178,59 +155,53 @@ def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
     assert told == ["stamp_off(1700000000)"]
 
 
-async def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry))
-    await robot.say(1)
-    await robot.say(50, frame="map")
-    await robot.say(2, frame="/odom")
-    await robot.say(3, frame="")
+async def test_odometry_in_another_frame_is_dropped_until_the_first_source_is_silent(
+    lab: Lab, watcher: Watcher
+) -> None:
+    for x, frame in ((1, "odom"), (50, "map"), (2, "/odom"), (3, "")):
+        await say(lab, x, frame=frame)
     assert watcher.values("odom") == [(x, 0, 0) for x in range(4)]
     assert whys(watcher) == ["wrong_frame(map)"]
     await lab.sleep(SILENCE)
-    await robot.say(50, frame="map")
+    await say(lab, 50, frame="map")
     assert watcher.holds("odom") == [(50, 0, 0)]
 
 
-async def test_a_frame_that_is_asked_for_is_the_only_one(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry, Structure("frame", (Atom("odom"),))))
-    await robot.say(50, frame="map")
+@made(ArtOdometry, Structure("frame", (Atom("odom"),)))
+async def test_a_frame_that_is_asked_for_is_the_only_one(lab: Lab, watcher: Watcher) -> None:
+    await say(lab, 50, frame="map")
     await lab.sleep(SILENCE)
-    await robot.say(50, frame="map")
-    await robot.say(1, frame="odom")
+    await say(lab, 50, frame="map")
+    await say(lab, 1)
     assert watcher.values("odom") == [(0, 0, 0), (1, 0, 0)]
+
+
+BATTERY = "sensor_msgs/msg/BatteryState"
 
 
 async def test_a_scan_without_a_range_and_a_battery_without_a_number_are_reported(lab: Lab) -> None:
     scanner = lab.watch(await lab.make(ArtBaseScan))
     battery = lab.watch(await lab.make(ArtSimBattery, Structure("source", (Atom("robot"),))))
-    scans = lab.backend.publisher("/scan", "sensor_msgs/msg/LaserScan")
-    scans.publish(scans.message(ranges=[1.0, math.inf, 1.0], range_max=math.inf))
-    charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
-    charges.publish(charges.message(percentage=math.nan))
+    lab.say("/scan", "sensor_msgs/msg/LaserScan", ranges=[1.0, math.inf, 1.0], range_max=math.inf)
+    lab.say("/battery_state", BATTERY, percentage=math.nan)
     await lab.sleep(0.1)
     assert scanner.values("laserrange") == [(0, 0, 0, 0, 0)]
-    assert [(name, *map(str, told)) for name, told in scanner.signals] == [
-        ("bad_message", "/scan", 'not_finite("laserrange")')
-    ]
     assert battery.holds("battery") == []
-    assert [(name, *map(str, told)) for name, told in battery.signals] == [
-        ("bad_message", "/battery_state", 'not_finite("percentage")')
+    told = [[(name, *map(str, why)) for name, why in each.signals] for each in (scanner, battery)]
+    assert told == [
+        [("bad_message", "/scan", 'not_finite("laserrange")')],
+        [("bad_message", "/battery_state", 'not_finite("percentage")')],
     ]
 
 
-async def test_a_silent_battery_is_unknown(lab: Lab) -> None:
-    options = (Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
-    artifact = await lab.make(ArtSimBattery, *options)
-    watcher = lab.watch(artifact)
-    charges = lab.backend.publisher("/battery_state", "sensor_msgs/msg/BatteryState")
-    charges.publish(charges.message(percentage=0.8))
+@made(ArtSimBattery, Structure("source", (Atom("robot"),)), Structure("expire", (3,)))
+async def test_a_silent_battery_is_unknown(lab: Lab, watcher: Watcher) -> None:
+    lab.say("/battery_state", BATTERY, percentage=0.8)
     await lab.sleep(2.9)
     assert watcher.holds("battery") == [(80,)]
     await lab.sleep(0.2)
     assert watcher.holds("battery") == watcher.holds("diagnostics") == []
-    charges.publish(charges.message(percentage=0.8))
+    lab.say("/battery_state", BATTERY, percentage=0.8)
     await lab.sleep(0.1)
     assert watcher.holds("battery") == [(80,)]
 
@@ -240,25 +211,18 @@ async def test_a_silent_battery_is_unknown(lab: Lab) -> None:
 
 def feed(lab: Lab, until: float, fault: Any) -> None:
     """Publish odometry of a robot that drives as it is commanded, whose messages *fault* may spoil."""
-    publisher = lab.backend.publisher("/odom", ODOMETRY)
-    speed = x = 0.0
-
-    def drive(sample: Any) -> None:
-        nonlocal speed
-        speed = sample.message.linear.x
-
-    lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", drive)
+    publisher, commands = lab.backend.publisher("/odom", ODOMETRY), lab.hear("/cmd_vel", TWIST)
+    x = 0.0
 
     def tick() -> None:
         nonlocal x
+        speed = commands[-1].linear.x if commands else 0.0
         x += 0.02 * speed
-        header = {"frame_id": "odom", "stamp": lab.clock.now()}
-        fields = {
-            "header": header,
-            "pose": {"pose": {"position": {"x": x}}},
-            "twist": {"twist": {"linear": {"x": speed}}},
-        }
-        message = publisher.message(**fields)
+        message = publisher.message(
+            header={"frame_id": "odom", "stamp": lab.clock.now()},
+            pose={"pose": {"position": {"x": x}}},
+            twist={"twist": {"linear": {"x": speed}}},
+        )
         fault(message, lab.clock.elapsed)
         publisher.publish(message)
         if lab.clock.elapsed < until:
@@ -314,8 +278,12 @@ async def test_a_pose_from_another_frame_does_not_lead_a_motion_astray(lab: Lab)
 # Connection.
 
 
-async def test_a_topic_is_connected_while_it_has_a_publisher(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtTutorial, "r", Structure("watch_connection", (True,))))
+def watching(value: object) -> Structure:
+    return Structure("watch_connection", (value,))
+
+
+@made(ArtTutorial, "r", watching(True))
+async def test_a_topic_is_connected_while_it_has_a_publisher(lab: Lab, watcher: Watcher) -> None:
     assert watcher.holds("connected") == []
     publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
     await lab.sleep(1)
@@ -323,8 +291,7 @@ async def test_a_topic_is_connected_while_it_has_a_publisher(lab: Lab) -> None:
     publisher.close()
     await lab.sleep(1)
     assert watcher.holds("connected") == []
-    publisher = lab.backend.publisher("/r/chatter", "std_msgs/msg/String")
-    publisher.publish(publisher.message(data="again"))
+    lab.say("/r/chatter", "std_msgs/msg/String", data="again")
     await lab.sleep(0.01)
     assert watcher.holds("connected") == [("/r/chatter",)]
     assert watcher.holds("r_chatter") == [("again",)]
@@ -332,7 +299,7 @@ async def test_a_topic_is_connected_while_it_has_a_publisher(lab: Lab) -> None:
 
 async def test_a_topic_is_lost_with_the_graph_and_found_again_with_it(lab: Lab) -> None:
     lab.backend.publisher("/odom", ODOMETRY)
-    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (True,))))
+    watcher = lab.watch(await lab.make(ArtOdometry, watching(True)))
     assert watcher.holds("connected") == [("/odom",)]
     graph = lab.backend.graph  # type: ignore[attr-defined]
     graph.interrupt()
@@ -341,37 +308,39 @@ async def test_a_topic_is_lost_with_the_graph_and_found_again_with_it(lab: Lab) 
     assert watcher.holds("connected") == [("/odom",)]
 
 
-async def test_a_topic_stays_connected_when_the_master_dies_and_its_publisher_lives(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
-    await robot.say(1)
+@made(ArtOdometry, watching(2))
+async def test_a_topic_stays_connected_when_the_master_dies_and_its_publisher_lives(
+    lab: Lab, watcher: Watcher
+) -> None:
+    await say(lab, 1)
     backend: Any = lab.backend
     backend.set_connected(False)
     await lab.sleep(1)
-    await robot.say(2)
+    await say(lab, 2)
     await lab.sleep(1.5)
     assert watcher.holds("connected") == [("/odom",)]
 
 
-async def test_a_silent_publisher_is_lost_where_messages_are_expected(lab: Lab) -> None:
-    robot = Robot(lab)
-    watcher = lab.watch(await lab.make(ArtOdometry, Structure("watch_connection", (2,))))
+@made(ArtOdometry, watching(2))
+async def test_a_silent_publisher_is_lost_where_messages_are_expected(lab: Lab, watcher: Watcher) -> None:
+    lab.backend.publisher("/odom", ODOMETRY)
     await lab.sleep(1)
     assert watcher.holds("connected") == []
-    await robot.say(1)
+    await say(lab, 1)
     assert watcher.holds("connected") == [("/odom",)]
     await lab.sleep(2.6)
     assert watcher.holds("connected") == []
-    await robot.say(1)
+    await say(lab, 1)
     assert watcher.holds("connected") == [("/odom",)]
 
 
-async def test_connections_are_watched_only_with_the_option_and_until_disposal(lab: Lab) -> None:
+async def test_connections_are_watched_only_with_the_option_and_until_disposal(
+    lab: Lab, watcher: Watcher
+) -> None:
     lab.backend.publisher("/odom", ODOMETRY)
-    watcher = lab.watch(await lab.make(ArtOdometry))
     await lab.sleep(1)
     assert watcher.holds("connected") == []
-    artifact = await lab.make(ArtOdometry, Structure("watch_connection", (True,)))
+    artifact = await lab.make(ArtOdometry, watching(True))
     await lab.sleep(1)
     lab.workspace.dispose_artifact(artifact)
     backend: Any = lab.backend

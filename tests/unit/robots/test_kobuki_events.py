@@ -1,9 +1,9 @@
 """ArtBumper and ArtCliff: the events of a Kobuki base, as states and as signals."""
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import Structure
+from jacaros.artifacts import ArtifactId, Structure
 from jacaros.robots.artifacts.sensors import ArtBumper, ArtCliff
 
 
@@ -12,13 +12,12 @@ def send(lab: Lab, topic: str, kind: str, **fields: int) -> None:
     publisher.publish(publisher.message(**fields))
 
 
+pytestmark = made(ArtBumper)
+
+
 async def test_a_bumper_is_a_state_of_its_side_and_a_signal_when_it_is_pressed(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtBumper))
-    assert watcher.holds("bumper") == [
-        ("left", "released"),
-        ("center", "released"),
-        ("right", "released"),
-    ]
+    assert watcher.holds("bumper") == [("left", "released"), ("center", "released"), ("right", "released")]
     send(lab, "/mobile_base/events/bumper", "BumperEvent", bumper=2, state=1)
     await lab.sleep(0.1)
     assert ("right", "pressed") in watcher.holds("bumper")
@@ -30,8 +29,7 @@ async def test_a_bumper_is_a_state_of_its_side_and_a_signal_when_it_is_pressed(l
 
 
 @pytest.mark.world("patrol")
-async def test_a_robot_that_drives_into_a_wall_presses_its_bumper(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtBumper))
+async def test_a_robot_that_drives_into_a_wall_presses_its_bumper(lab: Lab, watcher: Watcher) -> None:
     publisher = lab.backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
     for _ in range(80):
         publisher.publish(publisher.message(linear={"x": 0.5}))
@@ -54,10 +52,8 @@ async def test_a_cliff_is_a_state_of_its_side_below_the_robots_name(lab: Lab) ->
 
 @pytest.mark.parametrize(("bumper", "state", "field"), [(3, 1, "bumper"), (0, 2, "state")])
 async def test_a_number_that_the_type_does_not_have_is_a_bad_message(
-    lab: Lab, bumper: int, state: int, field: str
+    lab: Lab, artifact: ArtifactId, watcher: Watcher, bumper: int, state: int, field: str
 ) -> None:
-    artifact = await lab.make(ArtBumper)
-    watcher = lab.watch(artifact)
     send(lab, "/mobile_base/events/bumper", "BumperEvent", bumper=bumper, state=state)
     await lab.sleep(0.1)
     why = Structure("out_of_range", (field,))

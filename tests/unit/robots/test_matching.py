@@ -3,20 +3,14 @@
 from typing import cast
 
 import pytest
-from robot_lab import STANDSTILL, Lab
+from robot_lab import STANDSTILL, Lab, made
 
-from jacaros.artifacts import Structure
+from jacaros.artifacts import ArtifactId, Structure
 from jacaros.robots.artifacts.thesis import ArtCleaning
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.kit.connection import GUARD_TIMEOUT, SETTLING, TURN, Matching
-from jacaros.robots.ros.backend import Sample
 from jacaros.robots.ros.guarded import guarded_by
-from jacaros.robots.ros.node import Capability, Publisher
-
-
-def on_a_graph(lab: Lab) -> None:
-    """From now on a subscription that a test makes is like one that is matched late."""
-    lab.backend.capabilities |= {Capability.DISCOVERY}  # type: ignore[misc]  # the graph in memory has none
+from jacaros.robots.ros.node import Publisher
 
 
 def driving(lab: Lab) -> list[float]:
@@ -28,11 +22,13 @@ def warnings(lab: Lab) -> list[str]:
     return [line for line in lab.logged if "subscriber" in line]
 
 
-async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
-    motion = lab.begin(wheels, "move", 25)
-    await lab.sleep(1.0)
+pytestmark = made(ArtCmdVel, on_graph=True)
+
+
+async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_late(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    motion = await lab.begun(1.0, artifact, "move", 25)
     lab.record()
     await motion.done
     await lab.sleep(0.1)
@@ -42,25 +38,23 @@ async def test_an_open_loop_motion_loses_no_command_to_a_base_that_is_matched_la
     assert warnings(lab) == []
 
 
-async def test_a_motion_begins_immediately_when_a_base_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
+async def test_a_motion_begins_immediately_when_a_base_is_matched(lab: Lab, artifact: ArtifactId) -> None:
     lab.record()
-    await lab.do(await lab.make(ArtCmdVel), "move", 4)
+    await lab.do(artifact, "move", 4)
     await lab.sleep(0.1)
     assert driving(lab) == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
 
 
-async def test_in_the_graph_inside_the_process_nothing_waits(lab: Lab) -> None:
-    await lab.do(await lab.make(ArtCmdVel), "move", 4)
+@made(ArtCmdVel)
+async def test_in_the_graph_inside_the_process_nothing_waits(lab: Lab, artifact: ArtifactId) -> None:
+    await lab.do(artifact, "move", 4)
     assert lab.clock.elapsed == pytest.approx(0.5)
     assert len(warnings(lab)) == 1
 
 
-async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
+async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab, artifact: ArtifactId) -> None:
     for ends in (3.5, 7.0):
-        await lab.do(wheels, "move", 4)
+        await lab.do(artifact, "move", 4)
         assert lab.clock.elapsed == pytest.approx(ends, abs=0.11)
     (warning,) = warnings(lab)
     assert warning.endswith(
@@ -69,89 +63,65 @@ async def test_a_motion_without_a_base_warns_once_and_begins(lab: Lab) -> None:
     )
 
 
-async def test_a_base_that_left_is_waited_for_again(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
+async def test_a_base_that_left_is_waited_for_again(lab: Lab, artifact: ArtifactId) -> None:
     base = lab.backend.subscription("/cmd_vel", "geometry_msgs/msg/Twist", lambda sample: None)
-    await lab.do(wheels, "move", 4)
+    await lab.do(artifact, "move", 4)
     base.close()
-    motion = lab.begin(wheels, "move", 4)
-    await lab.sleep(2.0)
+    motion = await lab.begun(2.0, artifact, "move", 4)
     lab.record()
     await motion.done
     await lab.sleep(0.1)
     assert len(driving(lab)) == 5
 
 
-async def test_a_motion_fails_by_option_when_no_base_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,)))
-    run = await lab.call(wheels, "move", 4)
+@made(ArtCmdVel, Structure("unmatched", ("fail",)), Structure("match_timeout", (1,)), on_graph=True)
+async def test_a_motion_fails_by_option_when_no_base_is_matched(lab: Lab, artifact: ArtifactId) -> None:
+    run = await lab.call(artifact, "move", 4)
     assert lab.clock.elapsed == pytest.approx(1.0)
     assert run.reason == 'unmatched("/cmd_vel")'
     assert warnings(lab) == []
 
 
-async def test_a_motion_that_waits_for_its_base_is_aborted_immediately(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
-    motion = lab.begin(wheels, "move", 25)
-    await lab.sleep(0.5)
-    await lab.do(wheels, "abortMoving")
+async def test_a_motion_that_waits_for_its_base_is_aborted_immediately(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    motion = await lab.begun(0.5, artifact, "move", 25)
+    await lab.do(artifact, "abortMoving")
     await motion.done
     assert lab.clock.elapsed == pytest.approx(0.5)
     assert motion.reason == "aborted(0)"
 
 
-async def test_a_motion_that_is_dropped_while_it_waits_for_its_base_never_drives(lab: Lab) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
-    motion = lab.begin(wheels, "move", 25)
-    await lab.sleep(0.5)
-    motion.execution.cancel()
-    lab.record()
-    await lab.sleep(5.0)
-    assert driving(lab) == []
-
-
-async def test_a_motion_that_is_suspended_while_it_waits_for_its_base_drives_when_it_is_resumed(
-    lab: Lab,
+@pytest.mark.parametrize("end", ["dropped", "suspended"])
+async def test_a_motion_that_ends_while_it_waits_for_its_base_does_not_drive_unless_it_is_resumed(
+    lab: Lab, artifact: ArtifactId, end: str
 ) -> None:
-    on_a_graph(lab)
-    wheels = await lab.make(ArtCmdVel)
-    motion = lab.begin(wheels, "move", 4)
-    await lab.sleep(0.5)
-    motion.execution.pause()
+    motion = await lab.begun(0.5, artifact, "move", 4)
+    (motion.execution.cancel if end == "dropped" else motion.execution.pause)()
     lab.record()
     await lab.sleep(5.0)
     assert driving(lab) == []
-    motion.execution.resume()
-    await motion.done
-    await lab.sleep(0.1)
-    assert len(driving(lab)) == 5
+    if end == "suspended":
+        await motion.resumed()
+        await lab.sleep(0.1)
+        assert len(driving(lab)) == 5
 
 
-async def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched(lab: Lab) -> None:
-    on_a_graph(lab)
-    household = await lab.make(ArtCleaning)
-    work = lab.begin(household, "clean", 3)
-    await lab.sleep(1.0)
-    tasks: list[str] = []
-
-    def take(sample: Sample) -> None:
-        tasks.append(sample.message.data)
-
-    lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", take)
+@made(ArtCleaning, on_graph=True)
+async def test_the_first_task_of_the_household_is_published_when_its_listener_is_matched(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    work = await lab.begun(1.0, artifact, "clean", 3)
+    tasks = lab.hear("/cleaning/task", "std_msgs/msg/String")
     await work.done
-    assert tasks == ["scrub tub bathroom", "mop floor bathroom"]
+    assert [each.data for each in tasks] == ["scrub tub bathroom", "mop floor bathroom"]
 
 
-async def test_a_household_without_subscribers_is_delayed_once(lab: Lab) -> None:
-    on_a_graph(lab)
-    household = await lab.make(ArtCleaning)
-    await lab.do(household, "clean", 1)
+@made(ArtCleaning, on_graph=True)
+async def test_a_household_without_subscribers_is_delayed_once(lab: Lab, artifact: ArtifactId) -> None:
+    await lab.do(artifact, "clean", 1)
     assert lab.clock.elapsed == pytest.approx(5.5)
-    await lab.do(household, "clean", 1)
+    await lab.do(artifact, "clean", 1)
     assert lab.clock.elapsed == pytest.approx(8.0)
     assert len(warnings(lab)) == 1
 
@@ -198,51 +168,49 @@ def test_a_message_that_is_suspended_while_it_waits_does_not_block_the_others() 
     assert matching.exists()
 
 
-async def test_the_first_command_waits_until_the_guard_has_found_the_base(lab: Lab) -> None:
-    on_a_graph(lab)
-    guarded = guarded_by(lab.backend)
-    guarded.found["guard"] = {}
+async def test_the_first_command_waits_until_the_guard_has_found_the_base(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    found = guarded_by(lab.backend).found
+    found["guard"] = {}
     lab.record()
-    wheels = await lab.make(ArtCmdVel)
-    motion = lab.begin(wheels, "move", 4)
-    await lab.sleep(5.0)
+    motion = await lab.begun(5.0, artifact, "move", 4)
     assert driving(lab) == []
-    guarded.found["guard"] = {"/cmd_vel": 1}
+    found["guard"] = {"/cmd_vel": 1}
     await motion.done
     assert driving(lab)[0] == pytest.approx(5.0 + SETTLING, abs=0.06)
-    await lab.do(wheels, "move", 4)
+    await lab.do(artifact, "move", 4)
     assert warnings(lab) == []
 
 
-async def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready(lab: Lab) -> None:
-    on_a_graph(lab)
+async def test_a_guard_that_has_found_fewer_subscribers_than_the_robot_has_is_not_ready(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     guarded_by(lab.backend).found["guard"] = {"/cmd_vel": 1}
     lab.record()
     lab.record()
-    lab.begin(await lab.make(ArtCmdVel), "move", 4)
-    await lab.sleep(1.0)
+    await lab.begun(1.0, artifact, "move", 4)
     assert driving(lab) == []
 
 
-async def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once(lab: Lab) -> None:
-    on_a_graph(lab)
+async def test_a_guard_that_never_finds_the_base_delays_one_command_and_is_reported_once(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     guarded_by(lab.backend).found["guard"] = {"/other": 1}
     lab.record()
-    wheels = await lab.make(ArtCmdVel)
-    await lab.do(wheels, "move", 4)
+    await lab.do(artifact, "move", 4)
     assert driving(lab)[0] == pytest.approx(GUARD_TIMEOUT, abs=0.06)
     begun = lab.clock.elapsed
-    await lab.do(wheels, "move", 4)
+    await lab.do(artifact, "move", 4)
     assert lab.clock.elapsed - begun == pytest.approx(0.5, abs=0.06)
     [warning] = warnings(lab)
     assert "the guard has not found the subscriber of topic /cmd_vel after 10 s; publishing anyway" in warning
     assert "`jacaros ros show /cmd_vel`" in warning
 
 
-async def test_topics_that_drive_nothing_do_not_wait_for_a_guard(lab: Lab) -> None:
-    on_a_graph(lab)
+@made(ArtCleaning, on_graph=True)
+async def test_topics_that_drive_nothing_do_not_wait_for_a_guard(lab: Lab, artifact: ArtifactId) -> None:
     guarded_by(lab.backend).found["guard"] = {}
-    household = await lab.make(ArtCleaning)
-    lab.backend.subscription("/cleaning/task", "std_msgs/msg/String", lambda sample: None)
-    await lab.do(household, "clean", 1)
+    lab.hear("/cleaning/task", "std_msgs/msg/String")
+    await lab.do(artifact, "clean", 1)
     assert lab.clock.elapsed == pytest.approx(2.5)

@@ -4,9 +4,9 @@ import math
 from itertools import pairwise
 
 import pytest
-from robot_lab import STANDSTILL, Lab, apart, assert_at, in_lab
+from robot_lab import STANDSTILL, Lab, Run, Watcher, apart, assert_at, made
 
-from jacaros.artifacts import OperationFailed, Out, Structure
+from jacaros.artifacts import ArtifactId, OperationFailed, Out, Structure
 from jacaros.robots.artifacts.velocity import (
     ArtCmdVel,
     ArtCmdVelAndOdometry,
@@ -16,7 +16,7 @@ from jacaros.robots.artifacts.velocity import (
 )
 from jacaros.robots.ros.node import Sample
 
-pytestmark = pytest.mark.world("empty")
+pytestmark = [pytest.mark.world("empty"), made(ArtCmdVel, recorded=True)]
 
 # Accuracy.
 
@@ -42,9 +42,8 @@ async def test_four_rounds_of_a_square_stay_on_the_square(lab: Lab) -> None:
             assert_at(lab, *corner, metres=0.01 * round_, degrees=0.3 * round_)
 
 
-async def test_out_and_back_by_time_comes_back(lab: Lab) -> None:
+async def test_out_and_back_by_time_comes_back(lab: Lab, artifact: ArtifactId) -> None:
     """The thesis's scenario 8.2.1: two times ``move(25); rotate(180)``."""
-    artifact = await lab.make(ArtCmdVel)
     farthest = 0.0
     for _ in range(2):
         await lab.do(artifact, "move", 25)
@@ -89,14 +88,8 @@ async def test_left_and_right_and_reverse_have_operations_of_their_own(lab: Lab)
 
 async def test_driving_to_poses_ends_at_the_poses(lab: Lab) -> None:
     artifact = await lab.make(ArtCmdVelMuxAndOdometry)
-    for x, y, heading in [
-        (2, 0, 90),
-        (2, 2, 180),
-        (1, 1, 0),
-        (1.02, 1, -30),
-        (-2, 1.5, 179),
-        (0, 0, -179),
-    ]:
+    poses = [(2, 0, 90), (2, 2, 180), (1, 1, 0), (1.02, 1, -30), (-2, 1.5, 179), (0, 0, -179)]
+    for x, y, heading in poses:
         await lab.do(artifact, "goTo", x, y, heading)
         assert_at(lab, x, y, heading, metres=0.02, degrees=0.5)
     await lab.do(artifact, "driveTo", 0.5, 0.5)
@@ -110,8 +103,7 @@ async def test_driving_to_poses_ends_at_the_poses(lab: Lab) -> None:
 async def test_a_disturbed_heading_is_corrected_while_driving(lab: Lab) -> None:
     assert lab.world is not None
     artifact = await lab.make(ArtCmdVel, Structure("speed", (0.3,)))
-    driving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+    driving = await lab.begun(2, artifact, "moveForward", 2)
     robot = lab.world.robot()
     robot.yaw += 0.2
     robot.odometry.yaw += 0.2
@@ -119,24 +111,18 @@ async def test_a_disturbed_heading_is_corrected_while_driving(lab: Lab) -> None:
     assert_at(lab, 2, 0, 0, metres=0.01, degrees=2)
 
 
-def test_noise_of_odometry_does_not_keep_a_motion_from_ending() -> None:
-    world = """
-name: noisy
+NOISY = """
 bounds: {from: [-5, -5], to: [5, 5]}
-robots:
-  - name: turtlebot
-    pose: {x: 0, y: 0, yaw_degrees: 0}
-    odometry: {noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}
+robots: [{name: r, odometry: {noise_per_metre: 0.02, noise_degrees_per_turn: 2, noise_degrees_per_metre: 1}}]
 """
 
-    async def body(lab: Lab) -> None:
-        artifact = await lab.make(ArtCmdVel)
-        for _ in range(4):
-            await lab.do(artifact, "moveForward", 1)
-            await lab.do(artifact, "rotate", 90)
-        assert_at(lab, 0, 0, 0, metres=0.2, degrees=15)
 
-    in_lab(body, world)
+@pytest.mark.world(NOISY)
+async def test_noise_of_odometry_does_not_keep_a_motion_from_ending(lab: Lab, artifact: ArtifactId) -> None:
+    for _ in range(4):
+        await lab.do(artifact, "moveForward", 1)
+        await lab.do(artifact, "rotate", 90)
+    assert_at(lab, 0, 0, 0, metres=0.2, degrees=15)
 
 
 # Commands.
@@ -208,9 +194,8 @@ async def test_commands_obey_the_limits_and_never_pause_longer_than_the_base_all
     assert [event.kind for event in lab.world.log] == []
 
 
-async def test_the_cruise_speed_is_an_option(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel, Structure("speed", (0.25,)), {"turn_speed": 30})
+@made(ArtCmdVel, Structure("speed", (0.25,)), {"turn_speed": 30}, recorded=True)
+async def test_the_cruise_speed_is_an_option(lab: Lab, artifact: ArtifactId) -> None:
     await lab.do(artifact, "moveForward", 1)
     await lab.do(artifact, "rotate", 90)
     assert max(linear for _, linear, _ in lab.commands) == pytest.approx(0.25)
@@ -220,15 +205,14 @@ async def test_the_cruise_speed_is_an_option(lab: Lab) -> None:
 # Ends.
 
 
-async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab: Lab) -> None:
+@made(ArtCmdVelMuxAndOdometry)
+async def test_abort_interrupts_immediately_and_reports_the_covered_distance(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     """Defect 1: abortMoving waited until the motion was over; defect 5: so did every other operation."""
     lab.record("/cmd_vel_mux/input/navi")
-    artifact = await lab.make(ArtCmdVelMuxAndOdometry)
-    watcher = lab.watch(artifact)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
-    before = lab.pose()[0]
-    begin = lab.clock.elapsed
+    moving = await lab.begun(2, artifact, "moveForward", 2)
+    before, begin = lab.pose()[0], lab.clock.elapsed
     await lab.do(artifact, "getCurrentOdom")
     await lab.do(artifact, "abortMoving")
     await moving.done
@@ -241,30 +225,33 @@ async def test_abort_interrupts_immediately_and_reports_the_covered_distance(lab
     assert lab.pose()[0] < before + 0.3
 
 
-async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+def amount(run: Run, functor: str) -> object:
+    """The argument of a failure reason."""
+    assert run.outcome is not None
+    reason = run.outcome.reason
+    assert isinstance(reason, Structure)
+    assert reason.functor == functor
+    return reason.arguments[0]
+
+
+async def test_abort_reports_degrees_of_a_turn_and_is_harmless_without_a_motion(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     await lab.do(artifact, "abortMoving")
-    turning = lab.begin(artifact, "rotate", -180)
-    await lab.sleep(1.5)
+    turning = await lab.begun(1.5, artifact, "rotate", -180)
     heading = lab.pose()[2]
     await lab.do(artifact, "abortMoving")
     await turning.done
-    assert turning.outcome is not None
-    assert isinstance(turning.outcome.reason, Structure)
-    assert turning.outcome.reason.functor == "aborted"
-    assert turning.outcome.reason.arguments[0] == pytest.approx(-heading, abs=5)
+    assert amount(turning, "aborted") == pytest.approx(-heading, abs=5)
     await lab.do(artifact, "moveForward", 0.2)
 
 
-async def test_dropping_a_motion_stops_the_robot_without_an_outcome(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    watcher = lab.watch(artifact)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+async def test_dropping_a_motion_stops_the_robot_without_an_outcome(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     begin = lab.clock.elapsed
-    moving.execution.cancel()
-    await lab.sleep(2)
+    await moving.drop(2)
     assert not moving.done.done()
     assert lab.last_command == STANDSTILL
     assert lab.commands[-1][0] == pytest.approx(begin)
@@ -273,71 +260,45 @@ async def test_dropping_a_motion_stops_the_robot_without_an_outcome(lab: Lab) ->
     await lab.do(artifact, "rotate", 10)
 
 
-async def test_disposing_the_artifact_stops_the_robot(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+async def test_disposing_the_artifact_stops_the_robot(lab: Lab, artifact: ArtifactId) -> None:
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     lab.workspace.dispose_artifact(artifact)
     await moving.done
-    assert moving.outcome is not None
-    assert not moving.outcome.ok
+    assert not moving.ok
     await lab.sleep(1)
     assert lab.last_command == STANDSTILL
-    other = await lab.make(ArtCmdVel)
-    await lab.do(other, "rotate", 10)
+    await lab.do(await lab.make(ArtCmdVel), "rotate", 10)
 
 
-async def test_the_end_of_the_process_stops_the_robot(lab: Lab) -> None:
+@pytest.mark.parametrize("drives", [True, False])
+async def test_the_end_of_the_process_stops_the_robot_unless_it_stands(
+    lab: Lab, artifact: ArtifactId, drives: bool
+) -> None:
     """The backend runs its exit hooks at signals and at the end; closing it does the same."""
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
-    assert lab.last_command != STANDSTILL
+    if drives:
+        await lab.begun(1.5, artifact, "moveForward", 2)
+        assert lab.last_command != STANDSTILL
     lab.backend.lifetime.stop()  # type: ignore[attr-defined]  # of the memory backend
     await lab.sleep(0.01)
+    assert lab.last_command == STANDSTILL if drives else lab.commands == []
+
+
+WALL = "bounds: {from: [-1, -1], to: [1, 1]}\nborder: walls\nrobots: [{name: turtlebot}]\n"
+
+
+@pytest.mark.world(WALL)
+async def test_a_motion_against_a_wall_fails_as_blocked(lab: Lab, artifact: ArtifactId) -> None:
+    blocked = await lab.call(artifact, "moveForward", 2)
+    assert amount(blocked, "blocked") == pytest.approx(lab.pose()[0], abs=0.02)
+    assert lab.clock.elapsed < 8
+    await lab.sleep(0.1)
     assert lab.last_command == STANDSTILL
-
-
-async def test_a_standing_robot_gets_no_command_at_the_end_of_the_process(lab: Lab) -> None:
-    lab.record()
-    await lab.make(ArtCmdVel)
-    lab.backend.lifetime.stop()  # type: ignore[attr-defined]
-    await lab.sleep(0.01)
-    assert lab.commands == []
-
-
-def test_a_motion_against_a_wall_fails_as_blocked() -> None:
-    world = """
-name: wall
-bounds: {from: [-1, -1], to: [1, 1]}
-border: walls
-robots:
-  - name: turtlebot
-    pose: {x: 0, y: 0, yaw_degrees: 0}
-"""
-
-    async def body(lab: Lab) -> None:
-        lab.record()
-        artifact = await lab.make(ArtCmdVel)
-        blocked = await lab.call(artifact, "moveForward", 2)
-        assert blocked.outcome is not None
-        assert isinstance(blocked.outcome.reason, Structure)
-        assert blocked.outcome.reason.functor == "blocked"
-        assert blocked.outcome.reason.arguments[0] == pytest.approx(lab.pose()[0], abs=0.02)
-        assert lab.clock.elapsed < 8
-        await lab.sleep(0.1)
-        assert lab.last_command == STANDSTILL
-        await lab.do(artifact, "moveReverse", 0.5)
-
-    in_lab(body, world)
+    await lab.do(artifact, "moveReverse", 0.5)
 
 
 @pytest.mark.world(None)
-async def test_without_odometry_a_motion_fails_and_never_drives(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel, Structure("odometry_timeout", (3,)))
+@made(ArtCmdVel, Structure("odometry_timeout", (3,)), recorded=True)
+async def test_without_odometry_a_motion_fails_and_never_drives(lab: Lab, artifact: ArtifactId) -> None:
     failed = await lab.call(artifact, "moveForward", 1)
     assert failed.reason == "no_odometry(3)"
     assert lab.clock.elapsed == pytest.approx(3, abs=0.2)
@@ -361,8 +322,7 @@ async def test_the_robot_stands_while_odometry_is_lost_and_then_continues(lab: L
     lab.record()
     relay = Relay(lab)
     artifact = await lab.make(ArtCmdVel, Structure("odometry_topic", ("relayed",)))
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1.5)
+    moving = await lab.begun(1.5, artifact, "moveForward", 2)
     relay.on = False
     await lab.sleep(2)
     assert lab.last_command == STANDSTILL
@@ -370,31 +330,25 @@ async def test_the_robot_stands_while_odometry_is_lost_and_then_continues(lab: L
     relay.on = True
     await moving.done
     assert_at(lab, 2, 0, 0)
-    moving = lab.begin(artifact, "moveReverse", 2)
-    await lab.sleep(1.5)
+    moving = await lab.begun(1.5, artifact, "moveReverse", 2)
     relay.on = False
     await moving.done
     assert moving.reason == "no_odometry(5)"
     assert lab.speed() == (0, 0)
 
 
-async def test_a_motion_that_takes_too_long_fails(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel, Structure("timeout", (2,)))
-    failed = await lab.call(artifact, "moveForward", 2.5)
-    assert failed.reason == "timeout(2)"
+@made(ArtCmdVel, Structure("timeout", (2,)))
+async def test_a_motion_that_takes_too_long_fails(lab: Lab, artifact: ArtifactId) -> None:
+    assert (await lab.call(artifact, "moveForward", 2.5)).reason == "timeout(2)"
     await lab.sleep(1)
     assert lab.speed() == (0, 0)
 
 
-async def test_nonsense_numbers_are_refused(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    for operation, arguments in [
-        ("moveForward", (math.inf,)),
-        ("rotate", (math.nan,)),
-        ("goTo", (0, math.nan, 0)),
-    ]:
+async def test_nonsense_numbers_are_refused(lab: Lab, artifact: ArtifactId) -> None:
+    nonsense = [("moveForward", (math.inf,)), ("rotate", (math.nan,)), ("goTo", (0, math.nan, 0))]
+    for operation, arguments in nonsense:
         assert (await lab.call(artifact, operation, *arguments)).reason.startswith("wrong_number(")
-    assert not (await lab.call(artifact, "moveForward", "far")).outcome.ok  # type: ignore[union-attr]
+    assert not (await lab.call(artifact, "moveForward", "far")).ok
 
 
 # Odometry of the moving artifacts.

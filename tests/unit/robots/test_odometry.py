@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from robot_lab import Lab, in_lab
+from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import OperationFailed, Out, Structure
+from jacaros.artifacts import ArtifactId, OperationFailed, Out, Structure
 from jacaros.robots.artifacts.odometry import ArtOdometry, ArtOdometryOnDemand
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
@@ -55,10 +55,8 @@ async def test_properties_change_in_steps_of_the_artifact_with_the_cause_of_the_
 
 
 async def test_pose_has_the_heading_in_degrees(lab: Lab) -> None:
-    odometry = await lab.make(ArtOdometry)
-    watcher = lab.watch(odometry)
-    motion = await lab.make(ArtCmdVel)
-    await lab.do(motion, "goTo", 1, 0, 135)
+    watcher = lab.watch(await lab.make(ArtOdometry))
+    await lab.do(await lab.make(ArtCmdVel), "goTo", 1, 0, 135)
     await lab.sleep(0.2)
     assert watcher.holds("pose")[0] == pytest.approx((1, 0, 135), abs=0.2)
 
@@ -80,8 +78,7 @@ async def test_rate_and_dead_band_limit_the_changes(lab: Lab) -> None:
 async def test_on_demand_odometry_changes_only_when_asked(lab: Lab, arguments: tuple[Any, ...]) -> None:
     odometry = await lab.make(*arguments)
     watcher = lab.watch(odometry)
-    motion = await lab.make(ArtCmdVel)
-    await lab.do(motion, "moveForward", 0.5)
+    await lab.do(await lab.make(ArtCmdVel), "moveForward", 0.5)
     await lab.sleep(0.1)
     assert watcher.values("odom") == [(0, 0, 0)]
     await lab.do(odometry, "getCurrentOdom")
@@ -91,34 +88,31 @@ async def test_on_demand_odometry_changes_only_when_asked(lab: Lab, arguments: t
     assert watcher.signals == []
 
 
-async def test_odometry_can_be_given_to_the_caller_alone(lab: Lab) -> None:
-    odometry = await lab.make(ArtOdometryOnDemand)
-    watcher = lab.watch(odometry)
-    motion = await lab.make(ArtCmdVel)
-    await lab.do(motion, "goTo", 0.5, 0, 90)
+@made(ArtOdometryOnDemand)
+async def test_odometry_can_be_given_to_the_caller_alone(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    await lab.do(await lab.make(ArtCmdVel), "goTo", 0.5, 0, 90)
     await lab.sleep(0.1)
     outs = Out(), Out(), Out()
-    await lab.do(odometry, "getCurrentOdom", *outs)
+    await lab.do(artifact, "getCurrentOdom", *outs)
     assert [out.value for out in outs] == pytest.approx([0.5, 0, 0], abs=0.01)
-    await lab.do(odometry, "getCurrentPose", *outs)
+    await lab.do(artifact, "getCurrentPose", *outs)
     assert [out.value for out in outs] == pytest.approx([0.5, 0, 90], abs=0.2)
     assert watcher.values("odom") == [(0, 0, 0)]
 
 
-def test_a_question_before_the_first_message_waits_for_it_or_fails() -> None:
-    async def with_robot(lab: Lab) -> None:
-        odometry = await lab.make(ArtOdometry)
-        await lab.do(odometry, "getCurrentOdom")
-        assert 0 < lab.clock.elapsed <= 0.1
+@made(ArtOdometry)
+async def test_a_question_before_the_first_message_waits_for_it(lab: Lab, artifact: ArtifactId) -> None:
+    await lab.do(artifact, "getCurrentOdom")
+    assert 0 < lab.clock.elapsed <= 0.1
 
-    in_lab(with_robot)
 
-    async def without(lab: Lab) -> None:
-        odometry = await lab.make(ArtOdometry)
-        assert (await lab.call(odometry, "getCurrentOdom")).reason == "no_odometry(5)"
-        assert lab.clock.elapsed == 5
-
-    in_lab(without, None)
+@pytest.mark.world(None)
+@made(ArtOdometry)
+async def test_a_question_without_a_message_fails(lab: Lab, artifact: ArtifactId) -> None:
+    assert (await lab.call(artifact, "getCurrentOdom")).reason == "no_odometry(5)"
+    assert lab.clock.elapsed == 5
 
 
 @pytest.mark.world(None)

@@ -1,33 +1,22 @@
 """Another node that commands the same robot is named: in the log, as a percept, and to `ros check`."""
 
-from typing import Any
-
 from robot_lab import TWIST, Lab
 
 from jacaros.artifacts.env.values import Structure
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.mapping.artifact import mapped_type
 from jacaros.robots.mapping.file import read_mapping
-from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.open import open_backend
 
 MAPPING = """operations:
   roll: {parameters: [v], publish: cmd_vel, type: geometry_msgs/msg/Twist, fields: {linear.x: $v}}
 """
 
 
-async def other_node(lab: Lab, name: str) -> Backend:
-    graph: Any = lab.backend
-    made = open_backend("memory", lab.clock, name, log=lambda text: None, graph=graph.graph)
-    await made.start()
-    return made
-
-
 async def test_a_node_that_drives_the_same_robot_is_named_until_it_leaves(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtCmdVel, name="wheels"))
     await lab.sleep(5)
     assert watcher.holds("other_publisher") == []
-    teleop = await other_node(lab, "teleop")
+    teleop = await lab.node("teleop")
     teleop.publisher("/cmd_vel", TWIST)
     await lab.sleep(3)
     assert watcher.holds("other_publisher") == [("/cmd_vel", "/teleop")]
@@ -39,7 +28,7 @@ async def test_a_node_that_drives_the_same_robot_is_named_until_it_leaves(lab: L
 
 async def test_a_mapping_that_publishes_velocities_names_it_too(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(mapped_type(read_mapping(MAPPING, "robot.yaml"), "robot")))
-    (await other_node(lab, "planner")).publisher("/cmd_vel", "geometry_msgs/msg/TwistStamped")
+    (await lab.node("planner")).publisher("/cmd_vel", "geometry_msgs/msg/TwistStamped")
     await lab.sleep(3)
     assert watcher.holds("other_publisher") == [("/cmd_vel", "/planner")]
 
@@ -47,7 +36,7 @@ async def test_a_mapping_that_publishes_velocities_names_it_too(lab: Lab) -> Non
 async def test_neither_the_guard_nor_other_artifacts_of_the_run_count(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtCmdVel))
     second = await lab.make(ArtCmdVel)
-    (await other_node(lab, "lab_guard")).publisher("/cmd_vel", TWIST)
+    (await lab.node("lab_guard")).publisher("/cmd_vel", TWIST)
     await lab.sleep(4)
     lab.workspace.dispose_artifact(second)
     await lab.sleep(4)
@@ -57,7 +46,7 @@ async def test_neither_the_guard_nor_other_artifacts_of_the_run_count(lab: Lab) 
 
 async def test_one_node_is_logged_once_by_all_artifacts_and_shown_by_each(lab: Lab) -> None:
     watchers = [lab.watch(await lab.make(ArtCmdVel)) for _ in range(2)]
-    (await other_node(lab, "teleop")).publisher("/cmd_vel", TWIST)
+    (await lab.node("teleop")).publisher("/cmd_vel", TWIST)
     await lab.sleep(4)
     assert [each.holds("other_publisher") for each in watchers] == [[("/cmd_vel", "/teleop")]] * 2
     assert sum("teleop" in line for line in lab.logged) == 1
@@ -65,13 +54,13 @@ async def test_one_node_is_logged_once_by_all_artifacts_and_shown_by_each(lab: L
 
 async def test_another_node_of_the_same_name_counts(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtCmdVel))
-    (await other_node(lab, "lab")).publisher("/cmd_vel", TWIST)
+    (await lab.node("lab")).publisher("/cmd_vel", TWIST)
     await lab.sleep(3)
     assert watcher.holds("other_publisher") == [("/cmd_vel", "/lab")]
 
 
 async def test_a_topic_of_its_own_silences_the_warning(lab: Lab) -> None:
     watcher = lab.watch(await lab.make(ArtCmdVel, Structure("command_topic", ("agents/cmd_vel",))))
-    (await other_node(lab, "twist_mux")).publisher("/cmd_vel", TWIST)
+    (await lab.node("twist_mux")).publisher("/cmd_vel", TWIST)
     await lab.sleep(4)
     assert watcher.holds("other_publisher") == []

@@ -5,23 +5,20 @@ import random
 from typing import Any
 
 import pytest
-from robot_lab import STANDSTILL, Lab, assert_at
+from robot_lab import STANDSTILL, Lab, Watcher, assert_at, made
 
-from jacaros.artifacts import Structure
+from jacaros.artifacts import ArtifactId, Structure
 from jacaros.robots.artifacts.velocity import ArtCmdVel, ArtCmdVelMux, ArtCmdVelMuxAndOdometry
 
-pytestmark = pytest.mark.world("empty")
+pytestmark = [pytest.mark.world("empty"), made(ArtCmdVel, recorded=True)]
 
 
-async def test_a_drive_continues_with_the_remaining_distance(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    watcher = lab.watch(artifact)
-    moving = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+async def test_a_drive_continues_with_the_remaining_distance(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    moving = await lab.begun(2, artifact, "moveForward", 2)
     begin = lab.clock.elapsed
-    moving.execution.pause()
-    await lab.sleep(0.001)
+    await moving.pause(0.001)
     assert lab.last_command == STANDSTILL
     assert lab.commands[-1][0] == begin
     await lab.sleep(10)
@@ -29,27 +26,23 @@ async def test_a_drive_continues_with_the_remaining_distance(lab: Lab) -> None:
     assert lab.pose()[0] < 1.5
     assert watcher.holds("moving") == [("paused",)]
     assert not moving.done.done()
-    moving.execution.resume()
-    await moving.done
+    await moving.resumed()
     assert_at(lab, 2, 0, 0)
     assert watcher.holds("moving") == [("stopped",)]
 
 
-async def test_a_turn_continues_with_the_remaining_angle(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+async def test_a_turn_continues_with_the_remaining_angle(lab: Lab, artifact: ArtifactId) -> None:
     turning = lab.begin(artifact, "rotate", 270)
     for _ in range(3):
         await lab.sleep(1)
-        turning.execution.pause()
-        await lab.sleep(2)
+        await turning.pause(2)
         assert lab.speed() == (0, 0)
         turning.execution.resume()
     await turning.done
     assert_at(lab, 0, 0, -90)
 
 
-async def test_a_pause_and_resume_in_the_same_moment_changes_nothing(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+async def test_a_pause_and_resume_in_the_same_moment_changes_nothing(lab: Lab, artifact: ArtifactId) -> None:
     moving = lab.begin(artifact, "moveForward", 1)
     for _ in range(5):
         await lab.sleep(0.33)
@@ -59,16 +52,11 @@ async def test_a_pause_and_resume_in_the_same_moment_changes_nothing(lab: Lab) -
     assert_at(lab, 1, 0, 0)
 
 
-async def test_an_open_loop_motion_continues_with_the_remaining_time(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    moving = lab.begin(artifact, "move", 19)
-    await lab.sleep(1.05)
-    moving.execution.pause()
-    await lab.sleep(5)
+async def test_an_open_loop_motion_continues_with_the_remaining_time(lab: Lab, artifact: ArtifactId) -> None:
+    moving = await lab.begun(1.05, artifact, "move", 19)
+    await moving.pause(5)
     assert lab.speed() == (0, 0)
-    moving.execution.resume()
-    await moving.done
+    await moving.resumed()
     assert len([1 for _, linear, _ in lab.commands if linear]) == 20
 
 
@@ -76,28 +64,23 @@ async def test_an_open_loop_motion_continues_with_the_remaining_time(lab: Lab) -
 async def test_a_drive_to_a_pose_continues_from_wherever_the_robot_is(lab: Lab, when: float) -> None:
     artifact = await lab.make(ArtCmdVelMuxAndOdometry)
     other = await lab.make(ArtCmdVelMux)
-    going = lab.begin(artifact, "goTo", -1.5, 1, 90)
-    await lab.sleep(when)
+    going = await lab.begun(when, artifact, "goTo", -1.5, 1, 90)
     assert not going.done.done()
     going.execution.pause()
     await lab.do(other, "goTo", 1, 1, 0)
     assert_at(lab, 1, 1, 0, metres=0.02)
-    going.execution.resume()
-    await going.done
-    assert going.outcome is not None
-    assert going.outcome.ok
+    await going.resumed()
+    assert going.ok
     assert_at(lab, -1.5, 1, 90, metres=0.02)
 
 
-async def test_a_second_motion_waits_for_the_first_across_artifacts(lab: Lab) -> None:
+async def test_a_second_motion_waits_for_the_first_across_artifacts(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     first = await lab.make(ArtCmdVelMuxAndOdometry)
-    second = await lab.make(ArtCmdVel)
-    watcher = lab.watch(second)
-    a = lab.begin(first, "moveForward", 1)
-    await lab.sleep(0.1)
-    b = lab.begin(second, "rotate", 90)
-    c = lab.begin(first, "moveForward", 1)
-    await lab.sleep(1)
+    a = await lab.begun(0.1, first, "moveForward", 1)
+    b = lab.begin(artifact, "rotate", 90)
+    c = await lab.begun(1, first, "moveForward", 1)
     assert watcher.holds("moving") == [("waiting",)]
     await a.done
     assert not b.done.done()
@@ -110,65 +93,50 @@ async def test_a_second_motion_waits_for_the_first_across_artifacts(lab: Lab) ->
 @pytest.mark.world("two_robots")
 async def test_motions_of_different_robots_do_not_wait_for_each_other(lab: Lab) -> None:
     artifacts = [await lab.make(ArtCmdVel, name) for name in ("robot_0", "robot_1")]
-    runs = [lab.begin(each, "moveForward", 0.5) for each in artifacts]
-    for each in runs:
+    for each in [lab.begin(each, "moveForward", 0.5) for each in artifacts]:
         await each.done
     assert lab.clock.elapsed < 3
     assert lab.pose("robot_0")[0] == pytest.approx(-0.5, abs=0.01)
     assert lab.pose("robot_1")[0] == pytest.approx(0.5, abs=0.01)
 
 
+@made(ArtCmdVelMuxAndOdometry)
 async def test_recharging_in_the_middle_of_a_side_as_in_the_thesis_keeps_the_remaining_distance(
-    lab: Lab,
+    lab: Lab, artifact: ArtifactId
 ) -> None:
     """Patrol with relative recharging (listing 23): others drive while the patrol's motion is suspended."""
-    artifact = await lab.make(ArtCmdVelMuxAndOdometry)
-    side = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+    side = await lab.begun(2, artifact, "moveForward", 2)
     side.execution.pause()
-    way: list[tuple[str, float]] = [("moveForward", 1), ("rotate", 90), ("moveForward", 1)]
-    way += [("rotate", 180), ("moveForward", 1), ("rotate", -90), ("moveForward", 1), ("rotate", 180)]
-    await lab.do(artifact, *way[0])
+    await lab.do(artifact, "moveForward", 1)
     away = lab.pose()
-    for step in way[1:]:
-        await lab.do(artifact, *step)
+    for degrees in (90, 180, -90):
+        await lab.do(artifact, "rotate", degrees)
+        await lab.do(artifact, "moveForward", 1)
+    await lab.do(artifact, "rotate", 180)
     assert lab.pose()[0] == pytest.approx(away[0] - 1, abs=0.02)
-    side.execution.resume()
-    await side.done
+    await side.resumed()
     assert_at(lab, 2, 0, 0, metres=0.03, degrees=1)
 
 
-async def test_what_remains_is_driven_from_where_the_robot_was_left(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    side = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
-    side.execution.pause()
-    await lab.sleep(2)
+async def test_what_remains_is_driven_from_where_the_robot_was_left(lab: Lab, artifact: ArtifactId) -> None:
+    side = await lab.begun(2, artifact, "moveForward", 2)
+    await side.pause(2)
     stood = lab.pose()[0]
     await lab.do(artifact, "rotate", 90)
-    side.execution.resume()
-    await side.done
+    await side.resumed()
     assert_at(lab, stood, 2 - stood, 90)
-    turn = lab.begin(artifact, "rotate", 90)
-    await lab.sleep(1)
-    turn.execution.pause()
-    await lab.sleep(2)
-    stood = lab.pose()[2]
+    turn = await lab.begun(1, artifact, "rotate", 90)
+    await turn.pause(2)
     await lab.do(artifact, "rotate", 200)
-    turn.execution.resume()
-    await turn.done
+    await turn.resumed()
     left = math.degrees(math.remainder(math.radians(lab.pose()[2] - 180 - 200), math.tau))
     assert left == pytest.approx(0, abs=0.5)
 
 
-async def test_a_resumed_motion_waits_until_the_robot_is_free(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    side = lab.begin(artifact, "driveTo", 2, 0)
-    await lab.sleep(1)
-    side.execution.pause()
-    await lab.sleep(2)
-    other = lab.begin(artifact, "goTo", 0, 1, 0)
-    await lab.sleep(1)
+async def test_a_resumed_motion_waits_until_the_robot_is_free(lab: Lab, artifact: ArtifactId) -> None:
+    side = await lab.begun(1, artifact, "driveTo", 2, 0)
+    await side.pause(2)
+    other = await lab.begun(1, artifact, "goTo", 0, 1, 0)
     side.execution.resume()
     await lab.sleep(1)
     assert not side.done.done()
@@ -178,99 +146,70 @@ async def test_a_resumed_motion_waits_until_the_robot_is_free(lab: Lab) -> None:
     assert lab.pose()[:2] == pytest.approx((2, 0), abs=0.02)
 
 
-async def test_a_motion_that_is_suspended_while_it_waits_does_not_take_the_robot(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    first = lab.begin(artifact, "moveForward", 0.5)
-    await lab.sleep(0.1)
+@pytest.mark.parametrize("end", ["suspended", "dropped"])
+async def test_a_motion_that_is_suspended_or_dropped_while_it_waits_does_not_take_the_robot(
+    lab: Lab, artifact: ArtifactId, end: str
+) -> None:
+    first = await lab.begun(0.1, artifact, "moveForward", 0.5)
     second = lab.begin(artifact, "rotate", 90)
-    third = lab.begin(artifact, "moveForward", 0.5)
-    await lab.sleep(0.1)
-    second.execution.pause()
+    third = await lab.begun(0.1, artifact, "moveForward", 0.5)
+    (second.execution.pause if end == "suspended" else second.execution.cancel)()
     await first.done
     await third.done
     assert_at(lab, 1, 0, 0)
-    second.execution.resume()
-    await second.done
-    assert_at(lab, 1, 0, 90)
+    if end == "suspended":
+        await second.resumed()
+        assert_at(lab, 1, 0, 90)
 
 
-async def test_a_motion_waits_until_the_previous_one_has_stopped(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    side = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
+async def test_a_motion_waits_until_the_previous_one_has_stopped(lab: Lab, artifact: ArtifactId) -> None:
+    side = await lab.begun(2, artifact, "moveForward", 2)
     side.execution.pause()
-    turn = lab.begin(artifact, "rotate", 180)
-    await turn.done
+    await lab.do(artifact, "rotate", 180)
     assert lab.pose()[1] == pytest.approx(0, abs=0.005)
     await lab.do(artifact, "rotate", 180)
-    side.execution.resume()
-    await side.done
+    await side.resumed()
     assert_at(lab, 2, 0, 0)
 
 
-async def test_dropping_a_suspended_motion_leaves_the_robot_to_the_others(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
-    side = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(2)
-    side.execution.pause()
-    await lab.sleep(2)
-    stood = lab.pose()[0]
-    other = lab.begin(artifact, "moveReverse", stood)
-    await lab.sleep(0.7)
+async def test_dropping_a_suspended_motion_leaves_the_robot_to_the_others(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    side = await lab.begun(2, artifact, "moveForward", 2)
+    await side.pause(2)
+    other = await lab.begun(0.7, artifact, "moveReverse", lab.pose()[0])
     commands = len(lab.commands)
-    side.execution.cancel()
-    await lab.sleep(0.001)
+    await side.drop(0.001)
     assert all(command[1:] != STANDSTILL for command in lab.commands[commands:])
     await other.done
     assert_at(lab, 0, 0, 0)
 
 
-async def test_dropping_a_waiting_motion_lets_the_next_one_have_the_robot(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
-    first = lab.begin(artifact, "moveForward", 0.5)
-    await lab.sleep(0.1)
-    second = lab.begin(artifact, "rotate", 90)
-    await lab.sleep(0.1)
-    third = lab.begin(artifact, "moveForward", 0.5)
-    await lab.sleep(0.1)
-    second.execution.cancel()
-    await first.done
-    await third.done
-    assert_at(lab, 1, 0, 0)
-
-
-async def test_abort_ends_the_waiting_motions_too_but_not_the_suspended_ones(lab: Lab) -> None:
-    artifact = await lab.make(ArtCmdVel)
+async def test_abort_ends_the_waiting_motions_too_but_not_the_suspended_ones(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     mux = await lab.make(ArtCmdVelMux)
-    suspended = lab.begin(artifact, "moveForward", 2)
-    await lab.sleep(1)
-    suspended.execution.pause()
-    await lab.sleep(2)
-    driving = lab.begin(artifact, "rotate", 180)
-    await lab.sleep(0.5)
-    waiting = lab.begin(mux, "moveForward", 1)
-    await lab.sleep(0.5)
+    suspended = await lab.begun(1, artifact, "moveForward", 2)
+    await suspended.pause(2)
+    driving = await lab.begun(0.5, artifact, "rotate", 180)
+    waiting = await lab.begun(0.5, mux, "moveForward", 1)
     await lab.do(mux, "abortMoving")
     await driving.done
     await waiting.done
     assert driving.reason.startswith("aborted(")
     assert waiting.reason == "aborted(0)"
     await lab.do(artifact, "turnTo", 0)
-    suspended.execution.resume()
-    await suspended.done
+    await suspended.resumed()
     assert_at(lab, 2, 0, 0)
 
 
-async def test_suspending_before_a_motion_begins_keeps_it_from_driving(lab: Lab) -> None:
-    lab.record()
-    artifact = await lab.make(ArtCmdVel)
+async def test_suspending_before_a_motion_begins_keeps_it_from_driving(
+    lab: Lab, artifact: ArtifactId
+) -> None:
     side = lab.begin(artifact, "moveForward", 0.5)
-    side.execution.pause()
-    await lab.sleep(3)
+    await side.pause(3)
     assert all(command[1:] == STANDSTILL for command in lab.commands)
-    side.execution.resume()
-    await side.done
+    await side.resumed()
     assert_at(lab, 0.5, 0, 0)
 
 
@@ -284,6 +223,5 @@ async def test_any_mixture_of_pauses_ends_at_the_goal(lab: Lab, seed: int) -> No
             for _ in range(chance.randint(0, 6)):
                 await lab.sleep(chance.uniform(0, 1.2))
                 (started.execution.pause if chance.random() < 0.5 else started.execution.resume)()
-            started.execution.resume()
-            await started.done
+            await started.resumed()
         assert_at(lab, *corner, metres=0.03, degrees=1)

@@ -4,14 +4,12 @@ import asyncio
 from typing import Any
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import InvalidArtifact, OperationFailed, internal_operation, operation
+from jacaros.artifacts import ArtifactId, InvalidArtifact, OperationFailed, internal_operation, operation
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.action import ActionPolicy, GoalStatus
 from jacaros.robots.ros.errors import CallFailed
-
-pytestmark = pytest.mark.world("empty")
 
 COUNT = "jacaros_interfaces/action/Count"
 FOLLOW = "nav2_msgs/action/NavigateToPose"
@@ -66,15 +64,16 @@ class Desk(RosArtifact):
         self.carried_out = number
 
 
-async def test_a_request_is_an_operation_of_the_artifact(lab: Lab) -> None:
-    desk = await lab.make(Desk, "r1")
-    seen = lab.watch(desk)
+pytestmark = [pytest.mark.world("empty"), made(Desk, "r1")]
+
+
+async def test_a_request_is_an_operation_of_the_artifact(lab: Lab, watcher: Watcher) -> None:
     client = lab.backend.client("/r1/order", "std_srvs/srv/SetBool")
     first = await client.call({"data": True}, 5)
     assert (first.success, first.message) == (True, "number 1")
     refused = await client.call({"data": False}, 5)
     assert (refused.success, refused.message) == (False, "nothing is ordered")
-    assert seen.holds("orders") == [(1,)]  # the step that failed is undone
+    assert watcher.holds("orders") == [(1,)]  # the step that failed is undone
 
 
 async def test_a_failure_that_the_response_has_no_place_for_fails_the_call(lab: Lab) -> None:
@@ -104,15 +103,13 @@ async def test_a_goal_waits_for_an_operation_of_an_agent(lab: Lab) -> None:
     assert not seen.holds("order")
 
 
-async def test_a_cancelled_goal_has_run_its_finally(lab: Lab) -> None:
-    desk = await lab.make(Desk, "r1")
-    seen = lab.watch(desk)
+async def test_a_cancelled_goal_has_run_its_finally(lab: Lab, watcher: Watcher) -> None:
     client = lab.backend.action_client("/r1/carry", COUNT)
     goal = await client.send({"target": 7}, timeout=5)
     await lab.sleep(1)
     assert await goal.cancel(5)
     assert (await goal.outcome(5)).status is GoalStatus.CANCELED
-    assert not seen.holds("order")
+    assert not watcher.holds("order")
 
 
 async def test_a_newer_goal_begins_when_the_older_has_ended(lab: Lab) -> None:
@@ -133,19 +130,14 @@ async def test_a_failing_goal_is_aborted_with_the_code_of_its_reason(lab: Lab) -
     await lab.make(Desk, "r1")
     goal = await lab.backend.action_client("/r1/go", FOLLOW).send({}, timeout=5)
     outcome = await goal.outcome(5)
-    assert (outcome.status, outcome.text, outcome.result.error_code) == (
-        GoalStatus.ABORTED,
-        "no path",
-        203,
-    )
+    assert (outcome.status, outcome.text, outcome.result.error_code) == (GoalStatus.ABORTED, "no path", 203)
 
 
-async def test_clients_are_notified_when_the_artifact_is_disposed(lab: Lab) -> None:
-    desk = await lab.make(Desk, "r1")
+async def test_clients_are_notified_when_the_artifact_is_disposed(lab: Lab, artifact: ArtifactId) -> None:
     client = lab.backend.action_client("/r1/carry", COUNT)
     goal = await client.send({"target": 7}, timeout=5)
     await lab.sleep(1)
-    lab.workspace.dispose_artifact(desk)
+    lab.workspace.dispose_artifact(artifact)
     assert (await goal.outcome(5)).status is GoalStatus.ABORTED
     await asyncio.sleep(0)
     assert not client.ready

@@ -3,7 +3,7 @@
 import pytest
 from fake_actions import FakeServer
 from navigator import Navigator, begun, failed, succeeded, suspended
-from robot_lab import Lab
+from robot_lab import Lab, Run
 
 from jacaros.artifacts import Structure
 from jacaros.robots.kit.acting import ENDING
@@ -18,34 +18,33 @@ async def test_going_on_while_suspended(lab: Lab) -> None:
     assert server.events == [(0, "accepted 0"), (2, "succeeded 0")]
 
 
+async def end_second(lab: Lab, server: FakeServer, going: Run, after: float = 3) -> None:
+    """Resume; the goal that is sent then succeeds."""
+    going.execution.resume()
+    await lab.sleep(after)
+    server.goals[1].end()
+    await succeeded(going)
+
+
 async def test_cancelled_while_suspended_and_sent_again(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrRest", Structure("timeout", (5,)))
     await lab.sleep(60)
     assert server.events == [(0, "accepted 0"), (1, "cancel 0"), (1.11, "canceled 0")]
-    going.execution.resume()
-    await lab.sleep(3)
-    server.goals[1].end()
-    await succeeded(going)
+    await end_second(lab, server, going)
 
 
 async def test_a_cancelled_goal_that_the_server_ends_as_aborted_is_sent_again_too(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrRest", cancelled_as=GoalStatus.ABORTED)
     await lab.sleep(2)
     assert server.told == ["accepted 0", "cancel 0", "aborted 0"]
-    going.execution.resume()
-    await lab.sleep(3)
-    server.goals[1].end()
-    await succeeded(going)
+    await end_second(lab, server, going)
 
 
 async def test_a_goal_aborted_before_the_server_receives_the_cancel_is_sent_again(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrRest", agrees=False)
     server.goals[0].end(GoalStatus.ABORTED)
     await lab.sleep(2)
-    going.execution.resume()
-    await lab.sleep(3)
-    server.goals[1].end()
-    await succeeded(going)
+    await end_second(lab, server, going)
 
 
 async def test_a_goal_that_the_server_does_not_cancel_and_aborts_later_has_failed(lab: Lab) -> None:
@@ -58,8 +57,7 @@ async def test_a_goal_that_the_server_does_not_cancel_and_aborts_later_has_faile
 async def test_time_in_which_the_goal_rests_does_not_count_but_the_rest_does(lab: Lab) -> None:
     server, going = await begun(lab, "goOrRest", Structure("timeout", (5,)), after=0)
     await lab.sleep(3)
-    going.execution.pause()
-    await lab.sleep(60)
+    await going.pause(60)
     going.execution.resume()
     await failed(going, "timeout(5)")
     assert lab.clock.elapsed == pytest.approx(65, abs=0.05)
@@ -84,16 +82,6 @@ async def test_a_goal_that_succeeds_while_it_is_being_cancelled_has_succeeded(la
     await succeeded(going)
 
 
-async def test_a_goal_that_is_not_cancelled_continues_and_its_outcome_counts(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrRest", agrees=False)
-    await lab.sleep(10)
-    going.execution.resume()
-    await lab.sleep(1)
-    assert server.told == ["accepted 0", "cancel 0"]
-    server.goals[0].end()
-    await going.done
-
-
 async def test_a_server_that_agrees_to_cancel_and_does_not_is_lost(lab: Lab) -> None:
     _, going = await suspended(lab, "goOrRest", ending=None)
     await failed(going, "server_lost")
@@ -104,10 +92,7 @@ async def test_suspended_before_the_server_has_accepted(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrRest", accepting=2)
     await lab.sleep(5)
     assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
-    going.execution.resume()
-    await lab.sleep(3)
-    server.goals[1].end()
-    await going.done
+    await end_second(lab, server, going)
 
 
 async def test_suspended_before_it_begins_nothing_is_sent(lab: Lab) -> None:
@@ -127,10 +112,8 @@ async def test_dropped_while_suspended(lab: Lab) -> None:
     for operation_name in ("goOrRest", "goOrWait"):
         going = lab.begin(artifact, operation_name, 3)
         await lab.sleep(1)
-        going.execution.pause()
-        await lab.sleep(1)
-        going.execution.cancel()
-        await lab.sleep(1)
+        await going.pause(1)
+        await going.drop(1)
         assert going.execution.ended
         assert server.goals[-1].over
     assert len(server.goals) == 2
@@ -140,8 +123,7 @@ async def test_paused_and_resumed_at_the_server(lab: Lab) -> None:
     server, going = await begun(lab, "goOrWait", Structure("timeout", (5,)), after=0)
     for _ in range(2):
         await lab.sleep(1)
-        going.execution.pause()
-        await lab.sleep(10)
+        await going.pause(10)
         going.execution.resume()
     await lab.sleep(1)
     server.goals[0].end()
@@ -150,22 +132,12 @@ async def test_paused_and_resumed_at_the_server(lab: Lab) -> None:
     assert len(server.goals) == 1
 
 
-async def test_a_goal_that_ends_while_it_is_paused_has_ended(lab: Lab) -> None:
-    server, going = await suspended(lab, "goOrWait")
-    await lab.sleep(1)
-    server.goals[0].end(GoalStatus.ABORTED, "lost the way", error_code=7)
-    await failed(going, 'aborted(7,"lost the way")')
-
-
 async def test_a_goal_that_cannot_be_paused_is_cancelled_and_sent_again(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrWait", Structure("refuse_pause", (1,)))
     await lab.sleep(2)
     assert server.told == ["accepted 0", "cancel 0", "canceled 0"]
     assert any("could not be paused: RuntimeError: no brakes" in line for line in lab.logged)
-    going.execution.resume()
-    await lab.sleep(1)
-    server.goals[1].end()
-    await going.done
+    await end_second(lab, server, going, after=1)
 
 
 @pytest.mark.parametrize(
@@ -186,8 +158,7 @@ async def test_feedback_during_the_end_of_a_suspended_goal_is_ignored(lab: Lab) 
     artifact = going.execution.request.artifact
     watcher = lab.watch(artifact)
     server.goals[0].feedback(distance=9)
-    going.execution.pause()
-    await lab.sleep(0.5)
+    await going.pause(0.5)
     server.goals[0].feedback(distance=8)
     await lab.sleep(1)
     going.execution.resume()
@@ -199,13 +170,16 @@ async def test_feedback_during_the_end_of_a_suspended_goal_is_ignored(lab: Lab) 
     assert [line.partition("] ")[2] for line in lab.logged] == ["sent", "over", "sent", "over"]
 
 
-async def test_a_goal_that_the_server_does_not_cancel_continues_and_is_logged(lab: Lab) -> None:
+async def test_a_goal_that_the_server_does_not_cancel_continues_and_is_logged_and_its_outcome_counts(
+    lab: Lab,
+) -> None:
     server, going = await begun(lab, "goOrRest", agrees=False)
     watcher = lab.watch(going.execution.request.artifact)
-    going.execution.pause()
-    await lab.sleep(3)
+    await going.pause(3)
     server.goals[0].feedback(distance=8)
     going.execution.resume()
+    await lab.sleep(1)
+    assert server.told == ["accepted 0", "cancel 0"]
     server.goals[0].end()
     await succeeded(going)
     assert watcher.values("distance") == [(-1,), (8,)]
@@ -220,8 +194,7 @@ def switched(lab: Lab) -> list[str]:
 async def test_a_paused_server_is_resumed_after_its_dropped_goal_has_ended(lab: Lab) -> None:
     server, going = await suspended(lab, "goOrWait", ending=2.0)
     await lab.sleep(1)
-    going.execution.cancel()
-    await lab.sleep(1)
+    await going.drop(1)
     assert switched(lab) == ["pause"], "it would drive on before it is cancelled"
     await lab.sleep(2)
     assert server.goals[0].over

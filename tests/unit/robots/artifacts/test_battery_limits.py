@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
-from robot_lab import Lab
+from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import Structure
+from jacaros.artifacts import ArtifactId, Structure
 from jacaros.robots.artifacts.battery import ArtSimBattery
 
 
@@ -23,6 +23,9 @@ def reports(lab: Lab, topic: str = "/battery_state") -> Any:
         publisher.publish(message)
 
     return publish
+
+
+pytestmark = made(ArtSimBattery, option("source", "robot"))
 
 
 @pytest.mark.parametrize(("level", "shown"), [(150, 100), (-5, 0), (42.4, 42), (0.6, 1)])
@@ -57,37 +60,31 @@ async def test_a_timer_can_be_asked_for_whatever_the_robot_is_named(lab: Lab) ->
     assert watcher.values("battery") == [(100,), (99,)]
 
 
-async def test_a_charge_is_rounded_down_but_for_the_loss_of_its_32_bits(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
+@pytest.mark.parametrize(
+    ("shares", "shown", "lines"),
+    [
+        ((0.28997, 0.29, 0.2899999999, 0.999), [28, 29, 99], 0),  # not 100 before it is full
+        ((1.4, 0.8), [100, 80], 0),
+        ((1.6, 1.2, 40.0), [1, 40], 1),
+    ],
+    ids=[
+        "rounded down but for the loss of its 32 bits",
+        "a little above one",
+        "once in percent, always in percent",
+    ],
+)
+async def test_charges_of_drivers(
+    lab: Lab, watcher: Watcher, shares: tuple[float, ...], shown: list[int], lines: int
+) -> None:
     publish = reports(lab)
-    for share in (0.28997, 0.29, 0.2899999999, 0.999):
+    for share in shares:
         publish(share)
         await lab.sleep(0.1)
-    assert watcher.values("battery") == [(28,), (29,), (99,)]  # not 100 before it is full
+    assert watcher.values("battery") == [(each,) for each in shown]
+    assert len(lab.logged) == lines
 
 
-async def test_a_charge_a_little_above_one_is_a_full_battery_and_no_percentage(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
-    publish = reports(lab)
-    for share in (1.4, 0.8):
-        publish(share)
-        await lab.sleep(0.1)
-    assert watcher.values("battery") == [(100,), (80,)]
-    assert lab.logged == []
-
-
-async def test_a_driver_that_once_counted_in_percent_always_does(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
-    publish = reports(lab)
-    for percent in (1.6, 1.2, 40.0):
-        publish(percent)
-        await lab.sleep(0.1)
-    assert watcher.values("battery") == [(1,), (40,)]
-    assert len(lab.logged) == 1
-
-
-async def test_a_message_without_a_charge_does_not_hide_the_last_one(lab: Lab) -> None:
-    watcher = lab.watch(await lab.make(ArtSimBattery, option("source", "robot")))
+async def test_a_message_without_a_charge_does_not_hide_the_last_one(lab: Lab, watcher: Watcher) -> None:
     publish = reports(lab)
     publish(0.6)
     await lab.sleep(0.1)
@@ -114,12 +111,11 @@ async def test_a_charge_that_expires_is_unknown_until_the_next_message(lab: Lab)
     assert watcher.holds("diagnostics") == [("Full Battery",)]
 
 
-async def test_a_full_battery_off_the_dock_needs_no_charge(lab: Lab) -> None:
-    battery = await lab.make(ArtSimBattery, option("source", "robot"))
+async def test_a_full_battery_off_the_dock_needs_no_charge(lab: Lab, artifact: ArtifactId) -> None:
     reports(lab)(1.0, "NOT_CHARGING")
     await lab.sleep(0.1)
     before = lab.clock.elapsed
-    await lab.do(battery, "operationRecharge")
+    await lab.do(artifact, "operationRecharge")
     assert lab.clock.elapsed == before
 
 
@@ -143,8 +139,7 @@ async def test_a_charge_that_has_stopped_rising_just_below_full_is_complete_afte
     publish = reports(lab)
     publish(0.996, "CHARGING")
     await lab.sleep(0.1)
-    charging = lab.begin(battery, "operationRecharge")
-    await lab.sleep(2.0)
+    charging = await lab.begun(2.0, battery, "operationRecharge")
     publish(0.997, "CHARGING")  # it rises: the wait begins again
     await lab.sleep(2.0)
     assert not charging.done.done()

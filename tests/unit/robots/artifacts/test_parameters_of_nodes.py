@@ -15,16 +15,7 @@ from jacaros.robots.ros.errors import (
     ServiceUnavailable,
     TransformUnavailable,
 )
-from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.parameter import Declaration
-
-
-async def node_with(lab: Lab, name: str, value: Any) -> Any:
-    shared: Any = lab.backend
-    node = open_backend("memory", lab.clock, name, log=lambda text: None, graph=shared.graph)
-    await node.start()
-    node.parameters().declare("p", Declaration(value))
-    return node
 
 
 @pytest.mark.parametrize(
@@ -43,13 +34,13 @@ async def node_with(lab: Lab, name: str, value: Any) -> Any:
     ],
 )
 async def test_a_value_keeps_the_parameters_type(lab: Lab, before: Any, written: Any, after: Any) -> None:
-    node = await node_with(lab, "n", before)
+    node = await lab.node("n")
+    node.parameters().declare("p", Declaration(before))
     artifact = await lab.make(ArtRos)
     await lab.do(artifact, "set_parameter", "n", "p", written)
     found = await node.parameters().get("p")
     assert list(found) == after if isinstance(after, list) else found == after
     assert type(found) is type(after) or isinstance(after, list)
-    await node.close()
 
 
 @pytest.mark.parametrize(

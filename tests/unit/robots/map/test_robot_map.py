@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from robot_lab import Lab, Watcher
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import ArtifactId, Out, Structure
 from jacaros.robots.artifacts.velocity import ArtCmdVelAndOdometry
@@ -24,7 +24,7 @@ robots:
   - {name: turtlebot, pose: {x: 0, y: 0}, odometry: {origin: start}, laser: {noise: 0.01}}
 """
 
-pytestmark = pytest.mark.world(WALLED)
+pytestmark = [pytest.mark.world(WALLED), made(ArtMap)]
 
 
 def option(name: str, value: object) -> Structure:
@@ -40,8 +40,7 @@ async def labels(lab: Lab, artifact: ArtifactId, *cells: tuple[int, int]) -> lis
     return found
 
 
-async def test_a_scan_makes_cells_free_and_obstacles(lab: Lab) -> None:
-    artifact = await lab.make(ArtMap)
+async def test_a_scan_makes_cells_free_and_obstacles(lab: Lab, artifact: ArtifactId) -> None:
     assert await labels(lab, artifact, (0, 0)) == ["unknown"]
     await lab.sleep(0.5)
     near, wall, hidden = (10, 0), (20, -5), (25, -5)
@@ -92,8 +91,7 @@ def placed(watcher: Watcher, thing: str) -> set[tuple[object, object]]:
     return {(v[1], v[2]) for v in watcher.holds("pos2d") if len(v) == 3 and v[0] == thing}
 
 
-async def test_routes_keep_clear_of_walls_and_legs_lead_along_them(lab: Lab) -> None:
-    artifact = await lab.make(ArtMap)
+async def test_routes_keep_clear_of_walls_and_legs_lead_along_them(lab: Lab, artifact: ArtifactId) -> None:
     wheels = await lab.make(ArtCmdVelAndOdometry)
     turn, metres = Out(), Out()
     assert (await lab.call(artifact, "getLeg", turn, metres)).reason == "no_odometry"
@@ -115,8 +113,7 @@ async def test_routes_keep_clear_of_walls_and_legs_lead_along_them(lab: Lab) -> 
     assert math.dist((x, y), (2.2, 0.6)) < 0.08
 
 
-async def test_the_first_frontier_waits_for_the_first_scan(lab: Lab) -> None:
-    artifact = await lab.make(ArtMap)
+async def test_the_first_frontier_waits_for_the_first_scan(lab: Lab, artifact: ArtifactId) -> None:
     x, y = Out(), Out()
     await lab.do(artifact, "getFrontier", x, y)
     assert lab.clock.elapsed < 1.0
@@ -126,8 +123,7 @@ async def test_the_first_frontier_waits_for_the_first_scan(lab: Lab) -> None:
     assert (await lab.call(other, "getFrontier", x, y)).reason == "no_map(5)"
 
 
-async def test_the_next_frontier_is_given_until_all_is_explored(lab: Lab) -> None:
-    artifact = await lab.make(ArtMap)
+async def test_the_next_frontier_is_given_until_all_is_explored(lab: Lab, artifact: ArtifactId) -> None:
     wheels = await lab.make(ArtCmdVelAndOdometry)
     await lab.sleep(0.5)
     x, y, turn, metres = (Out() for _ in range(4))
@@ -179,9 +175,8 @@ def publish_map(lab: Lab, resolution: float = 0.5) -> None:
 
 
 @pytest.mark.world(None)
-async def test_the_map_may_come_from_another_node(lab: Lab) -> None:
-    artifact = await lab.make(ArtMap, option("source", "map"), option("robots", ["robot_2"]))
-    watcher = lab.watch(artifact)
+@made(ArtMap, option("source", "map"), option("robots", ["robot_2"]))
+async def test_the_map_may_come_from_another_node(lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
     publish_map(lab)
     await lab.sleep(0.1)
     cells = [(0, 0), (1, 0), (0, 1), (1, 1)]

@@ -6,7 +6,7 @@ from collections import deque
 from itertools import pairwise
 
 import pytest
-from robot_lab import Lab, Watcher
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.robots.map.cells import Cell
@@ -27,10 +27,11 @@ async def label(lab: Lab, artifact: ArtifactId, rows: list[str]) -> None:
                 await lab.do(artifact, "updateSlamData", x, y, words[sign])
 
 
-async def test_a_range_of_view_shows_all_its_cells(lab: Lab) -> None:
+pytestmark = made(ArtSlamData)
+
+
+async def test_a_range_of_view_shows_all_its_cells(lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
     """Defect 10: one property took all cells in turn, so a belief base ended with the last one alone."""
-    artifact = await lab.make(ArtSlamData)
-    watcher = lab.watch(artifact)
     await label(lab, artifact, ["...", ".#.", " .G"])
     await lab.do(artifact, "getVisionRange", 0, 0, 1)
     seen = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle")]
@@ -55,9 +56,8 @@ async def test_the_next_range_replaces_the_cells_and_reports_only_new_ones(lab: 
     assert len(watcher.holds("cell")) == 5
 
 
-async def test_nothing_is_written_by_looking(lab: Lab) -> None:
+async def test_nothing_is_written_by_looking(lab: Lab, artifact: ArtifactId) -> None:
     """Defect 10: the original overwrote the cell 0, 0 with test data at each look."""
-    artifact = await lab.make(ArtSlamData)
     await lab.do(artifact, "getVisionRange", 0, 0, 3)
     out = Out()
     await lab.do(artifact, "getSlamData", 0, 0, out)
@@ -123,9 +123,7 @@ def objects(watcher: Watcher) -> set[tuple[object, ...]]:
     return {values for values in watcher.holds("pos2d") if len(values) == 3}
 
 
-async def test_steps_move_the_agent_and_turn_it(lab: Lab) -> None:
-    artifact = await lab.make(ArtSlamData)
-    watcher = lab.watch(artifact)
+async def test_steps_move_the_agent_and_turn_it(lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
     await label(lab, artifact, ["...", "..."])
     for step, here in [("moveUp", (0, 1)), ("moveRight", (1, 1)), ("moveDown", (1, 0))]:
         await lab.do(artifact, step)

@@ -33,3 +33,16 @@ def with_mapped(
         await body(lab, await lab.make(mapped(text), *arguments))
 
     return in_lab(in_it, world)
+
+
+def mistakes(texts: str) -> dict[str, str]:
+    """The texts of mapping files, one a line, and what is said of each: the indented lines below it."""
+    found: dict[str, str] = {}
+    text = ""
+    for line in texts.strip().splitlines():
+        if line.startswith("  "):
+            found[text] = " ".join([*filter(None, [found[text]]), line.strip()])
+        else:
+            text = line.replace("\\n", "\n")
+            found[text] = ""
+    return found

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from mapped_lab import mapped, settle
-from robot_lab import TWIST, Lab, Watcher, apart
+from robot_lab import TWIST, Lab, Watcher, apart, made
 
 from jacaros.robots.mapping.file import MappingError, read_mapping
 
@@ -144,14 +144,13 @@ derived:
 
 
 @pytest.mark.world("empty")
-async def test_a_frame_is_looked_up_at_the_stamps_of_messages(lab: Lab) -> None:
+@made(mapped(AT_STAMPS))
+async def test_a_frame_is_looked_up_at_the_stamps_of_messages(lab: Lab, watcher: Watcher) -> None:
     """The robot drives a circle at 0.5 m/s; poses are compared with the true ones of the stamps.
 
     The simulator sends tf and scans at the same ticks, every 50 ms and every 200 ms. The stamps of the marks are between,
     and the world moves in steps of 20 ms, 10 mm and 1.1 degrees.
     """
-    artifact = await lab.make(mapped(AT_STAMPS))
-    watcher = lab.watch(artifact)
     truth: list[tuple[float, tuple[float, float, float]]] = []
     wheels = lab.backend.publisher("/cmd_vel", TWIST)
     marks = lab.backend.publisher("mark", POINT)
@@ -259,10 +258,7 @@ def _problems(entry: str) -> list[str]:
         ("x: {count: hit, within: 1, lateness: 1}", "40: `count` waits for nothing | leave `lateness` out"),
         ("x: {absent: hit, for: 1, wait: 2}", "28: `absent` has no option `wait` | options: for"),
         ("x: {together: [a], within: 1}", "6: `together` needs two streams or more | write them as a list"),
-        (
-            "x: {together: [a, a], within: 1}",
-            "6: `together` names a stream twice | name each stream once",
-        ),
+        ("x: {together: [a, a], within: 1}", "6: `together` names a stream twice | name each stream once"),
         ("x: hit", "6: `x` has no operator | write one, such as"),
         (
             "a: {count: hit, within: 1}",

@@ -4,10 +4,11 @@ import asyncio
 from typing import Any
 
 import pytest
-from mapped_lab import mapped, settle, with_mapped
-from robot_lab import Lab
+from mapped_lab import mapped, settle
+from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import ArtifactId, Out
+from jacaros.robots.mapping.artifact import MappedArtifact
 from jacaros.robots.mapping.checking import check_mapping
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
@@ -25,6 +26,16 @@ operations:
     outputs: [last]
     MORE
 """
+
+
+def count(more: str = "", after: str = "") -> type[MappedArtifact]:
+    """The artifact that counts, with *more* of its operation, and other operations after it."""
+    return mapped(COUNT.replace("MORE", more) + after)
+
+
+async def counted(lab: Lab, artifact: ArtifactId, *arguments: object) -> str:
+    """Count; the reason why that failed."""
+    return (await lab.call(artifact, "count", *arguments, Out())).reason
 
 
 async def counting(goal: ServerGoal, lab: Lab) -> dict[str, Any]:
@@ -53,8 +64,10 @@ def offer(lab: Lab, policy: ActionPolicy | None = None) -> list[str]:
     return events
 
 
-async def test_a_goal_with_feedback_and_result(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+pytestmark = made(count())
+
+
+async def test_a_goal_with_feedback_and_result(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab)
     watcher, out = lab.watch(artifact), Out()
     await lab.do(artifact, "count", 3, 1, out)
@@ -64,114 +77,82 @@ async def test_a_goal_with_feedback_and_result(lab: Lab) -> None:
     assert watcher.holds("at") == []
 
 
-async def test_a_cancelled_operation_cancels_its_goal(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+async def test_a_cancelled_operation_cancels_its_goal(lab: Lab, artifact: ArtifactId) -> None:
     events = offer(lab)
     watcher = lab.watch(artifact)
-    run = lab.begin(artifact, "count", 9, 1, Out())
-    await lab.sleep(1.5)
+    run = await lab.begun(1.5, artifact, "count", 9, 1, Out())
     assert watcher.holds("at") == [(1,)]
-    run.execution.cancel()
-    await lab.sleep(0.1)
+    await run.drop(0.1)
     assert events == ["begin", "cancelled"]
     assert watcher.holds("at") == []
 
 
-async def test_an_aborted_goal_fails_with_the_reason(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+async def test_an_aborted_or_rejected_goal_fails_with_the_reason(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab)
-    assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == 'aborted(0,"unlucky")'
-
-
-async def test_a_goal_that_is_rejected(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "")))
+    assert await counted(lab, artifact, 20, 0.1) == 'aborted(0,"unlucky")'
     offer(lab, ActionPolicy(accept=lambda goal: "no"))
-    assert (await lab.call(artifact, "count", 20, 0.1, Out())).reason == "rejected"
+    assert await counted(lab, artifact, 20, 0.1) == "rejected"
 
 
-async def test_a_goal_that_takes_too_long(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "timeout: 3")))
+@made(count("timeout: 3"))
+async def test_a_goal_that_takes_too_long(lab: Lab, artifact: ArtifactId) -> None:
     events = offer(lab)
-    assert (await lab.call(artifact, "count", 20, 1, Out())).reason == "timeout(3)"
+    assert await counted(lab, artifact, 20, 1) == "timeout(3)"
     await lab.sleep(0.1)
     assert events == ["begin", "cancelled"]
 
 
-async def test_a_goal_without_success_fails(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "success: {path: last, is: 3}")))
+@made(count("success: {path: last, is: 3}"))
+async def test_a_goal_without_success_fails(lab: Lab, artifact: ArtifactId) -> None:
     offer(lab)
-    assert (await lab.call(artifact, "count", 2, 1, Out())).reason == 'aborted(0,"")'
+    assert await counted(lab, artifact, 2, 1) == 'aborted(0,"")'
     await lab.do(artifact, "count", 3, 1, Out())
 
 
-async def test_a_suspended_goal_is_cancelled_and_sent_again(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "suspend: cancel")))
-    events = offer(lab)
-    out = Out()
-    run = lab.begin(artifact, "count", 3, 1, out)
-    await lab.sleep(1.5)
-    run.execution.pause()
-    await lab.sleep(1)
-    assert events == ["begin", "cancelled"]
-    run.execution.resume()
-    await run.done
-    assert events == ["begin", "cancelled", "begin"]
+@pytest.mark.parametrize(
+    ("more", "while_suspended", "afterwards"),
+    [
+        ("", ["begin", "cancelled"], ["begin", "cancelled", "begin"]),
+        ("suspend: cancel", ["begin", "cancelled"], ["begin", "cancelled", "begin"]),
+        ("suspend: go_on", ["begin"], ["begin"]),
+    ],
+)
+async def test_a_suspended_goal_is_cancelled_and_sent_again_unless_it_goes_on(
+    lab: Lab, more: str, while_suspended: list[str], afterwards: list[str]
+) -> None:
+    events, out = offer(lab), Out()
+    run = await lab.begun(1.5, await lab.make(count(more)), "count", 3, 1, out)
+    await run.pause(1)
+    assert events == while_suspended
+    await run.resumed()
+    assert events == afterwards
     assert out.value == 3
-
-
-def test_a_goal_is_cancelled_while_suspended_by_default() -> None:
-    async def suspended(lab: Lab, artifact: ArtifactId) -> list[str]:
-        events = offer(lab)
-        run = lab.begin(artifact, "count", 3, 1, Out())
-        await lab.sleep(1.5)
-        run.execution.pause()
-        await lab.sleep(1)
-        run.execution.resume()
-        await run.done
-        return events
-
-    async def stops(lab: Lab, artifact: ArtifactId) -> None:
-        assert await suspended(lab, artifact) == ["begin", "cancelled", "begin"]
-
-    async def continues(lab: Lab, artifact: ArtifactId) -> None:
-        assert await suspended(lab, artifact) == ["begin"]
-
-    with_mapped(COUNT.replace("MORE", ""), stops)
-    with_mapped(COUNT.replace("MORE", "suspend: go_on"), continues)
-
-
-MARK = """
-operations:
-  mark: {parameters: [seconds], publish: m, type: visualization_msgs/msg/Marker, fields: {lifetime: $seconds}}
-"""
 
 
 BOUNDED = """
 operations:
-  say:
-    parameters: [text]
-    publish: s
-    type: type_description_interfaces/msg/FieldType
-    fields: {nested_type_name: $text}
+  say: {parameters: [t], publish: s, type: type_description_interfaces/msg/FieldType, fields: {nested_type_name: $t}}
   form: {parameters: [sizes], publish: f, type: shape_msgs/msg/SolidPrimitive, fields: {dimensions: $sizes}}
   buzz: {parameters: [strength], publish: b, type: sensor_msgs/msg/JoyFeedback, fields: {id: $strength}}
+  mark: {parameters: [seconds], publish: m, type: visualization_msgs/msg/Marker, fields: {lifetime: $seconds}}
 """
 
 
-async def test_a_value_outside_the_range_of_its_field_fails_the_operation(lab: Lab) -> None:
-    artifact = await lab.make(mapped(BOUNDED))
-    assert (await lab.call(artifact, "say", 256 * "x")).reason == 'wrong_value("nested_type_name")'
-    assert (await lab.call(artifact, "form", [1, 2, 3, 4])).reason == 'wrong_value("dimensions")'
-    assert (await lab.call(artifact, "buzz", 256)).reason == 'wrong_value("id")'
-    await lab.do(artifact, "say", 255 * "x")
-    await lab.do(artifact, "form", [1, 2, 3])
-    await lab.do(artifact, "buzz", 255)
-
-
-async def test_a_negative_duration_is_refused_before_anything_is_sent(lab: Lab) -> None:
-    artifact = await lab.make(mapped(MARK))
-    assert (await lab.call(artifact, "mark", -3)).reason == 'wrong_value("lifetime")'
-    await lab.do(artifact, "mark", 3)
+@pytest.mark.parametrize(
+    ("operation", "wrong", "field", "right"),
+    [
+        ("say", 256 * "x", "nested_type_name", 255 * "x"),
+        ("form", [1, 2, 3, 4], "dimensions", [1, 2, 3]),
+        ("buzz", 256, "id", 255),
+        ("mark", -3, "lifetime", 3),
+    ],
+)
+@made(mapped(BOUNDED))
+async def test_a_value_outside_the_range_of_its_field_fails_the_operation(
+    lab: Lab, artifact: ArtifactId, operation: str, wrong: object, field: str, right: object
+) -> None:
+    assert (await lab.call(artifact, operation, wrong)).reason == f'wrong_value("{field}")'
+    await lab.do(artifact, operation, right)
 
 
 DOCK = """
@@ -209,9 +190,10 @@ def test_a_code_or_field_that_the_result_does_not_have_is_an_error() -> None:
         check_mapping(read_mapping(DOCK.replace("MORE", "code: reason")), stored_interfaces(()))
 
 
-async def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing(lab: Lab) -> None:
-    artifact = await lab.make(mapped(COUNT.replace("MORE", "suspend: cancel")))
-
+@made(count("suspend: cancel"))
+async def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     async def brake(goal: ServerGoal) -> Any:
         try:
             goal.feedback(current=1)
@@ -223,26 +205,24 @@ async def test_feedback_that_comes_while_a_dropped_goal_ends_shows_nothing(lab: 
             raise
 
     lab.backend.action_server("count", "jacaros_interfaces/action/Count", brake)
-    watcher = lab.watch(artifact)
-    run = lab.begin(artifact, "count", 9, 1, Out())
-    await lab.sleep(1)
-    assert watcher.holds("at") == [(1,)]
-    run.execution.pause()
-    await lab.sleep(2)
-    assert watcher.holds("at") == []
-    run.execution.resume()
-    await lab.sleep(1)
-    assert watcher.holds("at") == [(1,)]
-    run.execution.cancel()
-    await lab.sleep(2)
-    assert watcher.holds("at") == []
+    run = await lab.begun(1, artifact, "count", 9, 1, Out())
+    shown = [watcher.holds("at")]
+    for change, seconds in (("pause", 2), ("resume", 1), ("cancel", 2)):
+        getattr(run.execution, change)()
+        await lab.sleep(seconds)
+        shown.append(watcher.holds("at"))
+    assert shown == [[(1,)], [], [(1,)], []]
     assert watcher.values("at") == [(1,), (1,)]
 
 
-HOLD = """
-  hold: {service: hold, TYPEtimeout: 2, request: {data: true}}
-  go_on: {service: hold, TYPEtimeout: 2, request: {data: false}}
-"""
+SET_BOOL = "type: std_srvs/srv/SetBool, "
+
+
+def held(type_key: str = SET_BOOL) -> type[MappedArtifact]:
+    """The artifact whose goals are paused and resumed by a service."""
+    hold = f"  hold: {{service: hold, {type_key}timeout: 2, request: {{data: true}}}}\n"
+    go_on = f"  go_on: {{service: hold, {type_key}timeout: 2, request: {{data: false}}}}\n"
+    return count("suspend: {pause: hold, resume: go_on}", hold + go_on)
 
 
 class Holding:
@@ -273,86 +253,58 @@ class Holding:
         return {"last": done}
 
 
-@pytest.mark.parametrize("type_key", ["type: std_srvs/srv/SetBool, ", ""], ids=["with type", "type found"])
-def test_a_goal_is_paused_and_resumed_by_services(type_key: str) -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        server = Holding(lab)
-        out = Out()
-        run = lab.begin(artifact, "count", 4, 1, out)
-        await lab.sleep(1.5)
-        run.execution.pause()
-        await lab.sleep(10)
-        assert server.held
-        run.execution.resume()
-        await run.done
-        assert lab.clock.elapsed == pytest.approx(14)
-        assert (server.asked, server.cancelled, out.value) == ([True, False], 0, 4)
-        await lab.do(artifact, "hold")  # they are operations like any others
-        assert server.held
-
-    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace("TYPE", type_key)
-    with_mapped(text, body)
+@pytest.mark.parametrize("type_key", [SET_BOOL, ""], ids=["with type", "type found"])
+async def test_a_goal_is_paused_and_resumed_by_services(lab: Lab, type_key: str) -> None:
+    artifact = await lab.make(held(type_key))
+    server, out = Holding(lab), Out()
+    run = await lab.begun(1.5, artifact, "count", 4, 1, out)
+    await run.pause(10)
+    assert server.held
+    await run.resumed()
+    assert lab.clock.elapsed == pytest.approx(14)
+    assert (server.asked, server.cancelled, out.value) == ([True, False], 0, 4)
+    await lab.do(artifact, "hold")  # they are operations like any others
+    assert server.held
 
 
-def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        server = Holding(lab, agrees=False)
-        run = lab.begin(artifact, "count", 2, 1, Out())
-        await lab.sleep(0.5)
-        run.execution.pause()
-        await lab.sleep(5)
-        assert server.cancelled == 1
-        assert any(
-            "could not be paused: OperationFailed: service /hold refused: no brakes" in t for t in lab.logged
-        )
-        run.execution.resume()
-        await run.done
-        assert run.outcome is not None
-        assert run.outcome.ok
-
-    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace(
-        "TYPE", "type: std_srvs/srv/SetBool, "
-    )
-    with_mapped(text, body)
+@made(held())
+async def test_a_goal_whose_server_refuses_to_pause_is_cancelled_and_sent_again(
+    lab: Lab, artifact: ArtifactId
+) -> None:
+    server = Holding(lab, agrees=False)
+    run = await lab.begun(0.5, artifact, "count", 2, 1, Out())
+    await run.pause(5)
+    assert server.cancelled == 1
+    told = "could not be paused: OperationFailed: service /hold refused: no brakes"
+    assert any(told in line for line in lab.logged)
+    await run.resumed()
+    assert run.ok
 
 
-async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab) -> None:
-    text = (
-        COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}")
-        + """
+TOPIC_AND_PARAMETER = """\
   hold: {publish: hold, type: std_msgs/msg/Bool, fields: {data: true}}
   go_on: {set_parameter: speed, node: lab, value: 1}
 """
-    )
-    artifact = await lab.make(mapped(text))
+
+
+@made(count("suspend: {pause: hold, resume: go_on}", TOPIC_AND_PARAMETER))
+async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab, artifact: ArtifactId) -> None:
     own = lab.backend.parameters()
     own.declare("speed", Declaration(0))
-    held: list[bool] = []
-    lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
+    held = lab.hear("hold", "std_msgs/msg/Bool")
     offer(lab)
-    run = lab.begin(artifact, "count", 3, 1, Out())
-    await lab.sleep(0.5)
-    run.execution.pause()
-    await lab.sleep(1)
-    assert held == [True]
+    run = await lab.begun(0.5, artifact, "count", 3, 1, Out())
+    await run.pause(1)
+    assert [each.data for each in held] == [True]
     assert await own.get("speed") == 0
-    run.execution.resume()
-    await run.done
+    await run.resumed()
     assert await own.get("speed") == 1
 
 
-def test_a_dropped_goal_leaves_no_paused_server_behind() -> None:
-    async def body(lab: Lab, artifact: ArtifactId) -> None:
-        server = Holding(lab)
-        run = lab.begin(artifact, "count", 4, 1, Out())
-        await lab.sleep(0.5)
-        run.execution.pause()
-        await lab.sleep(1)
-        run.execution.cancel()
-        await lab.sleep(1)
-        assert (server.asked, server.held, server.cancelled) == ([True, False], False, 1)
-
-    text = COUNT.replace("MORE", "suspend: {pause: hold, resume: go_on}") + HOLD.replace(
-        "TYPE", "type: std_srvs/srv/SetBool, "
-    )
-    with_mapped(text, body)
+@made(held())
+async def test_a_dropped_goal_leaves_no_paused_server_behind(lab: Lab, artifact: ArtifactId) -> None:
+    server = Holding(lab)
+    run = await lab.begun(0.5, artifact, "count", 4, 1, Out())
+    await run.pause(1)
+    await run.drop(1)
+    assert (server.asked, server.held, server.cancelled) == ([True, False], False, 1)

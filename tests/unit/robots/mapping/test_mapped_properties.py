@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 from mapped_lab import mapped, settle
-from robot_lab import Lab, Watcher, in_lab
+from robot_lab import Lab, Watcher
 
 from jacaros.artifacts import ArtifactId, OperationFailed
-from jacaros.artifacts.env.values import Atom, Structure
+from jacaros.artifacts.env.values import Structure
 from jacaros.robots.mapping.decoding import MessageHandle
 from jacaros.robots.ros.qos import LATCHED, QoS
 
-POINT = "geometry_msgs/msg/Point"
+POINT, SCAN = "geometry_msgs/msg/Point", "sensor_msgs/msg/LaserScan"
 
 
 class Talk:
@@ -29,11 +29,12 @@ class Talk:
         self.publishers[key].publish(self.publishers[key].message(**fields))
         await settle()
 
-    async def points(self, *xs: float, pause: float = 0.0) -> None:
+    async def points(self, *xs: float) -> None:
         for x in xs:
             await self.say("p", POINT, x=x)
-            if pause:
-                await self.lab.sleep(pause)
+
+    async def scan(self, **fields: Any) -> None:
+        await self.say("s", SCAN, **fields)
 
     def values(self, name: str = "a") -> list[tuple[object, ...]]:
         return self.watcher.values(name)
@@ -41,6 +42,10 @@ class Talk:
     @property
     def held(self) -> list[tuple[object, ...]]:
         return self.watcher.holds("a")
+
+    @property
+    def told(self) -> str:
+        return "\n".join(self.lab.logged)
 
 
 async def talk(lab: Lab, text: str, *arguments: object) -> Talk:
@@ -52,12 +57,23 @@ def points(text: str) -> str:
     return f"properties: {{a: {{topic: p, type: {POINT}, fields: [x], {text}}}}}"
 
 
-async def test_a_property_is_there_from_the_first_message_on(lab: Lab) -> None:
-    t = await talk(lab, points(""))
+@pytest.mark.parametrize(
+    ("policy", "xs", "shown"),
+    [
+        ("", (1, 1, 2), [1, 2]),
+        ("rate: 2, latest_only: false", (1, 2, 3), [1, 3]),
+        ("dead_band: 0.5", (1, 1.4, 1.6), [1, 1.6]),
+    ],
+)
+async def test_a_property_is_there_from_the_first_message_on(
+    lab: Lab, policy: str, xs: tuple[float, ...], shown: list[float]
+) -> None:
+    t = await talk(lab, points(policy))
     await settle()
     assert t.held == []
-    await t.points(1, 1, 2)
-    assert t.values() == [(1,), (2,)]
+    await t.points(*xs)
+    await lab.sleep(1)
+    assert t.values() == [(x,) for x in shown]
 
 
 async def test_initial_values(lab: Lab) -> None:
@@ -67,31 +83,14 @@ async def test_initial_values(lab: Lab) -> None:
     assert t.held == [(1,)]
 
 
-async def test_rate(lab: Lab) -> None:
-    t = await talk(lab, points("rate: 2, latest_only: false"))
-    await t.points(1, 2, 3)
-    await lab.sleep(1)
-    assert t.values() == [(1,), (3,)]
-
-
-async def test_dead_band(lab: Lab) -> None:
-    t = await talk(lab, points("dead_band: 0.5"))
-    await t.points(1, 1.4, 1.6)
-    assert t.values() == [(1,), (1.6,)]
-
-
-async def test_on_demand_values_are_shown_by_operations_only(lab: Lab) -> None:
+async def test_on_demand_values_are_shown_by_operations_only_which_fail_without_a_message(lab: Lab) -> None:
     text = points("mode: on_demand") + "\noperations: {look: {refresh: a}, get: {read: a}}"
     t = await talk(lab, text)
+    assert (await t.lab.call(t.artifact, "look")).reason == "no_message(5)"
     await t.points(1, 2)
     assert t.held == []
     await t.lab.do(t.artifact, "look")
     assert t.held == [(2,)]
-
-
-async def test_refresh_fails_when_no_message_comes(lab: Lab) -> None:
-    t = await talk(lab, points("mode: on_demand") + "\noperations: {look: {refresh: a}}")
-    assert (await t.lab.call(t.artifact, "look")).reason == "no_message(5)"
 
 
 async def test_a_property_expires(lab: Lab) -> None:
@@ -105,36 +104,40 @@ async def test_a_property_expires(lab: Lab) -> None:
     assert t.held == [(1,)]
 
 
-async def test_one_subscription_serves_all_properties_of_a_topic(lab: Lab) -> None:
-    text = f"""
+ONE_TOPIC = f"""
 properties:
   a: {{topic: p, type: {POINT}, fields: x}}
   b: {{topic: p, type: {POINT}, fields: [y, z]}}
 signals:
   c: {{topic: p, type: {POINT}, fields: [x, y]}}
 """
-    t = await talk(lab, text)
+
+
+async def test_one_subscription_serves_all_properties_of_a_topic(lab: Lab) -> None:
+    t = await talk(lab, ONE_TOPIC)
     await t.say("p", POINT, x=1, y=2, z=3)
     assert (t.values("a"), t.values("b")) == ([(1,)], [(2, 3)])
     assert t.watcher.signals == [("c", (1, 2))]
     assert t.publishers[f"p {POINT}"].subscription_count == 1
 
 
-async def test_annotations_of_the_belief(lab: Lab) -> None:
-    text = """
+ANNOTATED = f"""
 properties:
   a:
     topic: p
-    type: geometry_msgs/msg/PointStamped
+    type: {POINT}Stamped
     fields: [point.x]
-    annotations: {frame: header.frame_id, at: {path: header.stamp}}
+    annotations: {{frame: header.frame_id, at: {{path: header.stamp}}}}
 """
-    t = await talk(lab, text)
+
+
+async def test_annotations_of_the_belief(lab: Lab) -> None:
+    t = await talk(lab, ANNOTATED)
     header = {"frame_id": "map", "stamp": 3.5}
-    await t.say("p", "geometry_msgs/msg/PointStamped", point={"x": 1}, header=header)
+    await t.say("p", f"{POINT}Stamped", point={"x": 1}, header=header)
     [added] = t.watcher.observations[-1].added
     assert added.annotations == (Structure("frame", ("map",)), Structure("at", (3.5,)))
-    await t.say("p", "geometry_msgs/msg/PointStamped", point={"x": 2}, header={**header, "stamp": 4})
+    await t.say("p", f"{POINT}Stamped", point={"x": 2}, header={**header, "stamp": 4})
     [(_, now)] = t.watcher.observations[-1].changed
     assert now.annotations[1] == Structure("at", (4.0,))
 
@@ -236,41 +239,32 @@ async def test_the_view_by_a_distance(lab: Lab) -> None:
         assert t.held == ([] if distance == 2 else [(distance,)])
 
 
+PART = "{topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., '/position[i]'], when_changed: true}"
+
+
 async def test_signals_for_each_element_and_for_changes_alone(lab: Lab) -> None:
-    text = """
-signals:
-  part: {topic: j, type: sensor_msgs/msg/JointState, each: name, fields: [., "/position[i]"], when_changed: true}
-"""
-    t = await talk(lab, text)
+    t = await talk(lab, f"signals: {{part: {PART}}}")
     await joints(t, left=1, right=2)
     await joints(t, left=1, right=3)
     assert t.watcher.signals == [("part", ("left", 1)), ("part", ("right", 2)), ("part", ("right", 3))]
 
 
-async def test_signals_at_most_so_often(lab: Lab) -> None:
-    text = f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1}}}}"
-    t = await talk(lab, text)
-    await t.points(1, 2, 3)
-    assert [arguments for _, arguments in t.watcher.signals] == [(1,)]
+@pytest.mark.parametrize(
+    ("policy", "burst", "last", "shown"),
+    [("", (1, 2, 3), 4, [1, 3, 4]), (", when_changed: true", (1, 1, 0), 0, [1, 0])],
+)
+async def test_signals_at_most_so_often_without_losing_the_last_of_a_burst(
+    lab: Lab, policy: str, burst: tuple[float, ...], last: float, shown: list[float]
+) -> None:
+    t = await talk(lab, f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1{policy}}}}}")
+    expected = [("a", (x,)) for x in shown]
+    await t.points(*burst)
+    assert t.watcher.signals == expected[:1]
     await t.lab.sleep(1.1)
-    assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,)], (
-        "the last of a burst is not lost"
-    )
+    assert t.watcher.signals == expected[:2]
     await t.lab.sleep(3)
-    await t.points(4)
-    assert [arguments for _, arguments in t.watcher.signals] == [(1,), (3,), (4,)]
-
-
-async def test_a_change_within_the_pause_of_signals_is_not_lost(lab: Lab) -> None:
-    text = f"signals: {{a: {{topic: p, type: {POINT}, fields: x, rate: 1, when_changed: true}}}}"
-    t = await talk(lab, text)
-    await t.points(1, 1, 0)
-    assert [arguments for _, arguments in t.watcher.signals] == [(1,)]
-    await t.lab.sleep(1.1)
-    assert [arguments for _, arguments in t.watcher.signals] == [(1,), (0,)]
-    await t.lab.sleep(2)
-    await t.points(0)
-    assert len(t.watcher.signals) == 2
+    await t.points(last)
+    assert t.watcher.signals == expected
 
 
 @pytest.mark.parametrize(("arguments", "x"), [((), 1), (("r1",), 2), ((Structure("namespace", ("r1",)),), 2)])
@@ -292,9 +286,9 @@ properties:
 async def test_a_missing_type_is_found_when_a_node_publishes(lab: Lab) -> None:
     t = await talk(lab, "properties: {a: {topic: p, fields: x}}")
     await t.lab.sleep(4)
-    assert any("waiting for topic /p, to find its type" in line for line in t.lab.logged)
-    assert any("m.yaml:1:25: no node uses topic /p" in line for line in t.lab.logged)
-    assert any("write its type: type: package/msg/Type" in line for line in t.lab.logged)
+    assert "waiting for topic /p, to find its type" in t.told
+    assert "m.yaml:1:25: no node uses topic /p" in t.told
+    assert "write its type: type: package/msg/Type" in t.told
     await t.points(1)
     await t.lab.sleep(1)
     await t.points(2)
@@ -310,21 +304,32 @@ async def test_a_found_type_that_does_not_match_is_reported_with_the_line(lab: L
     assert "  = help: its fields: data (string)" in line
 
 
-async def test_another_type_at_the_topic_is_logged_once_with_the_line(lab: Lab) -> None:
-    t = await talk(lab, points(""))
-    for _ in range(3):
-        await t.say("p", "std_msgs/msg/String", data="x")
-    [line] = [line for line in t.lab.logged if "std_msgs/msg/String" in line]
-    assert "m.yaml:1:25: " in line
-    assert POINT in line
+WEAK = "  = help: write qos: sensor_data, which is compatible with any publisher"
 
 
-async def test_an_incompatible_qos_is_logged_once_with_the_line(lab: Lab) -> None:
-    t = await talk(lab, points("qos: latched"))
+@pytest.mark.parametrize(
+    ("policy", "type_name", "fields", "why", "also"),
+    [
+        ("", "std_msgs/msg/String", {"data": "x"}, "std_msgs/msg/String", POINT),
+        (
+            "qos: latched",
+            POINT,
+            {"x": 1},
+            "requests transient_local, the publisher offers volatile",
+            "sensor_data",
+        ),
+    ],
+    ids=["another type", "incompatible QoS"],
+)
+async def test_what_keeps_a_publisher_away_is_logged_once_with_the_line(
+    lab: Lab, policy: str, type_name: str, fields: dict[str, Any], why: str, also: str
+) -> None:
+    t = await talk(lab, points(policy))
     for _ in range(3):
-        await t.say("p", POINT, x=1)
-    [line] = [line for line in t.lab.logged if "transient_local" in line]
+        await t.say("p", type_name, **fields)
+    [line] = [line for line in t.lab.logged if why in line]
     assert "m.yaml:1:25: " in line
+    assert also in line
     assert t.held == []
 
 
@@ -346,24 +351,11 @@ async def test_images_are_handles(lab: Lab) -> None:
     assert list(found.value.data) == [1, 2]
 
 
-async def test_names_of_constants_are_atoms(lab: Lab) -> None:
-    text = "properties: {a: {topic: b, type: sensor_msgs/msg/BatteryState, fields: {path: power_supply_status, as: name}}}"
-    t = await talk(lab, text)
-    await t.say("b", "sensor_msgs/msg/BatteryState", power_supply_status=4)
-    assert t.held == [(Atom("full"),)]
-    assert isinstance(t.held[0][0], Atom)
-
-
-def test_a_wrong_mapping_cannot_be_made_into_an_artifact() -> None:
-    async def body(lab: Lab) -> None:
-        try:
-            await lab.make(mapped(f"properties: {{a: {{topic: p, type: {POINT}, fields: [u, v]}}}}"))
-        except OperationFailed as failure:
-            lab.logged.append(failure.message)
-
-    [message] = in_lab(body, None).logged
-    assert f"m.yaml:1:68: error: `u`: {POINT} has no field `u`" in message
-    assert "`v`" in message
+async def test_a_wrong_mapping_cannot_be_made_into_an_artifact(lab: Lab) -> None:
+    with pytest.raises(OperationFailed) as failed:
+        await lab.make(mapped(f"properties: {{a: {{topic: p, type: {POINT}, fields: [u, v]}}}}"))
+    assert f"m.yaml:1:68: error: `u`: {POINT} has no field `u`" in failed.value.message
+    assert "`v`" in failed.value.message
 
 
 async def test_connected_topics_are_shown(lab: Lab) -> None:
@@ -390,24 +382,13 @@ frames:
 async def test_frames_get_the_prefix_of_the_robot(lab: Lab) -> None:
     text = "frames: {a: {target: map, source: base_link}, b: {target: /odom, source: base_link}}"
     t = await talk(lab, text, "r1")
-
-    async def transform(parent: str, child: str, x: float) -> None:
-        lab.backend.tf_broadcast(
-            {
-                "header": {"stamp": lab.clock.now(), "frame_id": parent},
-                "child_frame_id": child,
-                "transform": {"translation": {"x": x}},
-            }
-        )
-        await settle()
-
-    await transform("map", "r1/base_link", 1)
-    await lab.sleep(0.5)
-    assert t.held == [(1, 0, 0)]
-    await transform("odom", "other/base_link", 2)
-    await lab.sleep(4)
+    for parent, child, x, seconds in (("map", "r1/base_link", 1, 0.5), ("odom", "other/base_link", 2, 4)):
+        header, transform = {"stamp": lab.clock.now(), "frame_id": parent}, {"translation": {"x": x}}
+        lab.backend.tf_broadcast({"header": header, "child_frame_id": child, "transform": transform})
+        await lab.sleep(seconds)
+    assert t.values() == [(1, 0, 0)]
     assert t.watcher.holds("b") == []
-    assert any("m.yaml:1:47: `b` is unknown: " in line for line in lab.logged)
+    assert "m.yaml:1:47: `b` is unknown: " in t.told
 
 
 @pytest.mark.parametrize(("qos", "told"), [("default", 1), ("latched", 0)])
@@ -459,87 +440,52 @@ async def test_parameters_of_nodes_are_properties_that_follow(lab: Lab) -> None:
 
 async def test_otherwise_replaces_a_missing_element(lab: Lab) -> None:
     field = '{path: "ranges[2]", otherwise: range_max}'
-    text = f"properties: {{a: {{topic: s, type: sensor_msgs/msg/LaserScan, fields: [{field}]}}}}"
-    t = await talk(lab, text)
+    t = await talk(lab, f"properties: {{a: {{topic: s, type: {SCAN}, fields: [{field}]}}}}")
     for ranges in ([1.0, 2.0], [1.0, 2.0, 3.0], []):
-        await t.say("s", "sensor_msgs/msg/LaserScan", ranges=ranges, range_max=8.0)
+        await t.scan(ranges=ranges, range_max=8.0)
     assert t.values() == [(8.0,), (3.0,), (8.0,)]
 
 
+MISSING = f"""
+properties:
+  a: {{topic: s, type: {SCAN}, fields: ["ranges[0]"]}}
+  b: {{topic: h, type: nav_msgs/msg/Path, fields: ["poses[0].header.frame_id"]}}
+"""
+
+
 async def test_a_missing_element_is_reported_with_help(lab: Lab) -> None:
-    text = (
-        "properties:\n"
-        '  a: {topic: s, type: sensor_msgs/msg/LaserScan, fields: ["ranges[0]"]}\n'
-        '  b: {topic: h, type: nav_msgs/msg/Path, fields: ["poses[0].header.frame_id"]}\n'
-    )
-    t = await talk(lab, text)
-    await t.say("s", "sensor_msgs/msg/LaserScan")
+    t = await talk(lab, MISSING)
+    await t.scan()
     await t.say("h", "nav_msgs/msg/Path")
-    told = "\n".join(t.lab.logged)
-    assert '  = help: write a replacement: {path: "ranges[0]", otherwise: 0}' in told
-    assert "  = help: read the list, or an element that always exists" in told
-
-
-async def test_a_weak_publisher_is_reported_with_help(lab: Lab) -> None:
-    text = "properties: {a: {topic: s, type: std_msgs/msg/String, qos: latched}}"
-    t = await talk(lab, text)
-    await t.say("s", "std_msgs/msg/String", data="x")
-    told = "\n".join(t.lab.logged)
-    assert "requests transient_local, the publisher offers volatile" in told
-    assert "  = help: write qos: sensor_data, which is compatible with any publisher" in told
+    assert '  = help: write a replacement: {path: "ranges[0]", otherwise: 0}' in t.told
+    assert "  = help: read the list, or an element that always exists" in t.told
 
 
 async def test_what_has_no_place_is_out_of_view(lab: Lab) -> None:
     view = 'range_of_view: {metres: 3, distance: "ranges[1]"}'
-    text = f"properties: {{a: {{topic: s, type: sensor_msgs/msg/LaserScan, fields: [range_max], {view}}}}}"
-    t = await talk(lab, text)
-    await t.say("s", "sensor_msgs/msg/LaserScan", ranges=[1.0], range_max=1.0)
+    t = await talk(lab, f"properties: {{a: {{topic: s, type: {SCAN}, fields: [range_max], {view}}}}}")
+    await t.scan(ranges=[1.0], range_max=1.0)
     assert t.held == []
-    await t.say("s", "sensor_msgs/msg/LaserScan", ranges=[1.0, 2.0], range_max=2.0)
+    await t.scan(ranges=[1.0, 2.0], range_max=2.0)
     assert t.held == [(2.0,)]
     assert t.lab.logged == []
 
 
 async def test_a_property_does_not_go_back_in_time_but_signals_are_sent(lab: Lab) -> None:
-    text = """
-properties:
-  range: {topic: range, type: sensor_msgs/msg/Range, fields: [range]}
-signals:
-  ping: {topic: range, type: sensor_msgs/msg/Range, fields: [range]}
-"""
-    artifact = await lab.make(mapped(text))
-    watcher = lab.watch(artifact)
-    publisher = lab.backend.publisher("range", "sensor_msgs/msg/Range")
+    part = "{topic: range, type: sensor_msgs/msg/Range, fields: [range]}"
+    t = await talk(lab, f"properties: {{range: {part}}}\nsignals: {{ping: {part}}}")
     now = lab.clock.now()
-    for value, stamp in (
-        (1.0, now),
-        (2.0, now + 0.2),
-        (3.0, now + 0.1),
-        (4.0, now + 0.2),
-        (5.0, now + 0.3),
-    ):
-        publisher.publish(publisher.message(range=value, header={"stamp": stamp}))
+    for value, later in enumerate((0, 0.2, 0.1, 0.2, 0.3), 1):
+        await t.say("range", "sensor_msgs/msg/Range", range=value, header={"stamp": now + later})
         await lab.sleep(0.1)
-    assert watcher.values("range") == [(1.0,), (2.0,), (4.0,), (5.0,)]
-    signals = [(name, *map(str, values)) for name, values in watcher.signals]
+    assert t.values("range") == [(1.0,), (2.0,), (4.0,), (5.0,)]
+    signals = [(name, *map(str, values)) for name, values in t.watcher.signals]
     assert [value for name, value, *_ in signals if name == "ping"] == ["1.0", "2.0", "3.0", "4.0", "5.0"]
     assert [rest for name, *rest in signals if name == "bad_message"] == [["/range", "out_of_order(0.1)"]]
 
 
 async def test_an_echo_too_near_to_be_measured_is_not_one_beyond_the_range(lab: Lab) -> None:
-    text = """
-properties:
-  ranges:
-    topic: scan
-    type: sensor_msgs/msg/LaserScan
-    fields: [{path: ranges, sample: 5, otherwise: range_max, round: 2}]
-"""
-    artifact = await lab.make(mapped(text))
-    watcher = lab.watch(artifact)
-    publisher = lab.backend.publisher("scan", "sensor_msgs/msg/LaserScan")
-    inf = math.inf
-    publisher.publish(
-        publisher.message(ranges=[-inf, inf, 1.0, math.nan, -inf], range_min=0.12, range_max=8.0)
-    )
-    await settle()
-    assert watcher.values("ranges") == [(0.12, 8.0, 1.0, 8.0, 0.12)]
+    field, inf = "{path: ranges, sample: 5, otherwise: range_max, round: 2}", math.inf
+    t = await talk(lab, f"properties: {{a: {{topic: s, type: {SCAN}, fields: [{field}]}}}}")
+    await t.scan(ranges=[-inf, inf, 1.0, math.nan, -inf], range_min=0.12, range_max=8.0)
+    assert t.values() == [(0.12, 8.0, 1.0, 8.0, 0.12)]

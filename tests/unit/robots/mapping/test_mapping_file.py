@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from mapped_lab import mistakes
 
 from jacaros.robots.mapping.file import MappingError, MappingFile, find_mapping, load_mapping, read_mapping
 from jacaros.robots.ros.qos import LATCHED, SENSOR_DATA, QoS
@@ -30,12 +31,8 @@ def test_a_file_without_artifacts_is_one_that_is_called_like_it() -> None:
     assert part.name == "talker"
     [chatter] = part.properties
     assert chatter.topic is not None
-    assert (chatter.name, chatter.topic.text, chatter.type_name, chatter.fields) == (
-        "chatter",
-        "chatter",
-        None,
-        None,
-    )
+    assert (chatter.name, chatter.topic.text) == ("chatter", "chatter")
+    assert (chatter.type_name, chatter.fields) == (None, None)
 
 
 def test_several_artifacts_keep_their_order() -> None:
@@ -66,388 +63,209 @@ def test_policies_of_a_property() -> None:
     assert (policy.rate, policy.dead_band, policy.expire, policy.latest_only) == (5.0, (1.0, 2.0), 3.0, False)
 
 
-WRONG = {
-    "nothing": ("", "1:1: the file is empty | begin with properties: or operations:"),
-    "no YAML": ("a: [b", "1:4: this bracket is never closed | close the bracket"),
-    "brackets in brackets": (
-        "properties: {a: {topic: t, fields: [x[0]]}}",
-        '1:38: not YAML: a bracket within a text of a list | write a text with brackets in quotes: "ranges[0]"',
-    ),
-    "a list": ("- a", "1:1: a mapping file must be a mapping of keys to values | "),
-    "unknown key": (
-        "propertys: {}",
-        "1:1: a mapping file has no key 'propertys' | did you mean `properties`?",
-    ),
-    "no topic": ("properties: {a: {rate: 1}}", "1:17: 'a' lacks the key 'topic' | add 'topic: ...'"),
-    "twice": (
-        "properties:\n  a: t\n  a: u",
-        "3:3: duplicate key 'a', first in line 2 | rename one of them, or remove it",
-    ),
-    "one name": (
-        "properties: {a: t}\nsignals: {a: u}",
-        "2:11: the signal `a` has the same name as the property on line 1 | give it another name",
-    ),
-    "capital": ("properties: {Pose: t}", "1:14: 'Pose' is not a valid name in agent programs | write pose"),
-    "topic name": (
-        "properties: {a: 'my topic'}",
-        "1:17: 'my topic' is not a ROS name | write it like cmd_vel or /robot/cmd_vel",
-    ),
-    "namespace": ("namespace: 'a b'", "1:12: 'a b' is not a ROS namespace | write it like r1 or fleet/r1"),
-    "type name": (
-        "properties: {a: {topic: t, type: Odometry}}",
-        "1:34: 'Odometry' is not a type of messages | write it like nav_msgs/msg/Odometry",
-    ),
-    "service type for a topic": (
-        "properties: {a: {topic: t, type: std_srvs/srv/Trigger}}",
-        "1:34: std_srvs/srv/Trigger is the type of a service, not of messages | write a type such as nav_msgs/msg/Odometry",
-    ),
-    "message type for an action": (
-        "operations: {a: {action: t, type: nav_msgs/msg/Odometry}}",
-        "1:35: nav_msgs/msg/Odometry is the type of messages, not of an action | write a type such as nav2_msgs/action/",
-    ),
-    "unit of a transform": (
-        "frames: {a: {target: map, source: b, fields: [{path: x, unit: degrees}]}}",
-        "1:47: x of a transform is a length, but degrees is a unit of angle | units of length are metres, ",
-    ),
-    "conversion of a transform": (
-        "frames: {a: {target: map, source: b, fields: [{path: yaw, as: yaw}]}}",
-        "1:47: yaw of a transform is a number | it can only have a unit, scale, offset and round",
-    ),
-    "empty frame": (
-        "frames: {a: {target: map, source: ''}}",
-        "1:35: `source` is empty | write the name of a frame, such as base_link",
-    ),
-    "prefix that is a list": ("tf_prefix: [a]\nproperties: {a: t}", "1:12: 'tf_prefix' must be a text"),
-    "name of an artifact": (
-        "artifacts: {a b: {properties: {c: t}}}",
-        "1:13: 'a b' is not a name for an artifact | write a word",
-    ),
-    "type with dots": (
-        "properties: {a: {topic: t, type: nav_msgs.msg.Odometry}}",
-        "1:34: 'nav_msgs.msg.Odometry' is not a type of messages | write nav_msgs/msg/Odometry",
-    ),
-    "type like in C++": (
-        "properties: {a: {topic: t, type: 'nav_msgs::msg::Odometry'}}",
-        "1:34: 'nav_msgs::msg::Odometry' is not a type of messages | write nav_msgs/msg/Odometry",
-    ),
-    "type beside its property": (
-        "properties:\n  odom:\n    topic: odom\n  type: nav_msgs/msg/Odometry\n",
-        "4:3: `type` is used like the name of a property | indent it, below the name that it belongs to",
-    ),
-    "rate beside its property": (
-        "properties:\n  odom:\n    topic: odom\n  rate: 5\n",
-        "4:3: `rate` is used like the name of a property | indent it",
-    ),
-    "fields beside their signal": (
-        "signals:\n  bump:\n    topic: bump\n  fields: [data]\n",
-        "4:3: `fields` is used like the name of a signal | indent it",
-    ),
-    "parameters beside their operation": (
-        "operations:\n  go:\n    publish: t\n  parameters: [x]\n",
-        "4:3: `parameters` is used like the name of an operation | indent it",
-    ),
-    "colon without a space": (
-        "properties:\n  a:\n    topic:odom\n",
-        "3:5: 'topic:odom' is not a ROS name | write a space after the colon: topic: odom",
-    ),
-    "fields as a mapping": (
-        "properties: {a: {topic: t, fields: {x: pose.x, y: pose.y}}}",
-        "1:36: 'fields' has no `path`, and `x` is not a key | write a list of paths, or of mappings such as",
-    ),
-    "part of a quality of service alone": (
-        "properties: {a: {topic: t, qos: reliable}}",
-        "1:33: unknown QoS profile 'reliable' | write qos: {reliability: reliable}",
-    ),
-    "rate of zero": (
-        "properties: {a: {topic: t, rate: 0}}",
-        "1:34: 'rate' is 0, but must be above zero | leave 'rate' out, or write a number",
-    ),
-    "connected is yes": (
-        "connected: yes\nproperties: {a: t}",
-        "1:12: `connected` must be true, false, or a number of seconds above zero | write true",
-    ),
-    "range of view is a number": (
-        "properties: {a: {topic: t, range_of_view: 3}}",
-        "1:43: 'range_of_view' must be a mapping of keys to values | keys: metres, distance, at, from",
-    ),
-    "properties beside artifacts": (
-        "artifacts: {a: {}}\nproperties: {b: t}",
-        "2:1: `properties` is on the same level as `artifacts` | indent it, below the name of an artifact",
-    ),
-    "parameter without a dollar": (
-        "operations: {say: {parameters: [words], publish: t, fields: {data: words}}}",
-        "1:68: `words` is a text here, not the parameter | write $words",
-    ),
-    "path": (
-        "properties: {a: {topic: t, fields: ['pose..x']}}",
-        "1:37: `pose..x` is not a path: `` is not a field | write it like pose.position.x or ranges[0]",
-    ),
-    "unit": (
-        "properties: {a: {topic: t, fields: {path: x, unit: meters}}}",
-        (
-            "1:52: unknown unit 'meters' | did you mean `metres`? Units: radians, degrees, metres, centimetres, "
-            "millimetres, metres_per_second, kilometres_per_hour, seconds, milliseconds, minutes, celsius, kelvin, share, "
-            "percent"
-        ),
-    ),
-    "units of two kinds": (
-        "properties: {a: {topic: t, fields: {path: x, unit: metres, message_unit: celsius}}}",
-        (
-            "1:74: celsius is a unit of temperature, but metres of length | units of length are metres, centimetres, "
-            "millimetres"
-        ),
-    ),
-    "unit of an angle": (
-        "properties: {a: {topic: t, fields: {path: q, as: yaw, unit: percent}}}",
-        "1:61: `as: yaw` makes an angle, but percent is a unit of share | units of angle are radians, degrees",
-    ),
-    "as": (
-        "properties: {a: {topic: t, fields: {path: q, as: jaw}}}",
-        "1:50: 'as' is 'jaw' | choose one of: yaw, pitch, roll, name, atom, object, count, min, max, mean",
-    ),
-    "scale": (
-        "properties: {a: {topic: t, fields: {path: x, scale: 0}}}",
-        "1:53: `scale` is 0, which removes the value | write another number",
-    ),
-    "share": (
-        "properties: {a: {topic: t, fields: {path: x, sample: [0, 2]}}}",
-        "1:58: item 2 of 'sample' is 2, but must lie between 0 and 1 | ",
-    ),
-    "dead bands": (
-        "properties: {a: {topic: t, fields: [x, y], dead_band: [1]}}",
-        "1:55: `dead_band` has 1 numbers, but the property has 2 values | write one number for all, or one for each value",
-    ),
-    "initial": (
-        "properties: {a: {topic: t, fields: [x, y], initial: [1]}}",
-        "1:53: `initial` has 1 values, but the property has 2 | write one for each value",
-    ),
-    "mode": (
-        "properties: {a: {topic: t, mode: lazy}}",
-        "1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand",
-    ),
-    "rate": ("properties: {a: {topic: t, rate: 0}}", "1:34: 'rate' is 0, but must be above zero | "),
-    "on demand without a publisher": (
-        "properties: {a: {topic: t, mode: on_demand}}",
-        "1:14: no operation requests `a`, which is updated on demand | add an operation: look: {refresh: a}",
-    ),
-    "key without each": (
-        "properties: {a: {topic: t, key: id}}",
-        "1:33: `key` needs `each` | write the array with the elements: each: detections",
-    ),
-    "element without each": (
-        "properties: {a: {topic: t, fields: ['x[i]']}}",
-        "1:37: `x[i]` needs `each` | without `each` write the path alone",
-    ),
-    "qos": (
-        "properties: {a: {topic: t, qos: fast}}",
-        (
-            "1:33: unknown QoS profile 'fast' | write sensor_data, default, latched, or {reliability: ..., "
-            "durability: ..., depth: ..., deadline: ...}"
-        ),
-    ),
-    "view": (
-        "properties: {a: {topic: t, range_of_view: {metres: 3}}}",
-        "1:43: `range_of_view` needs a position | add `at: [position.x, position.y]`, or `distance: range`",
-    ),
-    "view with one coordinate": (
-        "properties: {a: {topic: t, range_of_view: {metres: 3, at: [x]}}}",
-        "1:59: `at` must be the paths of two coordinates | write [position.x, position.y]",
-    ),
-    "view from nowhere": (
-        "properties: {a: {topic: t, range_of_view: {metres: 3, at: [x, y], from: pose}}}",
-        "1:73: unknown property `pose` | properties from topics and frames: a",
-    ),
-    "frame": ("frames: {a: {target: map}}", "1:13: 'a' lacks the key 'source' | add 'source: ...'"),
-    "part of a frame": (
-        "frames: {a: {target: map, source: s, fields: [x, w]}}",
-        "1:50: a transform has no `w` | it has x, y, z, roll, pitch, yaw, stamp",
-    ),
-    "kind": (
-        "operations: {go: {topic: t}}",
-        (
-            "1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter, "
-            "get_parameter, refresh, read"
-        ),
-    ),
-    "kind, with other keys": (
-        "operations: {go: {parameters: [a]}}",
-        (
-            "1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter, "
-            "get_parameter, refresh, read"
-        ),
-    ),
-    "kind, misspelt": (
-        "operations: {go: {servise: t}}",
-        "1:14: the operation `go` does not name what it does | did you mean `service`?",
-    ),
-    "two kinds": (
-        "operations: {go: {publish: t, service: s}}",
-        (
-            "1:14: the operation `go` has publish and service | write one of publish, service, action, set_parameter, "
-            "get_parameter, refresh, read"
-        ),
-    ),
-    "key of another kind": (
-        "operations: {go: {publish: t, request: {}}}",
-        (
-            "1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, type, fields, qos, "
-            "rate, duration, at_end"
-        ),
-    ),
-    "parameter": (
-        "operations: {go: {parameters: [speed], publish: t, fields: {x: $sped}}}",
-        "1:64: the operation has no parameter `sped` | did you mean `$speed`?",
-    ),
-    "parameter missing": (
-        "operations: {go: {publish: t, fields: {x: $v}}}",
-        "1:43: the operation has no parameter `v` | add it to `parameters`: [v]",
-    ),
-    "parameter twice": (
-        "operations: {go: {parameters: [v, v], publish: t}}",
-        "1:35: duplicate parameter `v` | rename one of them",
-    ),
-    "rate alone": (
-        "operations: {go: {publish: t, rate: 3}}",
-        "1:37: `rate` needs `duration` | write seconds: duration: 2, or duration: $seconds",
-    ),
-    "duration alone": (
-        "operations: {go: {publish: t, duration: 3}}",
-        "1:41: `duration` needs `rate` | write messages per second: rate: 10",
-    ),
-    "field of a field": (
-        "operations: {go: {publish: t, fields: {linear: {x: 1}}}}",
-        "1:48: `linear` has no fields of its own here | write their paths: linear.x: ...",
-    ),
-    "read by writing": (
-        "operations: {go: {publish: t, fields: {x: {value: 1, as: mean}}}}",
-        "1:58: `as: mean` is for fields that an agent reads | here: yaw, pitch, roll, name",
-    ),
-    "suspend": (
-        "operations: {go: {action: a, suspend: stop}}",
-        (
-            "1:39: invalid `suspend`: 'stop' | write go_on or cancel, or operations that pause and resume the server: "
-            "{pause: hold, resume: go_on}"
-        ),
-    ),
-    "pause without operations": (
-        "operations: {go: {action: a, suspend: pause}}",
-        "1:39: an action can only be cancelled, not paused | name operations that pause and resume the server",
-    ),
-    "pause without resume": (
-        "operations: {hold: {service: s}, go: {action: a, suspend: {pause: hold}}}",
-        "1:59: 'suspend' lacks the key 'resume' | add 'resume: ...'",
-    ),
-    "pause by nothing": (
-        "operations: {hold: {service: s}, go: {action: a, suspend: {pause: hodl, resume: hold}}}",
-        "1:67: unknown operation `hodl` | name one without arguments that calls a service",
-    ),
-    "pause by an action": (
-        "operations: {go: {action: a, suspend: {pause: halt, resume: halt}}, halt: {action: b}}",
-        "1:47: `halt` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without",
-    ),
-    "resume with arguments": (
-        "operations: {h: {service: s}, go: {action: a, suspend: {pause: h, resume: i}}, i: {parameters: [x], service: s}}",
-        "1:75: `i` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without",
-    ),
-    "refresh": (
-        "operations: {look: {refresh: pose}}",
-        "1:30: unknown property `pose` | properties from topics and frames: none",
-    ),
-    "read without fields": (
-        "properties: {a: t}\noperations: {look: {read: a}}",
-        "2:27: the number of values of `a` is not known | give `a` fields",
-    ),
-    "node": (
-        "operations: {go: {get_parameter: a}}",
-        (
-            "1:34: `go` names no node, and `a` is not a parameter of our own | write the node that has the parameter: "
-            "node: controller_server"
-        ),
-    ),
-    "own parameter that is set and not declared": (
-        "parameters: {a: 1, b: {default: 2, parameter: c}}\noperations: {go: {set_parameter: b, value: 1}}",
-        "2:34: `go` names no node, and `b` is not a parameter of our own | our own parameters: a, c",
-    ),
-    "parameter of an unknown node": (
-        "parameters: {a: {minimum: 1}}",
-        (
-            "1:17: the parameter `a` has neither a node nor a default | write the node that has it, "
-            "node: controller_server, or its value if it is our own, default: 0.5"
-        ),
-    ),
-    "parameter of another with a default": (
-        "parameters: {a: {node: n, default: 1}}",
-        "1:27: 'a' has no key 'default' | known keys: node, parameter, fields, dead_band, description, rate",
-    ),
-    "parameter without a value": (
-        "parameters: {a: }",
-        "1:14: the parameter has no default | write a number, true or false, a text, or a list of them",
-    ),
-    "parameter with mixed values": (
-        "parameters: {a: [1, 2.5]}",
-        (
-            "1:17: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or texts, found "
-            "[1, 2.5] | write numbers of one type in a list: [1.0, 2.5]"
-        ),
-    ),
-    "range of a text": (
-        "parameters: {a: {default: b, minimum: 1}}",
-        "1:39: only numbers have a range, but the default is 'b' | leave minimum and maximum out",
-    ),
-    "default beyond its range": (
-        "parameters: {a: {default: 3, maximum: 2}}",
-        "1:27: the default is outside its range: it is at most 2, not 3 | write another default, or another range",
-    ),
-    "unit of a text": (
-        "parameters: {a: {default: fast, fields: {path: ., unit: degrees}}}",
-        '1:27: parameter `default`: expected a number, found "fast" | leave out its unit, scale, offset and round',
-    ),
-    "rounding of a text with a name": (
-        "parameters: {a: {default: fast, fields: {path: ., names: {fast: swift}, round: 1}}}",
-        '1:27: parameter `default`: expected a number, found "fast" | leave out its unit, scale, offset and round',
-    ),
-    "unit of texts that are to come": (
-        "parameters: {a: {default: [], fields: {path: ., unit: degrees}}}",
-        '1:27: parameter `default`: expected a number, found "" | leave out its unit, scale, offset and round',
-    ),
-    "substitute of a parameter": (
-        "parameters: {a: {default: 3.0, fields: {path: ., otherwise: 0}}}",
-        "1:40: `otherwise` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round",
-    ),
-    "conversion for messages": (
-        "parameters: {a: {default: 3, fields: {path: ., as: yaw}}}",
-        "1:38: `as: yaw` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round",
-    ),
-    "no artifacts": (
-        "artifacts: {}",
-        "1:12: no artifacts | write the name of one below `artifacts`",
-    ),
-}
+WRONG = r"""
+a: [b
+  1:4: this bracket is never closed | close the bracket
+properties: {a: {topic: t, fields: [x[0]]}}
+  1:38: not YAML: a bracket within a text of a list | write a text with brackets in quotes: "ranges[0]"
+- a
+  1:1: a mapping file must be a mapping of keys to values |
+propertys: {}
+  1:1: a mapping file has no key 'propertys' | did you mean `properties`?
+properties: {a: {rate: 1}}
+  1:17: 'a' lacks the key 'topic' | add 'topic: ...'
+properties:\n  a: t\n  a: u
+  3:3: duplicate key 'a', first in line 2 | rename one of them, or remove it
+properties: {a: t}\nsignals: {a: u}
+  2:11: the signal `a` has the same name as the property on line 1 | give it another name
+properties: {Pose: t}
+  1:14: 'Pose' is not a valid name in agent programs | write pose
+properties: {a: 'my topic'}
+  1:17: 'my topic' is not a ROS name | write it like cmd_vel or /robot/cmd_vel
+namespace: 'a b'
+  1:12: 'a b' is not a ROS namespace | write it like r1 or fleet/r1
+properties: {a: {topic: t, type: Odometry}}
+  1:34: 'Odometry' is not a type of messages | write it like nav_msgs/msg/Odometry
+properties: {a: {topic: t, type: std_srvs/srv/Trigger}}
+  1:34: std_srvs/srv/Trigger is the type of a service, not of messages | write a type such as nav_msgs/msg/Odometry
+operations: {a: {action: t, type: nav_msgs/msg/Odometry}}
+  1:35: nav_msgs/msg/Odometry is the type of messages, not of an action | write a type such as nav2_msgs/action/
+frames: {a: {target: map, source: b, fields: [{path: x, unit: degrees}]}}
+  1:47: x of a transform is a length, but degrees is a unit of angle | units of length are metres,
+frames: {a: {target: map, source: b, fields: [{path: yaw, as: yaw}]}}
+  1:47: yaw of a transform is a number | it can only have a unit, scale, offset and round
+frames: {a: {target: map, source: ''}}
+  1:35: `source` is empty | write the name of a frame, such as base_link
+tf_prefix: [a]\nproperties: {a: t}
+  1:12: 'tf_prefix' must be a text
+artifacts: {a b: {properties: {c: t}}}
+  1:13: 'a b' is not a name for an artifact | write a word
+properties: {a: {topic: t, type: nav_msgs.msg.Odometry}}
+  1:34: 'nav_msgs.msg.Odometry' is not a type of messages | write nav_msgs/msg/Odometry
+properties: {a: {topic: t, type: 'nav_msgs::msg::Odometry'}}
+  1:34: 'nav_msgs::msg::Odometry' is not a type of messages | write nav_msgs/msg/Odometry
+properties:\n  odom:\n    topic: odom\n  type: nav_msgs/msg/Odometry\n
+  4:3: `type` is used like the name of a property | indent it, below the name that it belongs to
+properties:\n  odom:\n    topic: odom\n  rate: 5\n
+  4:3: `rate` is used like the name of a property | indent it
+signals:\n  bump:\n    topic: bump\n  fields: [data]\n
+  4:3: `fields` is used like the name of a signal | indent it
+operations:\n  go:\n    publish: t\n  parameters: [x]\n
+  4:3: `parameters` is used like the name of an operation | indent it
+properties:\n  a:\n    topic:odom\n
+  3:5: 'topic:odom' is not a ROS name | write a space after the colon: topic: odom
+properties: {a: {topic: t, fields: {x: pose.x, y: pose.y}}}
+  1:36: 'fields' has no `path`, and `x` is not a key | write a list of paths, or of mappings such as
+properties: {a: {topic: t, qos: reliable}}
+  1:33: unknown QoS profile 'reliable' | write qos: {reliability: reliable}
+properties: {a: {topic: t, rate: 0}}
+  1:34: 'rate' is 0, but must be above zero | leave 'rate' out, or write a number
+connected: yes\nproperties: {a: t}
+  1:12: `connected` must be true, false, or a number of seconds above zero | write true
+properties: {a: {topic: t, range_of_view: 3}}
+  1:43: 'range_of_view' must be a mapping of keys to values | keys: metres, distance, at, from
+artifacts: {a: {}}\nproperties: {b: t}
+  2:1: `properties` is on the same level as `artifacts` | indent it, below the name of an artifact
+operations: {say: {parameters: [words], publish: t, fields: {data: words}}}
+  1:68: `words` is a text here, not the parameter | write $words
+properties: {a: {topic: t, fields: ['pose..x']}}
+  1:37: `pose..x` is not a path: `` is not a field | write it like pose.position.x or ranges[0]
+properties: {a: {topic: t, fields: {path: x, unit: meters}}}
+  1:52: unknown unit 'meters' | did you mean `metres`? Units: radians, degrees, metres, centimetres, millimetres,
+  metres_per_second, kilometres_per_hour, seconds, milliseconds, minutes, celsius, kelvin, share, percent
+properties: {a: {topic: t, fields: {path: x, unit: metres, message_unit: celsius}}}
+  1:74: celsius is a unit of temperature, but metres of length | units of length are metres, centimetres, millimetres
+properties: {a: {topic: t, fields: {path: q, as: yaw, unit: percent}}}
+  1:61: `as: yaw` makes an angle, but percent is a unit of share | units of angle are radians, degrees
+properties: {a: {topic: t, fields: {path: q, as: jaw}}}
+  1:50: 'as' is 'jaw' | choose one of: yaw, pitch, roll, name, atom, object, count, min, max, mean
+properties: {a: {topic: t, fields: {path: x, scale: 0}}}
+  1:53: `scale` is 0, which removes the value | write another number
+properties: {a: {topic: t, fields: {path: x, sample: [0, 2]}}}
+  1:58: item 2 of 'sample' is 2, but must lie between 0 and 1 |
+properties: {a: {topic: t, fields: [x, y], dead_band: [1]}}
+  1:55: `dead_band` has 1 numbers, but the property has 2 values | write one number for all, or one for each value
+properties: {a: {topic: t, fields: [x, y], initial: [1]}}
+  1:53: `initial` has 1 values, but the property has 2 | write one for each value
+properties: {a: {topic: t, mode: lazy}}
+  1:34: 'mode' is 'lazy' | choose one of: verbose, on_demand
+properties: {a: {topic: t, mode: on_demand}}
+  1:14: no operation requests `a`, which is updated on demand | add an operation: look: {refresh: a}
+properties: {a: {topic: t, key: id}}
+  1:33: `key` needs `each` | write the array with the elements: each: detections
+properties: {a: {topic: t, fields: ['x[i]']}}
+  1:37: `x[i]` needs `each` | without `each` write the path alone
+properties: {a: {topic: t, qos: fast}}
+  1:33: unknown QoS profile 'fast' | write sensor_data, default, latched, or {reliability: ..., durability: ...,
+  depth: ..., deadline: ...}
+properties: {a: {topic: t, range_of_view: {metres: 3}}}
+  1:43: `range_of_view` needs a position | add `at: [position.x, position.y]`, or `distance: range`
+properties: {a: {topic: t, range_of_view: {metres: 3, at: [x]}}}
+  1:59: `at` must be the paths of two coordinates | write [position.x, position.y]
+properties: {a: {topic: t, range_of_view: {metres: 3, at: [x, y], from: pose}}}
+  1:73: unknown property `pose` | properties from topics and frames: a
+frames: {a: {target: map}}
+  1:13: 'a' lacks the key 'source' | add 'source: ...'
+frames: {a: {target: map, source: s, fields: [x, w]}}
+  1:50: a transform has no `w` | it has x, y, z, roll, pitch, yaw, stamp
+operations: {go: {topic: t}}
+  1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter,
+  get_parameter, refresh, read
+operations: {go: {parameters: [a]}}
+  1:14: the operation `go` does not name what it does | write one of publish, service, action, set_parameter,
+  get_parameter, refresh, read
+operations: {go: {servise: t}}
+  1:14: the operation `go` does not name what it does | did you mean `service`?
+operations: {go: {publish: t, service: s}}
+  1:14: the operation `go` has publish and service | write one of publish, service, action, set_parameter,
+  get_parameter, refresh, read
+operations: {go: {publish: t, request: {}}}
+  1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, type, fields, qos, rate,
+  duration, at_end
+operations: {go: {parameters: [speed], publish: t, fields: {x: $sped}}}
+  1:64: the operation has no parameter `sped` | did you mean `$speed`?
+operations: {go: {publish: t, fields: {x: $v}}}
+  1:43: the operation has no parameter `v` | add it to `parameters`: [v]
+operations: {go: {parameters: [v, v], publish: t}}
+  1:35: duplicate parameter `v` | rename one of them
+operations: {go: {publish: t, rate: 3}}
+  1:37: `rate` needs `duration` | write seconds: duration: 2, or duration: $seconds
+operations: {go: {publish: t, duration: 3}}
+  1:41: `duration` needs `rate` | write messages per second: rate: 10
+operations: {go: {publish: t, fields: {linear: {x: 1}}}}
+  1:48: `linear` has no fields of its own here | write their paths: linear.x: ...
+operations: {go: {publish: t, fields: {x: {value: 1, as: mean}}}}
+  1:58: `as: mean` is for fields that an agent reads | here: yaw, pitch, roll, name
+operations: {go: {action: a, suspend: stop}}
+  1:39: invalid `suspend`: 'stop' | write go_on or cancel, or operations that pause and resume the server: {pause:
+  hold, resume: go_on}
+operations: {go: {action: a, suspend: pause}}
+  1:39: an action can only be cancelled, not paused | name operations that pause and resume the server
+operations: {hold: {service: s}, go: {action: a, suspend: {pause: hold}}}
+  1:59: 'suspend' lacks the key 'resume' | add 'resume: ...'
+operations: {hold: {service: s}, go: {action: a, suspend: {pause: hodl, resume: hold}}}
+  1:67: unknown operation `hodl` | name one without arguments that calls a service
+operations: {go: {action: a, suspend: {pause: halt, resume: halt}}, halt: {action: b}}
+  1:47: `halt` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without
+operations: {h: {service: s}, go: {action: a, suspend: {pause: h, resume: i}}, i: {parameters: [x], service: s}}
+  1:75: `i` cannot pause or resume a goal: it takes arguments, or runs for a while | name one without
+operations: {look: {refresh: pose}}
+  1:30: unknown property `pose` | properties from topics and frames: none
+properties: {a: t}\noperations: {look: {read: a}}
+  2:27: the number of values of `a` is not known | give `a` fields
+operations: {go: {get_parameter: a}}
+  1:34: `go` names no node, and `a` is not a parameter of our own | write the node that has the parameter: node:
+  controller_server
+parameters: {a: 1, b: {default: 2, parameter: c}}\noperations: {go: {set_parameter: b, value: 1}}
+  2:34: `go` names no node, and `b` is not a parameter of our own | our own parameters: a, c
+parameters: {a: {minimum: 1}}
+  1:17: the parameter `a` has neither a node nor a default | write the node that has it, node: controller_server, or
+  its value if it is our own, default: 0.5
+parameters: {a: {node: n, default: 1}}
+  1:27: 'a' has no key 'default' | known keys: node, parameter, fields, dead_band, description, rate
+parameters: {a: }
+  1:14: the parameter has no default | write a number, true or false, a text, or a list of them
+parameters: {a: [1, 2.5]}
+  1:17: expected a bool, a number, a text, bytes, or a list of bools, ints, floats or texts, found [1, 2.5] | write
+  numbers of one type in a list: [1.0, 2.5]
+parameters: {a: {default: b, minimum: 1}}
+  1:39: only numbers have a range, but the default is 'b' | leave minimum and maximum out
+parameters: {a: {default: 3, maximum: 2}}
+  1:27: the default is outside its range: it is at most 2, not 3 | write another default, or another range
+parameters: {a: {default: fast, fields: {path: ., unit: degrees}}}
+  1:27: parameter `default`: expected a number, found "fast" | leave out its unit, scale, offset and round
+parameters: {a: {default: fast, fields: {path: ., names: {fast: swift}, round: 1}}}
+  1:27: parameter `default`: expected a number, found "fast" | leave out its unit, scale, offset and round
+parameters: {a: {default: [], fields: {path: ., unit: degrees}}}
+  1:27: parameter `default`: expected a number, found "" | leave out its unit, scale, offset and round
+parameters: {a: {default: 3.0, fields: {path: ., otherwise: 0}}}
+  1:40: `otherwise` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round
+parameters: {a: {default: 3, fields: {path: ., as: yaw}}}
+  1:38: `as: yaw` is for messages | a parameter can have: as: atom, names, unit, scale, offset, round
+artifacts: {}
+  1:12: no artifacts | write the name of one below `artifacts`
+"""
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_a_mistake_is_reported_with_location_and_help(name: str) -> None:
-    text, expected = WRONG[name]
+@pytest.mark.parametrize(("text", "expected"), mistakes(WRONG).items())
+def test_a_mistake_is_reported_with_location_and_help_and_types_are_checked_too(
+    text: str, expected: str, tmp_path: Path
+) -> None:
     found = told(text)
     assert any(each.startswith(expected) for each in found), found
+    (tmp_path / "m.yaml").write_text(text, encoding="utf-8")
+    assert check_mapping_file(tmp_path / "m.yaml")
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_types_are_checked_too_in_spite_of_a_mistake(name: str, tmp_path: Path) -> None:
-    file = tmp_path / "m.yaml"
-    file.write_text(WRONG[name][0], encoding="utf-8")
-    assert check_mapping_file(file)
+def test_an_empty_file_is_reported() -> None:
+    assert told("") == ["1:1: the file is empty | begin with properties: or operations:"]
 
 
-def test_properties_may_be_called_like_keys() -> None:
+def test_properties_and_constants_may_be_called_like_keys_and_parameters() -> None:
     parts = properties("  mode: mode\n  rate: {topic: rate}").artifacts["m"].properties
     assert [part.name for part in parts] == ["mode", "rate"]
-
-
-def test_a_constant_may_be_called_like_a_parameter_that_is_used() -> None:
-    read_mapping(
-        "operations: {go: {parameters: [map], publish: t, fields: {header.frame_id: map, data: $map}}}\n"
-    )
+    fields = "{header.frame_id: map, data: $map}"
+    read_mapping(f"operations: {{go: {{parameters: [map], publish: t, fields: {fields}}}}}\n")
 
 
 def test_all_mistakes_are_reported_in_one_pass_in_the_order_of_the_lines() -> None:
@@ -466,13 +284,10 @@ def test_a_mistake_is_shown_with_its_line() -> None:
     )
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_or_not_text(tmp_path: Path) -> None:
     assert find_mapping("no.yaml", (tmp_path,)) is None
     with pytest.raises(MappingError, match="mapping file not found"):
         load_mapping(tmp_path / "no.yaml")
-
-
-def test_a_file_that_is_not_text(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_bytes(b"\xff\xfe")
     with pytest.raises(MappingError, match="the file is in UTF-16"):
         load_mapping(tmp_path / "m.yaml")

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from mapped_lab import mapped, settle
-from robot_lab import Lab
+from robot_lab import Lab, made
 
 from jacaros.artifacts import ArtifactId, Atom, Out
 from jacaros.artifacts.env.errors import OperationFailed
@@ -29,8 +29,10 @@ def held(lab: Lab, artifact: ArtifactId, name: str) -> list[tuple[object, ...]]:
     return lab.watch(artifact).holds(name)
 
 
-async def test_they_are_properties_from_the_start(lab: Lab) -> None:
-    artifact = await lab.make(mapped(TUNED))
+pytestmark = made(mapped(TUNED))
+
+
+async def test_they_are_properties_from_the_start(lab: Lab, artifact: ArtifactId) -> None:
     assert held(lab, artifact, "speed") == [(0.4,)]
     assert held(lab, artifact, "turn") == [(29,)]
     assert held(lab, artifact, "places") == [([Atom("kitchen"), Atom("hall")],)]
@@ -41,8 +43,7 @@ async def test_they_are_properties_from_the_start(lab: Lab) -> None:
     assert names == ["count", "map_file", "patrol.turn", "places", "speed"]
 
 
-async def test_others_change_them_within_what_is_declared(lab: Lab) -> None:
-    artifact = await lab.make(mapped(TUNED))
+async def test_others_change_them_within_what_is_declared(lab: Lab, artifact: ArtifactId) -> None:
     theirs = lab.backend.parameters()
     await theirs.set("speed", 0.8)
     await theirs.set("places", ["attic"])
@@ -55,8 +56,7 @@ async def test_others_change_them_within_what_is_declared(lab: Lab) -> None:
     assert held(lab, artifact, "map_file") == [("house.yaml",)]
 
 
-async def test_agents_change_them_by_operations(lab: Lab) -> None:
-    artifact = await lab.make(mapped(TUNED))
+async def test_agents_change_them_by_operations(lab: Lab, artifact: ArtifactId) -> None:
     await lab.do(artifact, "drive_at", 1)
     await settle()
     assert held(lab, artifact, "speed") == [(1.0,)]
@@ -77,15 +77,13 @@ async def test_those_of_several_robots_are_below_their_names(lab: Lab) -> None:
     assert await lab.backend.parameters().get("r2.speed") == 0.4
 
 
-async def test_they_go_with_their_artifact(lab: Lab) -> None:
-    artifact = await lab.make(mapped(TUNED))
+async def test_they_go_with_their_artifact(lab: Lab, artifact: ArtifactId) -> None:
     lab.workspace.dispose_artifact(artifact)
     assert await lab.backend.parameters().names() == []
     await lab.make(mapped(TUNED))
 
 
-async def test_infinity_is_not_shown(lab: Lab) -> None:
-    artifact = await lab.make(mapped(TUNED))
+async def test_infinity_is_not_shown(lab: Lab, artifact: ArtifactId) -> None:
     theirs = lab.backend.parameters()
     await theirs.set("patrol.turn", -math.inf)
     await settle()

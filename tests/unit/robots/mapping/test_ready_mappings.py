@@ -81,6 +81,12 @@ def near(lab: Lab, x: float, y: float) -> bool:
     return abs(at[0] - x) < 0.06 and abs(at[1] - y) < 0.06
 
 
+def dock_of(robot: Ready) -> object:
+    assert robot.lab.world is not None
+    robot.lab.pose()
+    return robot.lab.world.robot(None).dock
+
+
 # ---- in the embedded world
 
 
@@ -131,30 +137,24 @@ async def test_following_waypoints_and_those_that_were_missed(robot: Ready) -> N
 async def test_docking_by_nav2(robot: Ready) -> None:
     tried.add(("nav2.yaml", "docking"))
     await robot.do("dock_at", "dock")
-    assert robot.lab.world is not None
-    assert robot.lab.world.robot(None).dock is not None
+    assert dock_of(robot) is not None
     assert robot.watcher.values("docking")[0] == (Atom("nav_to_staging_pose"),)
     await robot.do("leave_dock")
-    robot.lab.pose()
-    assert robot.lab.world.robot(None).dock is None
+    assert dock_of(robot) is None
     assert (await robot.reason("dock_at", "dock_7")).startswith("aborted(901,")
 
 
 @pytest.mark.parametrize("file", ["turtlebot2.yaml", "turtlebot4.yaml"])
 def test_docking_by_the_base(file: str) -> None:
     async def body(robot: Ready) -> None:
-        assert robot.lab.world is not None
-        await robot.do("dock")
-        assert robot.lab.world.robot(None).dock is not None
-        await robot.lab.sleep(2)
-        if file == "turtlebot4.yaml":
-            assert robot.value("docked") == (True,)
-        assert robot.value("battery")[1] in (Atom("charging"), Atom("full"))
-        await robot.do("undock")
-        await robot.lab.sleep(2)
-        assert robot.lab.world.robot(None).dock is None
-        if file == "turtlebot4.yaml":
-            assert robot.value("docked") == (False,)
+        for operation, docked in (("dock", True), ("undock", False)):
+            await robot.do(operation)
+            await robot.lab.sleep(2)
+            assert (dock_of(robot) is not None) == docked
+            if file == "turtlebot4.yaml":
+                assert robot.value("docked") == (docked,)
+            if docked:
+                assert robot.value("battery")[1] in (Atom("charging"), Atom("full"))
 
     with_ready(file, body)
 
@@ -235,47 +235,32 @@ def test_a_base_is_driven_with_its_own_message_type(file: str, stamped: bool) ->
     with_ready(file, body, None)
 
 
-def test_a_base_that_comes_a_little_later_is_waited_for() -> None:
-    async def body(robot: Ready) -> None:
-        run = robot.lab.begin(robot.artifact, "drive", 0.2, 0, 1)
-        await robot.lab.sleep(1)
-        robot.lab.record()
-        await run.done
-        assert run.outcome is not None
-        assert run.outcome.ok
-
-    with_ready("turtlebot4.yaml", body, None)
+@played(with_ready, "turtlebot4.yaml", world=None)
+async def test_a_base_that_comes_a_little_later_is_waited_for(robot: Ready) -> None:
+    run = await robot.lab.begun(1, robot.artifact, "drive", 0.2, 0, 1)
+    robot.lab.record()
+    await run.done
+    assert run.ok
 
 
-@pytest.mark.parametrize(
-    ("raw", "charger", "expected"),
-    [(165, 0, (100, "discharging")), (132, 6, (0, "charging")), (148, 2, (48, "full"))],
-)
-def test_the_battery_of_a_kobuki(raw: int, charger: int, expected: tuple[int, str]) -> None:
-    async def body(robot: Ready) -> None:
-        publisher = robot.lab.backend.publisher("/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState")
-        publisher.publish(publisher.message(battery=raw, charger=charger))
+@played(with_ready, "turtlebot2.yaml", world=None)
+async def test_the_battery_and_the_cliffs_of_a_kobuki(robot: Ready) -> None:
+    for raw, charger, expected in (
+        (165, 0, (100, "discharging")),
+        (132, 6, (0, "charging")),
+        (148, 2, (48, "full")),
+    ):
+        robot.lab.say(
+            "/mobile_base/sensors/core", "kobuki_msgs/msg/SensorState", battery=raw, charger=charger
+        )
         await robot.lab.sleep(2)
         percent, status = robot.value("battery")
         assert (percent, str(status)) == expected
-
-    with_ready("turtlebot2.yaml", body, None)
-
-
-def test_the_cliffs_of_a_kobuki() -> None:
-    async def body(robot: Ready) -> None:
-        publisher = robot.lab.backend.publisher("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
-        publisher.publish(publisher.message(sensor=2, state=1))
-        await robot.lab.sleep(0.1)
-        assert robot.signals("cliff") == [(Atom("right"), Atom("cliff"))]
-        publisher = robot.lab.backend.publisher(
-            "/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent"
-        )
-        publisher.publish(publisher.message(wheel=1, state=1))
-        await robot.lab.sleep(0.1)
-        assert robot.signals("wheel_drop") == [(Atom("right"), Atom("dropped"))]
-
-    with_ready("turtlebot2.yaml", body, None)
+    robot.lab.say("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent", sensor=2, state=1)
+    robot.lab.say("/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent", wheel=1, state=1)
+    await robot.lab.sleep(0.1)
+    assert robot.signals("cliff") == [(Atom("right"), Atom("cliff"))]
+    assert robot.signals("wheel_drop") == [(Atom("right"), Atom("dropped"))]
 
 
 @played(with_ready, "turtlebot4.yaml")
@@ -289,8 +274,7 @@ async def test_the_lights_and_tunes_of_a_create(robot: Ready) -> None:
     lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
     assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
     assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}
-    publisher = robot.lab.backend.publisher("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
-    publisher.publish(publisher.message())
+    robot.lab.say("/cmd_lightring", "irobot_create_msgs/msg/LightringLeds")
     await robot.lab.sleep(0.1)
     assert robot.lab.world.ground_truth.events[-1].data == {"colors": []}, "the robot has its lights back"
 
@@ -328,15 +312,12 @@ def test_what_a_navigation_server_is_sent(
             return {}
 
         robot.lab.backend.action_server(f"/r1/{action}", kind, execute)
-        run = robot.lab.begin(robot.artifact, operation, *arguments)
-        await robot.lab.sleep(1)
+        run = await robot.lab.begun(1, robot.artifact, operation, *arguments)
         run.execution.pause()
         await robot.lab.sleep(1)
         assert ended == ["cancelled"]
-        run.execution.resume()
-        await run.done
-        assert run.outcome is not None
-        assert run.outcome.ok
+        await run.resumed()
+        assert run.ok
         assert ended == ["cancelled", "done"]
         for goal in goals:
             pose = (

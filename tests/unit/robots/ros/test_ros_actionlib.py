@@ -17,7 +17,6 @@ from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.protocols.actionlib import OVERTAKEN, STATUS_PERIOD, part_type
 from jacaros.robots.ros.protocols.rosbridge_messages import BridgeSchema
 from jacaros.runtime.clock import VirtualClock, run
-from played import played
 
 COUNT = "jacaros_interfaces/action/Count"
 
@@ -106,106 +105,101 @@ def play(scene: Callable[[Actionlib], Coroutine[Any, Any, None]]) -> None:
     run(main, graph.clock)
 
 
+Actionlib.play = staticmethod(play)
+
+
 @pytest.mark.parametrize("policy", ["cancel", "yes"])
-@played(play)
 async def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_one(
-    graph: Actionlib, policy: str
+    lab: Actionlib, policy: str
 ) -> None:
     asked: list[str] = []
 
     async def agree(question: str) -> bool:
         asked.append(question)
-        await graph.clock.sleep(30)
+        await lab.clock.sleep(30)
         return True
 
-    client = await graph.open()
+    client = await lab.open()
     await client.send({"target": 3, "period": 900.0}, timeout=20)
-    client = await graph.run_again("cancel" if policy == "cancel" else agree)
+    client = await lab.run_again("cancel" if policy == "cancel" else agree)
     goal = await client.send({"target": 4, "period": 0.5}, timeout=20)
-    assert graph.stopped == [3]
+    assert lab.stopped == [3]
     assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
-    assert graph.began == [3, 4]
+    assert lab.began == [3, 4]
     found = "action /count is still executing a goal of an earlier run of this node"
     if policy == "cancel":
-        assert f"warning: {found}; cancelling it" in graph.logged
+        assert f"warning: {found}; cancelling it" in lab.logged
     else:
         assert asked == [f"{found}. Cancel it?"]
 
 
-@played(play)
-async def test_the_goal_of_a_killed_run_is_kept_on_request(graph: Actionlib) -> None:
-    client = await graph.open()
+async def test_the_goal_of_a_killed_run_is_kept_on_request(lab: Actionlib) -> None:
+    client = await lab.open()
     await client.send({"target": 3, "period": 900.0}, timeout=20)
-    client = await graph.run_again("keep")
+    client = await lab.run_again("keep")
     await client.send({"target": 4, "period": 0.5}, timeout=20)
-    await graph.clock.sleep(5)
-    assert graph.stopped == []
+    await lab.clock.sleep(5)
+    assert lab.stopped == []
     found = "action /count is still executing a goal of an earlier run of this node; the robot may be moving"
-    assert graph.logged.count(f"warning: {found}") == 1
+    assert lab.logged.count(f"warning: {found}") == 1
 
 
-@played(play)
-async def test_the_goal_of_another_node_is_not_an_orphan(graph: Actionlib) -> None:
-    client = await graph.open()
+async def test_the_goal_of_another_node_is_not_an_orphan(lab: Actionlib) -> None:
+    client = await lab.open()
     await client.send({"target": 3, "period": 900.0}, timeout=20)
-    client = await graph.run_again("cancel", name="client2")
+    client = await lab.run_again("cancel", name="client2")
     await client.send({"target": 4, "period": 0.5}, timeout=20)
-    await graph.clock.sleep(5)
-    assert graph.stopped == []
-    assert not [line for line in graph.logged if "earlier run" in line]
+    await lab.clock.sleep(5)
+    assert lab.stopped == []
+    assert not [line for line in lab.logged if "earlier run" in line]
 
 
-@played(play)
-async def test_a_server_is_ready_after_its_first_message_on_all_topics(graph: Actionlib) -> None:
+async def test_a_server_is_ready_after_its_first_message_on_all_topics(lab: Actionlib) -> None:
     """A publisher is seen a moment before it knows its subscriber; a result in that moment would be lost."""
-    client = await graph.open()
+    client = await lab.open()
     wire = client.wire
     assert isinstance(wire, ActionlibWire)
     result = wire._result
     wire._result = SimpleNamespace(publisher_count=0)  # type: ignore[assignment]
-    await graph.clock.sleep(2.0)
+    await lab.clock.sleep(2.0)
     assert not wire.offered
     wire._result = result
     assert not wire.offered
-    await graph.clock.sleep(1.1 * STATUS_PERIOD)
+    await lab.clock.sleep(1.1 * STATUS_PERIOD)
     assert wire.offered
 
 
-@played(play)
-async def test_a_goal_that_was_lost_on_its_way_is_sent_again(graph: Actionlib) -> None:
-    client = await graph.open()
-    graph.swallowed = 1
-    begun = graph.clock.elapsed
+async def test_a_goal_that_was_lost_on_its_way_is_sent_again(lab: Actionlib) -> None:
+    client = await lab.open()
+    lab.swallowed = 1
+    begun = lab.clock.elapsed
     goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
-    assert 1.0 <= graph.clock.elapsed - begun < 3.0
+    assert 1.0 <= lab.clock.elapsed - begun < 3.0
     assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
-    assert graph.began == [3]
-    assert graph.sent == 2
+    assert lab.began == [3]
+    assert lab.sent == 2
 
 
-@played(play)
-async def test_a_goal_that_arrived_is_sent_once(graph: Actionlib) -> None:
-    client = await graph.open()
+async def test_a_goal_that_arrived_is_sent_once(lab: Actionlib) -> None:
+    client = await lab.open()
     goal = await client.send({"target": 3, "period": 9.0}, timeout=20)
     assert (await goal.outcome(20)).status is GoalStatus.SUCCEEDED
-    assert graph.sent == 1
+    assert lab.sent == 1
 
 
-@played(play)
-async def test_an_abandoned_goal_is_not_sent_again(graph: Actionlib) -> None:
-    client = await graph.open()
-    graph.swallowed = 1
+async def test_an_abandoned_goal_is_not_sent_again(lab: Actionlib) -> None:
+    client = await lab.open()
+    lab.swallowed = 1
     try:
         await client.send({"target": 3, "period": 0.5}, timeout=0.5)
     except CallTimedOut:
-        await graph.clock.sleep(10)
-    assert graph.sent == 1
-    assert graph.began == []
+        await lab.clock.sleep(10)
+    assert lab.sent == 1
+    assert lab.began == []
 
 
-@played(play)
-async def test_a_duplicate_goal_is_executed_once(graph: Actionlib) -> None:
-    client = await graph.open()
+async def test_a_duplicate_goal_is_executed_once(lab: Actionlib) -> None:
+    client = await lab.open()
     sent: list[Any] = []
     goals = client.wire._goal  # type: ignore[attr-defined]
     deliver = goals.publish
@@ -218,48 +212,45 @@ async def test_a_duplicate_goal_is_executed_once(graph: Actionlib) -> None:
     goals.publish = twice
     goal = await client.send({"target": 3, "period": 0.5}, timeout=20)
     assert (await goal.outcome(5)).status is GoalStatus.SUCCEEDED
-    await graph.clock.sleep(1)
+    await lab.clock.sleep(1)
     goals.publish(sent[0])
-    await graph.clock.sleep(1)
-    assert graph.began == [3]
+    await lab.clock.sleep(1)
+    assert lab.began == [3]
 
 
-@played(play)
-async def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet(graph: Actionlib) -> None:
+async def test_a_client_that_ends_cancels_its_goals_also_where_the_server_is_quiet(lab: Actionlib) -> None:
     """Its status messages may be late on a bad network, and the robot drives on meanwhile."""
-    client = await graph.open()
+    client = await lab.open()
     await client.send({"target": 3, "period": 60.0}, timeout=20)
-    graph.server._status.publish = lambda message: None  # type: ignore[method-assign]
-    await graph.clock.sleep(1.5)
+    lab.server._status.publish = lambda message: None  # type: ignore[method-assign]
+    await lab.clock.sleep(1.5)
     assert not client.ready
     client.close()
-    await graph.clock.sleep(0.1)
-    assert graph.stopped == [3]
+    await lab.clock.sleep(0.1)
+    assert lab.stopped == [3]
 
 
 @pytest.mark.parametrize("period", [0.1, 8.0])
-@played(play)
-async def test_a_lost_goal_does_not_come_after_a_newer_one(graph: Actionlib, period: float) -> None:
+async def test_a_lost_goal_does_not_come_after_a_newer_one(lab: Actionlib, period: float) -> None:
     """A server that pursues one goal at a time would leave the newer one for it; who waits for it hears of that."""
-    client = await graph.open()
-    graph.swallowed = 1
+    client = await lab.open()
+    lab.swallowed = 1
     older = asyncio.create_task(client.send({"target": 3, "period": 0.5}))
-    await graph.clock.sleep(0.3)
+    await lab.clock.sleep(0.3)
     newer = await client.send({"target": 4, "period": period}, timeout=5)
     assert (await newer.outcome(20)).status is GoalStatus.SUCCEEDED
     end = await (await older).outcome(3)
     assert (end.status, end.text) == (GoalStatus.CANCELED, OVERTAKEN)
-    await graph.clock.sleep(8)
-    assert graph.began == [4]
+    await lab.clock.sleep(8)
+    assert lab.began == [4]
 
 
-@played(play)
-async def test_a_lost_goal_is_sent_again_when_a_newer_one_was_refused(graph: Actionlib) -> None:
-    client = await graph.open()
-    graph.swallowed = 1
+async def test_a_lost_goal_is_sent_again_when_a_newer_one_was_refused(lab: Actionlib) -> None:
+    client = await lab.open()
+    lab.swallowed = 1
     older = asyncio.create_task(client.send({"target": 3, "period": 0.5}, timeout=5))
-    await graph.clock.sleep(0.3)
+    await lab.clock.sleep(0.3)
     with pytest.raises(GoalRejected):
         await client.send({"target": -1}, timeout=5)
     assert (await (await older).outcome(5)).status is GoalStatus.SUCCEEDED
-    assert graph.began == [3]
+    assert lab.began == [3]

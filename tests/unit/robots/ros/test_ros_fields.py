@@ -52,9 +52,4 @@ def test_ros2_notation_is_understood(text: str, expected: FieldType) -> None:
 def test_field_types_are_written_as_people_write_them() -> None:
     assert [
         str(from_ros2(t)) for t in ("double", "double[3]", "sequence<double, 3>", "sequence<double>")
-    ] == [
-        "float64",
-        "float64[3]",
-        "float64[<=3]",
-        "float64[]",
-    ]
+    ] == ["float64", "float64[3]", "float64[<=3]", "float64[]"]

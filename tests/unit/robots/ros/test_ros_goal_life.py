@@ -60,22 +60,36 @@ class _Listener:
     def __init__(self) -> None:
         self.ends: list[Outcome] = []
         self.feedback_after_end = False
+        self.ended = self.ends.append
 
     def feedback(self, message: Any) -> None:
         self.feedback_after_end |= bool(self.ends)
 
-    def ended(self, outcome: Outcome) -> None:
-        self.ends.append(outcome)
+
+class Life(RuleBasedStateMachine):
+    """A loop that is closed when all goals have ended."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.run = Loop()
+
+    def teardown(self) -> None:
+        try:
+            self._end()
+        finally:
+            self.run.close()
+
+    def _end(self) -> None:
+        raise NotImplementedError
 
 
-class ServerLife(RuleBasedStateMachine):
+class ServerLife(Life):
     """A server's goals; a future controls the code of each."""
 
     goals = Bundle("goals")
 
     def __init__(self) -> None:
         super().__init__()
-        self.run = Loop()
         self.preempting = False
         self.closed = False
         self.agree = True
@@ -171,12 +185,6 @@ class ServerLife(RuleBasedStateMachine):
         if self.preempting:
             assert len(self.running) <= 1
 
-    def teardown(self) -> None:
-        try:
-            self._end()
-        finally:
-            self.run.close()
-
     def _end(self) -> None:
         for order in self.orders.values():
             if not order.done():
@@ -205,21 +213,18 @@ class _Wire:
     def cancel_goal(self, goal_id: str) -> None:
         self.cancels.append(goal_id)
 
-    def forget_goal(self, goal_id: str) -> None:
-        pass
+    def forget_goal(self, goal_id: str) -> None: ...
 
-    def close(self) -> None:
-        pass
+    def close(self) -> None: ...
 
 
-class ClientLife(RuleBasedStateMachine):
+class ClientLife(Life):
     """A client's goals against a server that is allowed to say anything at any time, and twice."""
 
     sends = Bundle("sends")
 
     def __init__(self) -> None:
         super().__init__()
-        self.run = Loop()
         self.wire = _Wire()
         self.sender = ActionClient(self.run.clock, lambda text: None, FACTORY, "/count", COUNT)
         self.sender.wire = self.wire
@@ -293,12 +298,6 @@ class ClientLife(RuleBasedStateMachine):
     def a_closed_client_is_not_busy(self) -> None:
         assert not (self.closed and self.sender.busy)
 
-    def teardown(self) -> None:
-        try:
-            self._end()
-        finally:
-            self.run.close()
-
     def _end(self) -> None:
         self.wire.offered = True
         self.run.do(self.sender.server_present, True)  # callers that wait for it continue
@@ -306,17 +305,14 @@ class ClientLife(RuleBasedStateMachine):
         self.wire.offered = False
         self.run.do(self.sender.server_present, False)
         self.run.turn(SERVER_LOST_AFTER + 1.0)
-        for number, task in enumerate(self.tasks):
-            assert task.done(), "a caller of send waits for ever"
-            if not task.cancelled():
+        given_up = [self.tasks[number] for number in self.given_up]
+        for task in [*self.tasks, *self.asks, *[task for _, task in self.waits]]:
+            assert task.done(), "a caller waits for ever"
+            if task.cancelled():
+                assert task in given_up
+            else:
                 problem = task.exception()
                 assert problem is None or isinstance(problem, ServiceError), problem
-            else:
-                assert number in self.given_up
-        for task in [*self.asks, *[task for _, task in self.waits]]:
-            assert task.done(), "a caller waits for ever"
-            problem = task.exception()
-            assert problem is None or isinstance(problem, ServiceError), problem
         assert not self.sender.busy
 
     def _accepted(self, number: int) -> GoalHandle | None:

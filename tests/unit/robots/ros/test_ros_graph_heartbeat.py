@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -66,134 +67,115 @@ class Lab:
                 await asyncio.sleep(0.01)
 
 
-def in_lab(folder: Path, body: Callable[[Lab], Awaitable[None]]) -> Lab:
-    labs = []
-
+def play(body: Callable[[Lab], Awaitable[None]]) -> None:
     async def main() -> None:
         base: Any = open_backend("memory", WallClock(), "base", log=lambda text: None)
         await base.start()
         agents = open_backend("memory", WallClock(), "agents", log=lambda text: None, graph=base.graph)
         guard = open_backend("memory", WallClock(), "agents_guard", log=lambda text: None, graph=base.graph)
         await agents.start()
-        lab = Lab(agents, guard, folder / "s")
-        labs.append(lab)
-        base.subscription("/cmd_vel", TWIST, lambda sample: lab.heard.append(sample.message.linear.x))
-        guarding = asyncio.ensure_future(lab.guard.run())
-        await lab.until(lambda: lab.state.agents)
-        await body(lab)
-        lab.state.leave()
-        lab.guard._ending = True
-        lab.guard._tripped_at = 0.0
-        lab.guard._wake.set()
-        await guarding
+        with TemporaryDirectory() as folder:
+            lab = Lab(agents, guard, Path(folder) / "s")
+            base.subscription("/cmd_vel", TWIST, lambda sample: lab.heard.append(sample.message.linear.x))
+            guarding = asyncio.ensure_future(lab.guard.run())
+            await lab.until(lambda: lab.state.agents)
+            await body(lab)
+            lab.state.leave()
+            lab.guard._ending = True
+            lab.guard._tripped_at = 0.0
+            lab.guard._wake.set()
+            await guarding
         lab.heartbeat.close()
         await agents.close()
         await base.close()
 
     run(main, WallClock())
-    return labs[0]
 
 
-def test_a_heartbeat_that_ceases_while_the_robot_drives_stops_it(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        lab.wheels.publish(FORWARD)
-        await lab.until(lambda: lab.heard)
-        lab.cut()
-        await lab.until(lambda: len(lab.heard) > 3)
-        assert lab.interrupted == 0
+Lab.play = staticmethod(play)
 
-    lab = in_lab(tmp_path, body)
+
+async def test_a_heartbeat_that_ceases_while_the_robot_drives_stops_it(lab: Lab) -> None:
+    lab.wheels.publish(FORWARD)
+    await lab.until(lambda: lab.heard)
+    lab.cut()
+    await lab.until(lambda: len(lab.heard) > 3)
+    assert lab.interrupted == 0
     assert lab.heard[:4] == [0.3, 0.0, 0.0, 0.0]
     assert lab.lines[0].startswith("warning: /agents: no heartbeat from the agents for 0.5")
 
 
-def test_agents_that_return_are_interrupted_once_before_the_robot_is_released(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        lab.wheels.publish(FORWARD)
-        lab.cut()
-        await lab.until(lambda: lab.state.tripped)
-        lab.mend()
-        await lab.until(lambda: not lab.state.tripped)
-        assert lab.interrupted == 1
-        count = len(lab.heard)
-        await asyncio.sleep(2 * NETWORK_TIMEOUT)
-        assert len(lab.heard) == count, "the guard is quiet when the run is healthy"
-        assert lab.interrupted == 1
-
-    lab = in_lab(tmp_path, body)
+async def test_agents_that_return_are_interrupted_once_before_the_robot_is_released(lab: Lab) -> None:
+    lab.wheels.publish(FORWARD)
+    lab.cut()
+    await lab.until(lambda: lab.state.tripped)
+    lab.mend()
+    await lab.until(lambda: not lab.state.tripped)
+    assert lab.interrupted == 1
+    count = len(lab.heard)
+    await asyncio.sleep(2 * NETWORK_TIMEOUT)
+    assert len(lab.heard) == count, "the guard is quiet when the run is healthy"
+    assert lab.interrupted == 1
     assert lab.lines[-1] == "/agents: the guard has released the robot"
 
 
 @pytest.mark.parametrize("driven", [False, True])
-def test_a_heartbeat_that_ceases_while_the_robot_stands_stops_nothing(tmp_path: Path, driven: bool) -> None:
-    async def body(lab: Lab) -> None:
-        if driven:
-            lab.wheels.publish(FORWARD)
-            lab.wheels.publish({})
-        await asyncio.sleep(0.2)
-        lab.cut()
-        count = len(lab.heard)
-        await lab.until(lambda: not lab.state.agents)
-        await asyncio.sleep(0.2)
-        assert len(lab.heard) == count
-        assert lab.guard._brakes.found == {}, "no publisher is left on the topic"
-        lab.mend()
-        await lab.until(lambda: lab.state.agents)
-
-    assert in_lab(tmp_path, body).lines == []
-
-
-def test_a_running_goal_counts_as_driving(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        with lab.guarded.goal():
-            lab.cut()
-            await lab.until(lambda: lab.state.tripped)
-
-    assert in_lab(tmp_path, body).lines != []
-
-
-def test_a_process_that_ends_in_good_order_is_not_missed(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
+async def test_a_heartbeat_that_ceases_while_the_robot_stands_stops_nothing(lab: Lab, driven: bool) -> None:
+    if driven:
         lab.wheels.publish(FORWARD)
-        await lab.until(lambda: lab.state.driving)
-        lab.heartbeat.goodbye()
-        lab.cut()
-        await lab.until(lambda: not lab.state.agents)
+        lab.wheels.publish({})
+    await asyncio.sleep(0.2)
+    lab.cut()
+    count = len(lab.heard)
+    await lab.until(lambda: not lab.state.agents)
+    await asyncio.sleep(0.2)
+    assert len(lab.heard) == count
+    assert lab.guard._brakes.found == {}, "no publisher is left on the topic"
+    lab.mend()
+    await lab.until(lambda: lab.state.agents)
+    assert lab.lines == []
 
-    lab = in_lab(tmp_path, body)
+
+async def test_a_running_goal_counts_as_driving(lab: Lab) -> None:
+    with lab.guarded.goal():
+        lab.cut()
+        await lab.until(lambda: lab.state.tripped)
+    assert lab.lines != []
+
+
+async def test_a_process_that_ends_in_good_order_is_not_missed(lab: Lab) -> None:
+    lab.wheels.publish(FORWARD)
+    await lab.until(lambda: lab.state.driving)
+    lab.heartbeat.goodbye()
+    lab.cut()
+    await lab.until(lambda: not lab.state.agents)
+    await lab.until(lambda: len(lab.heard) > 1)
     assert lab.lines == []
     assert lab.heard == [0.3, 0.0], "the zero velocity of the agents may be lost: the guard sends its own"
 
 
-def test_a_guard_without_agents_stops_nothing(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        lab.heartbeat.goodbye()
-        lab.cut()
-        await lab.until(lambda: not lab.state.agents)
-        await asyncio.sleep(2 * NETWORK_TIMEOUT)
-
-    lab = in_lab(tmp_path, body)
+async def test_a_guard_without_agents_stops_nothing(lab: Lab) -> None:
+    lab.heartbeat.goodbye()
+    lab.cut()
+    await lab.until(lambda: not lab.state.agents)
+    await asyncio.sleep(2 * NETWORK_TIMEOUT)
     assert (lab.lines, lab.heard) == ([], [])
 
 
-def test_the_first_motion_is_announced_before_its_command() -> None:
+async def test_the_first_motion_is_announced_before_its_command() -> None:
     order: list[str] = []
     guarded = Guarded()
     guarded.on_drive = lambda: order.append("announced")
-
-    async def main() -> None:
-        backend = open_backend("memory", WallClock(), "agents", log=lambda text: None)
-        await backend.start()
-        backend.subscription("/cmd_vel", TWIST, lambda sample: order.append("sent"))
-        wheels = backend.publisher("/cmd_vel", TWIST)
-        guarded.watch(wheels)
-        for speed in (0.0, 0.3, 0.3, 0.0):
-            wheels.publish({"linear": {"x": speed}})
-            order.append(f"driving {guarded.driving}")
-            await asyncio.sleep(0.01)
-        await backend.close()
-
-    run(main, WallClock())
+    backend = open_backend("memory", WallClock(), "agents", log=lambda text: None)
+    await backend.start()
+    backend.subscription("/cmd_vel", TWIST, lambda sample: order.append("sent"))
+    wheels = backend.publisher("/cmd_vel", TWIST)
+    guarded.watch(wheels)
+    for speed in (0.0, 0.3, 0.3, 0.0):
+        wheels.publish({"linear": {"x": speed}})
+        order.append(f"driving {guarded.driving}")
+        await asyncio.sleep(0.01)
+    await backend.close()
     assert order == [
         *("driving False", "sent"),
         *("announced", "driving True", "sent"),
@@ -202,68 +184,55 @@ def test_the_first_motion_is_announced_before_its_command() -> None:
     ]
 
 
-def test_a_run_with_the_same_name_does_not_take_the_guard_over(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        first = lab.guard._run
-        other = lab.new_heartbeat()
-        await asyncio.sleep(0.3)
-        assert lab.guard._run == first
-        other.close()
-
-    in_lab(tmp_path, body)
+async def test_a_run_with_the_same_name_does_not_take_the_guard_over(lab: Lab) -> None:
+    first = lab.guard._run
+    other = lab.new_heartbeat()
+    await asyncio.sleep(0.3)
+    assert lab.guard._run == first
+    other.close()
 
 
-def test_agents_on_the_same_computer_are_heard_directly(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        direct = Heartbeat(lab.guarded, False, lambda: None)
-        await direct.connect(lab.path)
-        await direct.wait_until_ready()
-        lab.cut()
-        await asyncio.sleep(2 * NETWORK_TIMEOUT)
-        assert not lab.state.tripped
-        await direct.close()
-        await lab.until(lambda: not lab.state.agents)
-
-    assert in_lab(tmp_path, body).lines == []
+async def test_agents_on_the_same_computer_are_heard_directly(lab: Lab) -> None:
+    direct = Heartbeat(lab.guarded, False, lambda: None)
+    await direct.connect(lab.path)
+    await direct.wait_until_ready()
+    lab.cut()
+    await asyncio.sleep(2 * NETWORK_TIMEOUT)
+    assert not lab.state.tripped
+    await direct.close()
+    await lab.until(lambda: not lab.state.agents)
+    assert lab.lines == []
 
 
-def test_other_messages_on_the_topics_are_ignored(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        for topic in topics_of("/agents"):
-            publisher = lab.backend.publisher(topic, TEXT)
-            for text in ("hello", "[1]", "{}", '"text"'):
-                publisher.publish({"data": text})
-        await asyncio.sleep(0.2)
-        assert lab.state.agents
-        assert list(lab.guarded.found) == ["/agents_guard"]
-
-    assert in_lab(tmp_path, body).lines == []
+async def test_other_messages_on_the_topics_are_ignored(lab: Lab) -> None:
+    for topic in topics_of("/agents"):
+        publisher = lab.backend.publisher(topic, TEXT)
+        for text in ("hello", "[1]", "{}", '"text"'):
+            publisher.publish({"data": text})
+    await asyncio.sleep(0.2)
+    assert lab.state.agents
+    assert list(lab.guarded.found) == ["/agents_guard"]
+    assert lab.lines == []
 
 
-def test_a_guard_that_is_ending_takes_no_agents(tmp_path: Path) -> None:
-    async def body(lab: Lab) -> None:
-        lab.state.leave()
-        lab.guard._ending = True
-        lab.heartbeat._publish()
-        await asyncio.sleep(0.01)
-        assert not lab.state.agents
-
-    assert in_lab(tmp_path, body).lines == []
+async def test_a_guard_that_is_ending_takes_no_agents(lab: Lab) -> None:
+    lab.state.leave()
+    lab.guard._ending = True
+    lab.heartbeat._publish()
+    await asyncio.sleep(0.01)
+    assert not lab.state.agents
+    assert lab.lines == []
 
 
-def test_a_run_reports_a_guard_that_appears_and_one_that_disappears(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+async def test_a_run_reports_a_guard_that_appears_and_one_that_disappears(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(heartbeat, "LOST", 0.3)
-
-    async def body(lab: Lab) -> None:
-        await lab.heartbeat.wait_for_answer()
-        assert lab.guarded.found == {"/agents_guard": {"/cmd_vel": 1}}
-        lab.guard._answer = lambda message: None
-        await lab.until(lambda: len(lab.logged) == 2)
-        assert lab.guarded.found == {}
-
-    lab = in_lab(tmp_path, body)
+    await lab.heartbeat.wait_for_answer()
+    assert lab.guarded.found == {"/agents_guard": {"/cmd_vel": 1}}
+    lab.guard._answer = lambda message: None
+    await lab.until(lambda: len(lab.logged) == 2)
+    assert lab.guarded.found == {}
     assert lab.logged == [
         "the guard /agents_guard watches over the graph",
         "warning: the guard /agents_guard no longer answers; it may be unable to stop the robot",

@@ -14,11 +14,12 @@ import pytest
 from jacaros.robots.ros import lifetime as module
 from jacaros.robots.ros.lifetime import Lifetime, State
 from jacaros.robots.ros.open import open_backend
-from jacaros.runtime.clock import WallClock, run
+from jacaros.runtime.clock import WallClock
 
 POSIX = pytest.mark.skipif(
     sys.platform == "win32", reason="os.kill of Windows ends a process without a handler"
 )
+
 
 PROGRAM = """
 import asyncio, os, signal, sys, threading, time
@@ -55,15 +56,10 @@ OWN_HANDLER = """ended = asyncio.Event()
     await ended.wait()"""
 
 
-def run_program(body: str, threaded: bool, *options: str) -> tuple[int, list[str]]:
-    code = PROGRAM.format(threaded=threaded, body=body)
-    done = subprocess.run(
-        [sys.executable, *options, "-c", code],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        timeout=60,
-        check=False,
-    )
+def run_program(body: str, threaded: bool, *options: str, before: str = "") -> tuple[int, list[str]]:
+    code = before + PROGRAM.format(threaded=threaded, body=body)
+    command = [sys.executable, *options, "-c", code]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=60, check=False)
     return done.returncode, done.stdout.decode().splitlines()
 
 
@@ -135,27 +131,19 @@ def test_the_last_messages_are_delivered_soon_after_a_signal_however_long_closin
 
 def test_a_thread_that_never_ends_keeps_no_hook_back() -> None:
     body = "threading.Thread(target=threading.Event().wait).start(); say('begin'); raise ValueError"
-    code = PROGRAM.format(threaded=True, body=body)
-    process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    )
-    assert process.stdout is not None
-    lines = [process.stdout.readline().decode().strip() for _ in range(4)]
+    command = [sys.executable, "-c", PROGRAM.format(threaded=True, body=body)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        assert process.stdout is not None
+        lines = [process.stdout.readline().decode().strip() for _ in range(4)]
+        process.kill()
     assert lines == ["begin", "finally", "zero True thread", "sent"]
-    process.kill()
-    process.wait()
-    process.stdout.close()
 
 
 @POSIX
 def test_an_ignored_signal_stays_ignored() -> None:
-    body = "pass"
-    code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n" + PROGRAM.format(
-        threaded=False,
-        body=body.replace("pass", "say(str(signal.getsignal(signal.SIGHUP) is signal.SIG_IGN))"),
-    )
-    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, timeout=60, check=False)
-    assert done.stdout.decode().splitlines()[0] == "True"
+    ignore = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
+    body = "say(str(signal.getsignal(signal.SIGHUP) is signal.SIG_IGN))"
+    assert run_program(body, False, before=ignore)[1][0] == "True"
 
 
 @pytest.fixture
@@ -183,9 +171,9 @@ class Wire:
         interrupting: called in the middle of each message but those of hooks, after it has been admitted.
     """
 
-    def __init__(self, interrupting: Any = lambda lifetime: None) -> None:
+    def __init__(self, interrupting: Any = lambda lifetime: None, threaded: bool = True) -> None:
         self.sent: list[float] = []
-        self.lifetime = Lifetime(print, threaded=True)
+        self.lifetime = Lifetime(print, threaded=threaded)
         self.lifetime.add(lambda: self.publish(0.0))
         self._interrupting = interrupting
 
@@ -198,26 +186,23 @@ class Wire:
         self.lifetime.send(send, velocity)
 
 
+def stop_in_thread(lifetime: Lifetime) -> None:
+    thread = threading.Thread(target=lifetime.stop)
+    thread.start()
+    thread.join()
+
+
 @pytest.mark.usefixtures("process")
-def test_zero_follows_a_velocity_that_was_on_its_way_when_the_robots_stopped() -> None:
-    wire = Wire(lambda lifetime: lifetime.stop())
+@pytest.mark.parametrize("threaded", [True, False])
+@pytest.mark.parametrize("stop", [Lifetime.stop, stop_in_thread], ids=["here", "in another thread"])
+def test_zero_follows_a_velocity_that_was_on_its_way_when_the_robots_stopped(
+    stop: Any, threaded: bool
+) -> None:
+    wire = Wire(stop, threaded)
     wire.publish(0.3)
     assert wire.sent == [0.0, 0.3, 0.0]
     wire.publish(0.3)
     assert wire.sent[-1] == 0.0
-    wire.lifetime.leave_now()
-
-
-@pytest.mark.usefixtures("process")
-def test_zero_follows_also_when_the_robots_are_stopped_in_another_thread() -> None:
-    def stop(lifetime: Lifetime) -> None:
-        thread = threading.Thread(target=lifetime.stop)
-        thread.start()
-        thread.join()
-
-    wire = Wire(stop)
-    wire.publish(0.3)
-    assert wire.sent == [0.0, 0.3, 0.0]
     wire.lifetime.leave_now()
 
 
@@ -236,33 +221,27 @@ def test_zero_follows_a_message_that_an_exception_interrupted() -> None:
 
 
 @pytest.mark.usefixtures("process")
-def test_the_last_message_is_sent_once_more_before_the_node_leaves() -> None:
-    async def main() -> None:
-        wire = Wire()
-        wire.lifetime.join()
-        wire.lifetime.stop()
-        await wire.lifetime.leave()
-        assert wire.sent == [0.0, 0.0]
-        wire.lifetime.stop()
-        assert wire.sent == [0.0, 0.0], "a node that has left publishes nothing"
-
-    run(main, WallClock())
+async def test_the_last_message_is_sent_once_more_before_the_node_leaves() -> None:
+    wire = Wire()
+    wire.lifetime.join()
+    wire.lifetime.stop()
+    await wire.lifetime.leave()
+    assert wire.sent == [0.0, 0.0]
+    wire.lifetime.stop()
+    assert wire.sent == [0.0, 0.0], "a node that has left publishes nothing"
 
 
 @pytest.mark.usefixtures("process")
-def test_a_closed_node_leaves_no_thread_behind() -> None:
-    async def main() -> None:
-        before = set(threading.enumerate())
-        lifetimes = [Lifetime(print, threaded=True) for _ in range(3)]
-        for each in lifetimes:
-            each.join()
-        [thread] = set(threading.enumerate()) - before
-        for each in lifetimes:
-            await each.leave()
-        thread.join(10)
-        assert not thread.is_alive()
-
-    run(main, WallClock())
+async def test_a_closed_node_leaves_no_thread_behind() -> None:
+    before = set(threading.enumerate())
+    lifetimes = [Lifetime(print, threaded=True) for _ in range(3)]
+    for each in lifetimes:
+        each.join()
+    [thread] = set(threading.enumerate()) - before
+    for each in lifetimes:
+        await each.leave()
+    thread.join(10)
+    assert not thread.is_alive()
 
 
 @pytest.mark.usefixtures("process")
@@ -274,53 +253,46 @@ def test_a_thread_stops_only_what_the_loop_should_have_stopped() -> None:
     assert (first.state, second.state) == (State.LEAVING, State.JOINING)
 
 
-def test_a_node_knows_its_state() -> None:
-    async def main() -> None:
-        node: Any = open_backend("memory", WallClock(), "a")
-        assert node.lifetime.state is State.JOINING
-        await node.start()
-        assert node.lifetime.state is State.JOINED
-        node.graph.interrupt()
-        assert node.lifetime.state is State.LOST
-        node.graph.restore()
-        assert node.lifetime.state is State.JOINED
-        node.lifetime.stop()
-        assert node.lifetime.state is State.LEAVING
-        await node.close()
-        assert node.lifetime.state is State.LEFT
-
-    run(main, WallClock())
+async def test_a_node_knows_its_state() -> None:
+    node: Any = open_backend("memory", WallClock(), "a")
+    assert node.lifetime.state is State.JOINING
+    await node.start()
+    assert node.lifetime.state is State.JOINED
+    node.graph.interrupt()
+    assert node.lifetime.state is State.LOST
+    node.graph.restore()
+    assert node.lifetime.state is State.JOINED
+    node.lifetime.stop()
+    assert node.lifetime.state is State.LEAVING
+    await node.close()
+    assert node.lifetime.state is State.LEFT
 
 
-def test_goals_under_way_are_cancelled_when_the_process_ends() -> None:
+async def test_goals_under_way_are_cancelled_when_the_process_ends() -> None:
     count = "jacaros_interfaces/action/Count"
+    graph_node: Any = open_backend("memory", WallClock(), "robot")
+    await graph_node.start()
+    agents: Any = open_backend("memory", WallClock(), "agents", graph=graph_node.graph)
+    await agents.start()
+    cancelled = asyncio.Event()
 
-    async def main() -> None:
-        graph_node: Any = open_backend("memory", WallClock(), "robot")
-        await graph_node.start()
-        agents: Any = open_backend("memory", WallClock(), "agents", graph=graph_node.graph)
-        await agents.start()
-        cancelled = asyncio.Event()
+    async def execute(goal: Any) -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            cancelled.set()
 
-        async def execute(goal: Any) -> None:
-            try:
-                await asyncio.Event().wait()
-            finally:
-                cancelled.set()
-
-        graph_node.action_server("/count", count, execute)
-        client = agents.action_client("/count", count)
-        handle = await client.send(None, None, 5.0)
-        agents.lifetime.stop()
-        await asyncio.wait_for(cancelled.wait(), 5)
-        assert (await handle.outcome(5.0)).status == "canceled", "the client is not closed by the hook"
-        hooks = len(agents.lifetime._hooks)
-        client.close()
-        assert len(agents.lifetime._hooks) == hooks - 1
-        await agents.close()
-        await graph_node.close()
-
-    run(main, WallClock())
+    graph_node.action_server("/count", count, execute)
+    client = agents.action_client("/count", count)
+    handle = await client.send(None, None, 5.0)
+    agents.lifetime.stop()
+    await asyncio.wait_for(cancelled.wait(), 5)
+    assert (await handle.outcome(5.0)).status == "canceled", "the client is not closed by the hook"
+    hooks = len(agents.lifetime._hooks)
+    client.close()
+    assert len(agents.lifetime._hooks) == hooks - 1
+    await agents.close()
+    await graph_node.close()
 
 
 def test_an_exception_in_the_middle_of_stopping_does_not_block_the_end() -> None:
@@ -407,20 +379,6 @@ def _after(steps: int, call: Callable[[], None], intervene: Callable[[], None]) 
     finally:
         sys.settrace(before)
     return seen >= steps
-
-
-def test_a_velocity_that_a_signal_overtakes_is_followed_by_zero() -> None:
-    sent: list[str] = []
-    lifetime = Lifetime(sent.append)
-    lifetime.add(lambda: sent.append("zero"))
-
-    def publish(velocity: str) -> None:
-        lifetime.stop()  # a signal comes between the check and the publishing
-        sent.append(velocity)
-
-    lifetime.send(publish, "old velocity")
-    assert sent == ["zero", "old velocity", "zero"]
-    lifetime.left()
 
 
 def test_a_hook_that_is_removed_while_the_node_leaves_stops_its_robot_once_more() -> None:

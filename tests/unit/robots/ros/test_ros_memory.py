@@ -8,13 +8,12 @@ import pytest
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.robots.ros.errors import CallFailed, CallTimedOut
-from jacaros.robots.ros.node import Sample
+from jacaros.robots.ros.node import Publisher, Sample
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import VIRTUAL_EPOCH, VirtualClock, run
-from played import played
 
-ADD = "example_interfaces/srv/AddTwoInts"
+ADD, INT = "example_interfaces/srv/AddTwoInts", "std_msgs/msg/Int32"
 
 
 class Nodes:
@@ -30,107 +29,103 @@ class Nodes:
         await backend.start()
         return backend
 
+    async def pair(self) -> tuple[Backend, Publisher]:
+        """A node, and its publisher of numbers on /a."""
+        node = await self.open("node")
+        return node, node.publisher("/a", INT)
+
+
+def numbers(publisher: Publisher, *numbers: int) -> None:
+    for number in numbers:
+        publisher.publish(publisher.message(data=number))
+
 
 def play(scene: Callable[[Nodes], Coroutine[Any, Any, None]]) -> None:
     nodes = Nodes()
     run(lambda: scene(nodes), nodes.clock)
 
 
-@played(play)
-async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics(nodes: Nodes) -> None:
-    one, two = await nodes.open("one"), await nodes.open("two")
-    got: list[tuple[str, int]] = []
+Nodes.play = staticmethod(play)
+
+
+async def test_messages_are_delivered_in_the_order_of_publishing_over_all_topics(lab: Nodes) -> None:
+    one, two = await lab.open("one"), await lab.open("two")
+    got: list[Sample] = []
     for topic in ("/a", "/b"):
         for node in (one, two):
-            node.subscription(
-                topic,
-                "std_msgs/msg/Int32",
-                lambda s: got.append((s.topic, s.message.data)),
-                QoS(depth=50),
-            )
-    a, b = one.publisher("/a", "std_msgs/msg/Int32"), two.publisher("/b", "std_msgs/msg/Int32")
+            node.subscription(topic, INT, got.append, QoS(depth=50))
+    a, b = one.publisher("/a", INT), two.publisher("/b", INT)
     for number in range(5):
-        a.publish(a.message(data=number))
-        b.publish(b.message(data=number))
+        numbers(a, number)
+        numbers(b, number)
     assert got == []  # never inside publish
-    await nodes.clock.sleep(0)
-    assert got == [(t, n) for n in range(5) for t in ("/a", "/a", "/b", "/b")]
+    await lab.clock.sleep(0)
+    told = [(each.topic, each.message.data) for each in got]
+    assert told == [(t, n) for n in range(5) for t in ("/a", "/a", "/b", "/b")]
 
 
-@played(play)
-async def test_a_message_is_passed_by_reference_and_takes_no_time(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_a_message_is_passed_by_reference_and_takes_no_time(lab: Nodes) -> None:
+    node, publisher = await lab.pair()
     got: list[Sample] = []
-    node.subscription("/a", "std_msgs/msg/Int32", got.append)
-    publisher = node.publisher("/a", "std_msgs/msg/Int32")
-    await nodes.clock.sleep(2.5)
+    node.subscription("/a", INT, got.append)
+    await lab.clock.sleep(2.5)
     message = publisher.message(data=1)
     publisher.publish(message)
-    await nodes.clock.sleep(1)
+    await lab.clock.sleep(1)
     assert got[0].message is message
     assert got[0].stamp == VIRTUAL_EPOCH + 2.5
 
 
-@played(play)
-async def test_a_message_published_in_a_callback_comes_after_what_waits(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_a_message_published_in_a_callback_comes_after_what_waits(lab: Nodes) -> None:
+    node, publisher = await lab.pair()
     got: list[int] = []
-    publisher = node.publisher("/a", "std_msgs/msg/Int32")
 
     def receive(sample: Sample) -> None:
         got.append(sample.message.data)
         if sample.message.data == 1:
-            publisher.publish(publisher.message(data=10))
+            numbers(publisher, 10)
 
-    node.subscription("/a", "std_msgs/msg/Int32", receive)
-    for number in (1, 2, 3):
-        publisher.publish(publisher.message(data=number))
-    await nodes.clock.sleep(0.1)
+    node.subscription("/a", INT, receive)
+    numbers(publisher, 1, 2, 3)
+    await lab.clock.sleep(0.1)
     assert got == [1, 2, 3, 10]
 
 
-@played(play)
-async def test_closing_in_a_callback_stops_what_waits(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_closing_in_a_callback_stops_what_waits(lab: Nodes) -> None:
+    node, publisher = await lab.pair()
     got: list[int] = []
-    subscription = node.subscription(
-        "/a", "std_msgs/msg/Int32", lambda s: (got.append(s.message.data), subscription.close())[0]
-    )
-    publisher = node.publisher("/a", "std_msgs/msg/Int32")
-    for number in (1, 2, 3):
-        publisher.publish(publisher.message(data=number))
-    await nodes.clock.sleep(0.1)
+
+    def receive(sample: Sample) -> None:
+        got.append(sample.message.data)
+        subscription.close()
+
+    subscription = node.subscription("/a", INT, receive)
+    numbers(publisher, 1, 2, 3)
+    await lab.clock.sleep(0.1)
     assert got == [1]
     assert publisher.subscription_count == 0
 
 
-@played(play)
-async def test_nodes_with_different_types_for_a_topic_both_log_it(nodes: Nodes) -> None:
-    one, two = await nodes.open("one"), await nodes.open("two")
-    publisher = one.publisher("/a", "std_msgs/msg/Int32")
+async def test_nodes_with_different_types_for_a_topic_both_log_it(lab: Nodes) -> None:
+    one, two = await lab.open("one"), await lab.open("two")
+    publisher = one.publisher("/a", INT)
     got: list[Sample] = []
     subscription = two.subscription("/a", "std_msgs/msg/String", got.append)
-    publisher.publish(publisher.message(data=1))
-    await nodes.clock.sleep(0)
+    numbers(publisher, 1)
+    await lab.clock.sleep(0)
     assert (got, publisher.subscription_count, subscription.publisher_count) == ([], 0, 0)
-    assert nodes.log == [
-        (
-            "topic /a: /two expects std_msgs/msg/String and does not receive what is published here as "
-            "std_msgs/msg/Int32"
-        ),
-        (
-            "topic /a: /one publishes std_msgs/msg/Int32, not std_msgs/msg/String; to receive it, write "
-            "std_msgs/msg/Int32 here"
-        ),
+    types = ("std_msgs/msg/String", INT)
+    assert lab.log == [
+        "topic /a: /two expects {} and does not receive what is published here as {}".format(*types),
+        "topic /a: /one publishes {1}, not {0}; to receive it, write {1} here".format(*types),
     ]
 
 
-@played(play)
-async def test_an_incompatible_wish_is_reported(nodes: Nodes) -> None:
-    node = await nodes.open("node")
-    node.publisher("/a", "std_msgs/msg/Int32", QoS(reliability="best_effort"))
-    node.subscription("/a", "std_msgs/msg/Int32", print)
-    assert nodes.log == [
+async def test_an_incompatible_wish_is_reported(lab: Nodes) -> None:
+    node = await lab.open("node")
+    node.publisher("/a", INT, QoS(reliability="best_effort"))
+    node.subscription("/a", INT, print)
+    assert lab.log == [
         (
             "topic /a: incompatible QoS: not connected: the subscription requests reliable, "
             "the publisher offers best_effort; "
@@ -139,24 +134,20 @@ async def test_an_incompatible_wish_is_reported(nodes: Nodes) -> None:
     ]
 
 
-@played(play)
-async def test_transient_local_keeps_as_many_messages_as_its_depth(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_transient_local_keeps_as_many_messages_as_its_depth(lab: Nodes) -> None:
+    node = await lab.open("node")
     kept = QoS(durability="transient_local", depth=3)
-    publisher = node.publisher("/a", "std_msgs/msg/Int32", kept)
-    for number in range(5):
-        publisher.publish(publisher.message(data=number))
-    got: list[int] = []
-    node.subscription("/a", "std_msgs/msg/Int32", lambda s: got.append(s.message.data), kept)
-    await nodes.clock.sleep(0.1)
-    assert got == [2, 3, 4]
+    numbers(node.publisher("/a", INT, kept), *range(5))
+    got: list[Sample] = []
+    node.subscription("/a", INT, got.append, kept)
+    await lab.clock.sleep(0.1)
+    assert [each.message.data for each in got] == [2, 3, 4]
 
 
-@played(play)
-async def test_leaving_nodes_take_their_topics_and_services_along(nodes: Nodes) -> None:
-    one, two = await nodes.open("one"), await nodes.open("two")
-    publisher = one.publisher("/a", "std_msgs/msg/Int32")
-    two.subscription("/a", "std_msgs/msg/Int32", print)
+async def test_leaving_nodes_take_their_topics_and_services_along(lab: Nodes) -> None:
+    one, two = await lab.open("one"), await lab.open("two")
+    publisher = one.publisher("/a", INT)
+    two.subscription("/a", INT, print)
     two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
     client = one.client("/add", ADD)
     assert (publisher.subscription_count, client.ready) == (1, True)
@@ -165,52 +156,48 @@ async def test_leaving_nodes_take_their_topics_and_services_along(nodes: Nodes) 
     assert two.connected is False
 
 
-@played(play)
-async def test_time_outs_are_measured_on_the_clock(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_time_outs_are_measured_on_the_clock(lab: Nodes) -> None:
+    node = await lab.open("node")
 
     async def slow(request: Any) -> dict[str, int]:
-        await nodes.clock.sleep(100)
+        await lab.clock.sleep(100)
         return {"sum": request.a}
 
     node.service("/slow", ADD, slow)
     client = node.client("/slow", ADD)
     with pytest.raises(CallTimedOut):
         await client.call({"a": 1}, timeout=99)
-    assert nodes.clock.elapsed == 99
+    assert lab.clock.elapsed == 99
     assert (await client.call(client.request(a=7), timeout=101)).sum == 7
-    assert nodes.clock.elapsed == 199
+    assert lab.clock.elapsed == 199
 
 
-@played(play)
-async def test_waiting_for_the_server_uses_up_the_time_out(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_waiting_for_the_server_uses_up_the_time_out(lab: Nodes) -> None:
+    node = await lab.open("node")
 
     async def slow(request: Any) -> None:
-        await nodes.clock.sleep(3)
+        await lab.clock.sleep(3)
 
-    nodes.clock.call_later(2, lambda: node.service("/slow", ADD, slow))
+    lab.clock.call_later(2, lambda: node.service("/slow", ADD, slow))
     with pytest.raises(CallTimedOut):
         await node.client("/slow", ADD).call({}, timeout=4)
-    assert nodes.clock.elapsed == 4
+    assert lab.clock.elapsed == 4
 
 
-@played(play)
-async def test_closing_a_service_fails_the_calls_under_way(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_closing_a_service_fails_the_calls_under_way(lab: Nodes) -> None:
+    node = await lab.open("node")
 
     async def never(request: Any) -> None:
-        await nodes.clock.sleep(1e9)
+        await lab.clock.sleep(1e9)
 
     service = node.service("/never", ADD, never)
-    nodes.clock.call_later(5, service.close)
+    lab.clock.call_later(5, service.close)
     with pytest.raises(CallFailed, match="closed during the call"):
         await node.client("/never", ADD).call({})
 
 
-@played(play)
-async def test_a_call_of_another_type_fails(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_a_call_of_another_type_fails(lab: Nodes) -> None:
+    node = await lab.open("node")
     node.service("/add", ADD, lambda r: None)
     with pytest.raises(
         CallFailed, match="is of type example_interfaces/srv/AddTwoInts, not std_srvs/srv/Empty"
@@ -218,9 +205,8 @@ async def test_a_call_of_another_type_fails(nodes: Nodes) -> None:
         await node.client("/add", "std_srvs/srv/Empty").call()
 
 
-@played(play)
-async def test_a_newer_service_replaces_the_older_one(nodes: Nodes) -> None:
-    node = await nodes.open("node")
+async def test_a_newer_service_replaces_the_older_one(lab: Nodes) -> None:
+    node = await lab.open("node")
     old = node.service("/add", ADD, lambda r: {"sum": 1})
     node.service("/add", ADD, lambda r: {"sum": 2})
     old.close()
@@ -233,8 +219,8 @@ def test_two_runs_are_the_same() -> None:
 
         async def scene(nodes: Nodes) -> None:
             one, two = await nodes.open("one"), await nodes.open("two")
-            publisher = one.publisher("/a", "std_msgs/msg/Int32")
-            two.subscription("/a", "std_msgs/msg/Int32", lambda s: got.append((s.stamp, s.message.data)))
+            publisher = one.publisher("/a", INT)
+            two.subscription("/a", INT, lambda s: got.append((s.stamp, s.message.data)))
             two.service("/add", ADD, lambda r: {"sum": r.a + r.b})
             client = one.client("/add", ADD)
             for number in range(20):
@@ -254,8 +240,8 @@ def test_publishing_after_the_end_of_the_loop_does_nothing() -> None:
 
     async def scene(nodes: Nodes) -> None:
         node = await nodes.open("node")
-        node.subscription("/a", "std_msgs/msg/Int32", print)
-        publishers.append(node.publisher("/a", "std_msgs/msg/Int32"))
+        node.subscription("/a", INT, print)
+        publishers.append(node.publisher("/a", INT))
 
     play(scene)
     publishers[0].publish(publishers[0].message(data=1))

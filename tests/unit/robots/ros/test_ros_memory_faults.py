@@ -14,7 +14,6 @@ from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.parameter import Declaration
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import VirtualClock, run
-from played import played
 
 ADD, COUNT, INT = "example_interfaces/srv/AddTwoInts", "jacaros_interfaces/action/Count", "std_msgs/msg/Int32"
 
@@ -62,7 +61,9 @@ def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
     run(lambda: scene(lab), lab.clock)
 
 
-@played(play)
+Lab.play = staticmethod(play)
+
+
 async def test_messages_can_be_delayed(lab: Lab) -> None:
     await lab.open()
     end = lab.graph.disturb("/n", delayed(0.25))
@@ -91,7 +92,6 @@ def test_a_jitter_lets_messages_overtake_each_other_in_the_same_way_each_time() 
     assert seen[0] == seen[1]
 
 
-@played(play)
 async def test_messages_can_be_dropped(lab: Lab) -> None:
     await lab.open()
     lab.graph.disturb("/n", dropped(0.5, seed=1))
@@ -103,7 +103,6 @@ async def test_messages_can_be_dropped(lab: Lab) -> None:
     assert lab.got == []
 
 
-@played(play)
 async def test_messages_can_come_several_times_and_late(lab: Lab) -> None:
     await lab.open()
     lab.graph.disturb("/n", both(delayed(0.5), duplicated(3, apart=0.1)))
@@ -111,7 +110,6 @@ async def test_messages_can_come_several_times_and_late(lab: Lab) -> None:
     assert lab.got == [(0.5, 0), (0.6, 0), (0.7, 0)]
 
 
-@played(play)
 async def test_later_subscriptions_are_disturbed_too(lab: Lab) -> None:
     _, there = await lab.open()
     lab.graph.disturb("/n", dropped())
@@ -121,7 +119,6 @@ async def test_later_subscriptions_are_disturbed_too(lab: Lab) -> None:
     assert (lab.got, late) == ([], [])
 
 
-@played(play)
 async def test_a_vanished_node_is_silent(lab: Lab) -> None:
     here, there = await lab.open()
     hooked: list[str] = []
@@ -136,7 +133,6 @@ async def test_a_vanished_node_is_silent(lab: Lab) -> None:
         lab.graph.vanish("/nobody")
 
 
-@played(play)
 async def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out(lab: Lab) -> None:
     here, there = await lab.open()
     ended: list[str] = []
@@ -157,7 +153,6 @@ async def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out(lab:
     assert (lab.clock.elapsed, ended, client.ready) == (0.5 + SERVER_LOST_AFTER, ["handler"], False)
 
 
-@played(play)
 async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
     here, there = await lab.open()
     there.action_server("/count", COUNT, lab.count)
@@ -170,7 +165,6 @@ async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
     assert lab.clock.elapsed == pytest.approx(0.5 + SERVER_LOST_AFTER)
 
 
-@played(play)
 async def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals(lab: Lab) -> None:
     here, there = await lab.open()
     there.action_server("/count", COUNT, lab.count)
@@ -184,7 +178,6 @@ async def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals(l
     assert lab.clock.elapsed == pytest.approx(1.0)
 
 
-@played(play)
 async def test_an_interrupted_graph_is_found_again_without_a_restart(lab: Lab) -> None:
     here, there = await lab.open()
     there.service("/add", ADD, lambda request: {"sum": request.a + request.b})
@@ -207,7 +200,6 @@ async def test_an_interrupted_graph_is_found_again_without_a_restart(lab: Lab) -
     assert connection == [False, True]
 
 
-@played(play)
 async def test_a_short_interruption_does_not_lose_a_goal(lab: Lab) -> None:
     here, there = await lab.open()
     there.action_server("/count", COUNT, lab.count)
@@ -224,7 +216,6 @@ async def test_a_short_interruption_does_not_lose_a_goal(lab: Lab) -> None:
     assert (outcome.status, outcome.result.last, feedback) == (GoalStatus.SUCCEEDED, 4, [0])
 
 
-@played(play)
 async def test_a_long_interruption_loses_a_goal(lab: Lab) -> None:
     here, there = await lab.open()
     there.action_server("/count", COUNT, lab.count)
@@ -234,7 +225,6 @@ async def test_a_long_interruption_loses_a_goal(lab: Lab) -> None:
         await goal.outcome(timeout=60.0)
 
 
-@played(play)
 async def test_parameters_cannot_be_reached_in_an_interrupted_graph(lab: Lab) -> None:
     here, there = await lab.open()
     there.parameters().declare("speed", Declaration(1.0))

@@ -67,93 +67,75 @@ class Reading:
         self.ended = True
 
 
-def test_messages_are_cut_apart_wherever_the_chunks_end(pair: tuple[socket.socket, socket.socket]) -> None:
+async def test_messages_are_cut_apart_wherever_the_chunks_end(
+    pair: tuple[socket.socket, socket.socket],
+) -> None:
     ours, theirs = pair
     messages = [b"", b"a", b"two", bytes(range(256)) * 3, b"", b"last"]
-
-    async def main() -> None:
-        reading = Reading(ours)
-        wire = b"".join(map(framed, messages))
-        for k in range(len(wire)):
-            theirs.send(wire[k : k + 1])
-            await until(lambda wanted=k + 1: reading.bytes == wanted)
-        assert reading.got == messages
-        theirs.sendall(wire)
-        await until(lambda: reading.bytes == 2 * len(wire))
-        assert reading.got == messages * 2
-        assert reading.rounds[-1] == len(messages)
-        reading.inlet.close()
-
-    run(main, WallClock())
+    reading = Reading(ours)
+    wire = b"".join(map(framed, messages))
+    for k in range(len(wire)):
+        theirs.send(wire[k : k + 1])
+        await until(lambda wanted=k + 1: reading.bytes == wanted)
+    assert reading.got == messages
+    theirs.sendall(wire)
+    await until(lambda: reading.bytes == 2 * len(wire))
+    assert reading.got == messages * 2
+    assert reading.rounds[-1] == len(messages)
+    reading.inlet.close()
 
 
-def test_a_long_message_comes_whole(pair: tuple[socket.socket, socket.socket]) -> None:
+async def test_a_long_message_comes_whole(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
     image = bytes(range(256)) * (40 * CHUNK // 256)
-
-    async def main() -> None:
-        reading = Reading(ours)
-        sending = asyncio.get_running_loop().run_in_executor(
-            None, theirs.sendall, framed(b"before") + framed(image) + framed(b"after")
-        )
-        await until(lambda: len(reading.got) == 3)
-        await sending
-        assert reading.got == [b"before", image, b"after"]
-        reading.inlet.close()
-
-    run(main, WallClock())
+    reading = Reading(ours)
+    sending = asyncio.get_running_loop().run_in_executor(
+        None, theirs.sendall, framed(b"before") + framed(image) + framed(b"after")
+    )
+    await until(lambda: len(reading.got) == 3)
+    await sending
+    assert reading.got == [b"before", image, b"after"]
+    reading.inlet.close()
 
 
-def test_what_piled_up_while_the_loop_was_busy_comes_together(
+async def test_what_piled_up_while_the_loop_was_busy_comes_together(
     pair: tuple[socket.socket, socket.socket],
 ) -> None:
     """Otherwise the newest cannot be distinguished from the oldest."""
     ours, theirs = pair
     piled_up = [b"%04d" % number * 256 for number in range(100)]
-
-    async def main() -> None:
-        theirs.sendall(b"".join(map(framed, piled_up)))
-        reading = Reading(ours)
-        await until(lambda: len(reading.got) == len(piled_up))
-        assert reading.got == piled_up
-        assert reading.rounds == [len(piled_up)]
-        reading.inlet.close()
-
-    run(main, WallClock())
+    theirs.sendall(b"".join(map(framed, piled_up)))
+    reading = Reading(ours)
+    await until(lambda: len(reading.got) == len(piled_up))
+    assert reading.got == piled_up
+    assert reading.rounds == [len(piled_up)]
+    reading.inlet.close()
 
 
-def test_what_came_before_the_end_is_taken(pair: tuple[socket.socket, socket.socket]) -> None:
+async def test_what_came_before_the_end_is_taken(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
-
-    async def main() -> None:
-        reading = Reading(ours)
-        theirs.sendall(framed(b"last word") + framed(b"half a message")[:9])
-        theirs.close()
-        await until(lambda: reading.ended)
-        assert reading.got == [b"last word"]
-        assert ours.fileno() == -1
-
-    run(main, WallClock())
+    reading = Reading(ours)
+    theirs.sendall(framed(b"last word") + framed(b"half a message")[:9])
+    theirs.close()
+    await until(lambda: reading.ended)
+    assert reading.got == [b"last word"]
+    assert ours.fileno() == -1
 
 
-def test_a_receiver_may_close_its_inlet(pair: tuple[socket.socket, socket.socket]) -> None:
+async def test_a_receiver_may_close_its_inlet(pair: tuple[socket.socket, socket.socket]) -> None:
     ours, theirs = pair
+    got: list[bytes] = []
 
-    async def main() -> None:
-        got: list[bytes] = []
+    def take(messages: list[bytes], size: int) -> None:
+        got.extend(messages)
+        inlet.close()
+        inlet.close()
 
-        def take(messages: list[bytes], size: int) -> None:
-            got.extend(messages)
-            inlet.close()
-            inlet.close()
-
-        inlet = Inlet(asyncio.get_running_loop(), ours, take, lambda: got.append(b"ended"))
-        inlet.open()
-        theirs.sendall(framed(b"one"))
-        await until(lambda: bool(got))
-        assert got == [b"one"]
-
-    run(main, WallClock())
+    inlet = Inlet(asyncio.get_running_loop(), ours, take, lambda: got.append(b"ended"))
+    inlet.open()
+    theirs.sendall(framed(b"one"))
+    await until(lambda: bool(got))
+    assert got == [b"one"]
 
 
 def test_messages_leave_immediately_and_in_order(pair: tuple[socket.socket, socket.socket]) -> None:

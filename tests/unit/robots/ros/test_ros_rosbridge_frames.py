@@ -243,60 +243,48 @@ async def linked(robot: Robot) -> AsyncIterator[tuple[Link, list[Any]]]:
 PICTURE = {"op": "publish", "topic": "/picture", "msg": {"data": "x" * 100_000}}
 
 
-def test_messages_for_a_slow_server_are_dropped_beyond_a_limit_and_the_others_arrive() -> None:
+async def test_messages_for_a_slow_server_are_dropped_beyond_a_limit_and_the_others_arrive() -> None:
     robot = Robot()
-
-    async def main() -> None:
-        async with linked(robot) as (link, _):
-            robot.reading.clear()
-            sent = 0
-            while link.send(PICTURE, droppable=True):
-                sent += 1
-            assert BACKLOG / 100_000 <= sent < 1000
-            assert link.send({"op": "publish", "topic": "/stop"})
-        assert [message["topic"] for message in robot.received] == ["/picture"] * sent + ["/stop"]
-
-    run(main, WallClock())
+    async with linked(robot) as (link, _):
+        robot.reading.clear()
+        sent = 0
+        while link.send(PICTURE, droppable=True):
+            sent += 1
+        assert BACKLOG / 100_000 <= sent < 1000
+        assert link.send({"op": "publish", "topic": "/stop"})
+    assert [message["topic"] for message in robot.received] == ["/picture"] * sent + ["/stop"]
 
 
-def test_a_thread_stops_the_robot_while_the_loop_is_stuck_behind_a_slow_network() -> None:
+async def test_a_thread_stops_the_robot_while_the_loop_is_stuck_behind_a_slow_network() -> None:
     robot = Robot()
-
-    async def main() -> None:
-        async with linked(robot) as (link, _):
-            robot.reading.clear()
-            while link.send(PICTURE, droppable=True):
-                pass
-            robot.reading.set()
-            stop = threading.Thread(target=link.send, args=({"op": "publish", "topic": "/stop"},))
-            stop.start()
-            # The loop, on which this runs, does nothing else meanwhile.
-            robot.wait_for(lambda: any(message["topic"] == "/stop" for message in robot.received))
-            stop.join()
-
-    run(main, WallClock())
+    async with linked(robot) as (link, _):
+        robot.reading.clear()
+        while link.send(PICTURE, droppable=True):
+            pass
+        robot.reading.set()
+        stop = threading.Thread(target=link.send, args=({"op": "publish", "topic": "/stop"},))
+        stop.start()
+        # The loop, on which this runs, does nothing else meanwhile.
+        robot.wait_for(lambda: any(message["topic"] == "/stop" for message in robot.received))
+        stop.join()
 
 
 @pytest.mark.parametrize("where", ["loop", "thread"])
-def test_a_question_blocks_until_its_answer_and_other_messages_wait_for_the_loop(where: str) -> None:
+async def test_a_question_blocks_until_its_answer_and_other_messages_wait_for_the_loop(where: str) -> None:
     robot = Robot()
-
-    async def main() -> None:
-        async with linked(robot) as (link, got):
-            question = {"op": "call_service", "id": "call_service:1"}
-            if where == "loop":
-                answer = link.ask(question, 20.0)
-                assert got == []
-            else:
-                answer = await asyncio.to_thread(link.ask, question, 20.0)
-            assert answer is not None
-            assert answer["values"] == {"sum": 3}
-            await asyncio.sleep(0)
-            assert [message["op"] for message in got] == ["publish"]
-            with pytest.raises(TimeoutError):
-                link.ask({"op": "nothing", "id": "never answered"}, 0.05)
-
-    run(main, WallClock())
+    async with linked(robot) as (link, got):
+        question = {"op": "call_service", "id": "call_service:1"}
+        if where == "loop":
+            answer = link.ask(question, 20.0)
+            assert got == []
+        else:
+            answer = await asyncio.to_thread(link.ask, question, 20.0)
+        assert answer is not None
+        assert answer["values"] == {"sum": 3}
+        await asyncio.sleep(0)
+        assert [message["op"] for message in got] == ["publish"]
+        with pytest.raises(TimeoutError):
+            link.ask({"op": "nothing", "id": "never answered"}, 0.05)
 
 
 def test_what_is_sent_after_the_loop_has_ended_arrives_and_is_answered() -> None:

@@ -11,7 +11,6 @@ from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.robots.ros.errors import RosError, TransformUnavailable
 from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
-from played import played
 
 
 class Lab:
@@ -36,16 +35,14 @@ def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
     run(lambda: scene(lab), lab.clock)
 
 
+Lab.play = staticmethod(play)
+
+
 def stamped(x: float, stamp: float, child: str = "base", **rotation: float) -> dict[str, Any]:
     transform = {"translation": {"x": x}, "rotation": rotation}
-    return {
-        "header": {"frame_id": "odom", "stamp": stamp},
-        "child_frame_id": child,
-        "transform": transform,
-    }
+    return {"header": {"frame_id": "odom", "stamp": stamp}, "child_frame_id": child, "transform": transform}
 
 
-@played(play)
 async def test_a_short_wait_is_silent_and_a_long_one_is_logged(lab: Lab) -> None:
     robot, brain = await lab.open()
     for delay in (0.5, 5.0):
@@ -61,7 +58,6 @@ async def test_a_short_wait_is_silent_and_a_long_one_is_logged(lab: Lab) -> None
     ]
 
 
-@played(play)
 async def test_waiting_for_the_past_ends_immediately(lab: Lab) -> None:
     robot, brain = await lab.open()
     robot.tf_broadcast(stamped(1.0, 100.0))
@@ -72,7 +68,6 @@ async def test_waiting_for_the_past_ends_immediately(lab: Lab) -> None:
     assert lab.clock.elapsed == 0.0
 
 
-@played(play)
 async def test_a_wait_whose_moment_has_passed_meanwhile_ends(lab: Lab) -> None:
     robot, brain = await lab.open()
     waiting = asyncio.get_running_loop().create_task(brain.tf_wait("odom", "base", 99.0, timeout=60.0))
@@ -83,7 +78,6 @@ async def test_a_wait_whose_moment_has_passed_meanwhile_ends(lab: Lab) -> None:
     assert (caught.value.reason, round(lab.clock.elapsed, 3)) == ("too_old", 0.1)
 
 
-@played(play)
 async def test_a_bad_transform_is_logged_once(lab: Lab) -> None:
     robot, brain = await lab.open()
     for stamp in (1.0, 2.0):
@@ -98,7 +92,6 @@ async def test_a_bad_transform_is_logged_once(lab: Lab) -> None:
         brain.tf_lookup("odom", "base")
 
 
-@played(play)
 async def test_a_clock_that_goes_back_empties_the_buffer(lab: Lab) -> None:
     robot, brain = await lab.open()
     robot.tf_broadcast({**stamped(0.5, 0.0, child="wheel"), "header": {"frame_id": "base"}}, static=True)
@@ -118,7 +111,6 @@ async def test_a_clock_that_goes_back_empties_the_buffer(lab: Lab) -> None:
     assert (found.translation[0], found.stamp) == (3.5, pytest.approx(9.95))
 
 
-@played(play)
 async def test_an_unknown_level_is_refused(lab: Lab) -> None:
     robot, _ = await lab.open()
     with pytest.raises(

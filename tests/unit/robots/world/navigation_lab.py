@@ -6,6 +6,7 @@ from typing import Any
 
 from jacaros.robots.ros.action import Outcome
 from jacaros.robots.ros.open import open_backend
+from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world import SimNode, World
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -36,6 +37,29 @@ class Lab:
     async def go(self, x: float, y: float, yaw: float = 0.0, frame: str = "map", robot: str = "") -> Outcome:
         return await self.do(f"{robot}/navigate_to_pose", NAVIGATE, pose=pose(x, y, yaw, frame))
 
+    async def call(self, service: str, type_name: str, **request: Any) -> Any:
+        return await self.backend.client(service, type_name).call(request, timeout=5.0)
+
+    def hear(self, topic: str, type_name: str, *qos: QoS) -> list[Any]:
+        """The messages of a topic from now on."""
+        heard: list[Any] = []
+        self.backend.subscription(topic, type_name, lambda sample: heard.append(sample.message), *qos)
+        return heard
+
+    def say(self, topic: str, type_name: str, **fields: Any) -> None:
+        """Publish one message."""
+        publisher = self.backend.publisher(topic, type_name)
+        publisher.publish(publisher.message(**fields))
+
+    async def drive(
+        self, seconds: float, speed: float, turn_rate: float = 0.0, topic: str = "/cmd_vel"
+    ) -> None:
+        """Command velocities at 10 Hz."""
+        publisher = self.backend.publisher(topic, "geometry_msgs/msg/Twist")
+        for _ in range(round(seconds * 10)):
+            publisher.publish(publisher.message(linear={"x": speed}, angular={"z": turn_rate}))
+            await self.clock.sleep(0.1)
+
     async def stands(self, robot: str | None = None) -> None:
         """Assert that nothing moves half a second later."""
         await self.clock.sleep(0.6)
@@ -44,23 +68,28 @@ class Lab:
         assert self.world.robot(robot).pose == before
 
 
-def in_world(source: str, body: Callable[[Lab], Awaitable[None]], seed: int | None = None) -> Lab:
+def in_world(
+    body: Callable[[Lab], Awaitable[None]], source: str | World, seed: int | None = None, faults: str = ""
+) -> Lab:
+    """Run *body* beside a world."""
     clock = VirtualClock()
     labs = []
 
     async def main() -> None:
-        backend = open_backend("memory", clock, "test")
+        backend = open_backend("memory", clock, "test", log=lambda text: None)
         await backend.start()
-        beside = open_backend("memory", clock, "world", graph=backend.graph)  # type: ignore[attr-defined]
+        beside: Any = open_backend("memory", clock, "world", graph=backend.graph)  # type: ignore[attr-defined]
         await beside.start()
-        world = World.load(source, seed)
+        world = source if isinstance(source, World) else World.load(source, seed, faults or None)
         node = SimNode(world, beside, clock)
-        node.start()
-        labs.append(Lab(world, clock, backend, node))
-        await body(labs[0])
-        node.close()
-        await beside.close()
-        await backend.close()
+        try:
+            node.start()
+            labs.append(Lab(world, clock, backend, node))
+            await body(labs[0])
+        finally:
+            node.close()
+            await beside.close()
+            await backend.close()
 
     run(main, clock)
     return labs[0]
@@ -75,3 +104,6 @@ def near(world: World, x: float, y: float, yaw: float, robot: str | None = None)
 
 def bumps(world: World) -> list[Any]:
     return [event for event in world.log if event.kind in ("bump", "collision")]
+
+
+Lab.play = staticmethod(in_world)

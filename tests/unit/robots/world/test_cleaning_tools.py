@@ -41,23 +41,25 @@ def left(world: World) -> dict[tuple[str, str], float]:
     return {(field.room, field.kind): field.grams for field in world.cleaning.fields}
 
 
+def vacuuming(seconds: float, robots: str = "a", **changes: str) -> World:
+    """A world in which some robots have used their vacuum for a while."""
+    flat = world(**changes)
+    for robot in robots:
+        flat.use_tool(robot, "vacuum")
+    flat.run(seconds)
+    return flat
+
+
 def test_a_tool_removes_only_its_kinds_of_dirt_at_its_rate() -> None:
-    flat = world()
-    flat.use_tool("a", "vacuum")
-    flat.run(0.5)
+    flat = vacuuming(0.5)
     flat.use_tool("a", "")
     flat.run(1.0)
-    assert left(flat) == {
-        ("hall", "dust"): pytest.approx(29.0),
-        ("hall", "stains"): 8.0,
-        ("office", "dust"): 10.0,
-    }
+    dust = pytest.approx(29.0)
+    assert left(flat) == {("hall", "dust"): dust, ("hall", "stains"): 8.0, ("office", "dust"): 10.0}
 
 
 def test_dirt_does_not_lie_below_furniture_and_a_standing_robot_cleans_within_its_reach() -> None:
-    flat = world()
-    flat.use_tool("a", "vacuum")
-    flat.run(20.0)
+    flat = vacuuming(20.0)
     # 30 g on 3 m x 4 m of free floor are 2.5 g on a square metre; the cells make the circle a little uneven.
     assert 30.0 - left(flat)["hall", "dust"] == pytest.approx(2.5 * math.pi * 0.25, rel=0.05)
 
@@ -75,9 +77,7 @@ def test_the_nearest_dirt_is_removed_first() -> None:
 
 
 def test_a_driving_robot_cleans_its_path() -> None:
-    flat = world()
-    flat.use_tool("a", "vacuum")
-    flat.run(2.0)
+    flat = vacuuming(2.0)
     for _ in range(50):
         flat.command("a", 0.2, 0.0)
         flat.run(0.1)
@@ -87,18 +87,13 @@ def test_a_driving_robot_cleans_its_path() -> None:
 
 
 def test_walls_keep_a_tool_in_the_room_of_its_robot() -> None:
-    flat = world(**{"x: -1, y: 0": "x: 0.9, y: 0"})
-    flat.use_tool("a", "vacuum")
-    flat.run(20.0)
+    flat = vacuuming(20.0, **{"x: -1, y: 0": "x: 0.9, y: 0"})
     assert left(flat)["office", "dust"] == 10.0
     assert left(flat)["hall", "dust"] < 30.0
 
 
 def test_two_robots_clean_the_same_dirt() -> None:
-    flat = world(**{"x: -1, y: 0": "x: 2, y: 0.6"})
-    flat.use_tool("a", "vacuum")
-    flat.use_tool("b", "vacuum")
-    flat.run(0.1)
+    flat = vacuuming(0.1, "ab", **{"x: -1, y: 0": "x: 2, y: 0.6"})
     assert left(flat)["office", "dust"] == pytest.approx(9.7)
 
 
@@ -114,9 +109,7 @@ def test_a_clean_room_has_exactly_no_dirt_and_one_event() -> None:
 
 
 def test_an_empty_battery_stops_the_tool() -> None:
-    flat = world(**{"pose: {x: -1, y: 0}": "battery: {level: 0}"})
-    flat.use_tool("a", "vacuum")
-    flat.run(1.0)
+    flat = vacuuming(1.0, **{"pose: {x: -1, y: 0}": "battery: {level: 0}"})
     assert left(flat)["hall", "dust"] == 30.0
 
 
@@ -126,19 +119,12 @@ def test_a_task_starts_the_tool_that_it_names() -> None:
     flat.log_task("a", "mop floor hall")
     flat.run(0.001)
     flat.log_task("a", "dance in the hall")
-    told = [(event.kind, event.data.get("tool")) for event in flat.log if event.kind != "task"]
-    assert told == [
-        ("tool_started", "vacuum"),
-        ("tool_stopped", "vacuum"),
-        ("tool_started", "mop"),
-        ("tool_stopped", "mop"),
-    ]
+    told = [f"{event.kind} {event.data['tool']}" for event in flat.log if event.kind != "task"]
+    assert told == ["tool_started vacuum", "tool_stopped vacuum", "tool_started mop", "tool_stopped mop"]
 
 
 def test_a_stopped_tool_records_the_remaining_dirt_below_a_whole_percent() -> None:
-    flat = world()
-    flat.use_tool("a", "vacuum")
-    flat.run(0.1)
+    flat = vacuuming(0.1)
     assert [event.kind for event in flat.log] == ["tool_started"]
     flat.use_tool("a", "")
     assert [event.kind for event in flat.log] == ["tool_started", "cleaned", "tool_stopped"]

@@ -1,15 +1,10 @@
 """Cliffs: robots that drive over one fall, and their sensors detect it before."""
 
-from collections.abc import Awaitable, Callable
-from typing import Any
-
 import pytest
+from navigation_lab import Lab
 
-from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.open import open_backend
-from jacaros.robots.world import SimNode, World, WorldError, read_world
+from jacaros.robots.world import World, WorldError, read_world
 from jacaros.robots.world.data.grid import Grid
-from jacaros.runtime.clock import VirtualClock, run
 
 STAIRS = """\
 size: [6, 6]
@@ -18,30 +13,6 @@ cliffs:
 robots:
   - {name: robot, pose: {x: 0, y: 0}}
 """
-
-
-def in_graph(body: Callable[[World, Backend, VirtualClock], Awaitable[None]], text: str = STAIRS) -> World:
-    """Run *body* beside a world."""
-    clock, world = VirtualClock(), World.load(text)
-
-    async def main() -> None:
-        backend = open_backend("memory", clock, "test")
-        await backend.start()
-        node = SimNode(world, backend, clock)
-        node.start()
-        await body(world, backend, clock)
-        node.close()
-        await backend.close()
-
-    run(main, clock)
-    return world
-
-
-async def drive(backend: Backend, clock: VirtualClock, seconds: float, speed: float = 0.3) -> None:
-    publisher = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
-    for _ in range(round(seconds * 10)):
-        publisher.publish(publisher.message(linear={"x": speed}))
-        await clock.sleep(0.1)
 
 
 def test_a_robot_with_its_centre_over_a_cliff_falls_and_stays_there() -> None:
@@ -79,48 +50,26 @@ def test_a_fallen_robot_is_not_pushed() -> None:
     assert world.ground_truth.pose("robot") == fallen
 
 
-def test_the_sensors_of_a_kobuki_see_the_cliff_and_then_the_wheels_drop() -> None:
-    cliffs: list[Any] = []
-    drops: list[Any] = []
-
-    async def body(world: World, backend: Backend, clock: VirtualClock) -> None:
-        backend.subscription(
-            "/mobile_base/events/cliff",
-            "kobuki_msgs/msg/CliffEvent",
-            lambda each: cliffs.append(each.message),
-        )
-        backend.subscription(
-            "/mobile_base/events/wheel_drop",
-            "kobuki_msgs/msg/WheelDropEvent",
-            lambda each: drops.append(each.message),
-        )
-        await drive(backend, clock, 3.0)
-        assert [(each.sensor, each.state) for each in cliffs] == [(1, 1)], "only the one in the middle"
-        assert world.robot().x < 1.0
-        await drive(backend, clock, 1.0, -0.3)
-        assert [(each.sensor, each.state) for each in cliffs] == [(1, 1), (1, 0)], "and it is behind"
-        assert drops == []
-        await drive(backend, clock, 3.0)
-
-    in_graph(body)
+@pytest.mark.world(STAIRS)
+async def test_the_sensors_of_a_kobuki_see_the_cliff_and_then_the_wheels_drop(lab: Lab) -> None:
+    cliffs = lab.hear("/mobile_base/events/cliff", "kobuki_msgs/msg/CliffEvent")
+    drops = lab.hear("/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent")
+    await lab.drive(3.0, 0.3)
+    assert [(each.sensor, each.state) for each in cliffs] == [(1, 1)], "only the one in the middle"
+    assert lab.world.robot().x < 1.0
+    await lab.drive(1.0, -0.3)
+    assert [(each.sensor, each.state) for each in cliffs] == [(1, 1), (1, 0)], "and it is behind"
+    assert drops == []
+    await lab.drive(3.0, 0.3)
     assert {(each.sensor, each.state) for each in cliffs[2:]} == {(0, 1), (1, 1), (2, 1)}
     assert [(each.wheel, each.state) for each in drops] == [(0, 1), (1, 1)]
 
 
-def test_a_create_publishes_cliffs_and_wheel_drops_as_hazards() -> None:
-    hazards: list[set[str]] = []
-
-    async def body(world: World, backend: Backend, clock: VirtualClock) -> None:
-        backend.subscription(
-            "/hazard_detection",
-            "irobot_create_msgs/msg/HazardDetectionVector",
-            lambda each: hazards.append(
-                {f"{hazard.type} {hazard.header.frame_id}" for hazard in each.message.detections}
-            ),
-        )
-        await drive(backend, clock, 5.0)
-
-    in_graph(body)
+@pytest.mark.world(STAIRS)
+async def test_a_create_publishes_cliffs_and_wheel_drops_as_hazards(lab: Lab) -> None:
+    messages = lab.hear("/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector")
+    await lab.drive(5.0, 0.3)
+    hazards = [{f"{each.type} {each.header.frame_id}" for each in message.detections} for message in messages]
     told = [each for before, each in zip([set(), *hazards], hazards, strict=False) if each != before]
     assert told[0] == {"2 cliff_front_left", "2 cliff_front_right"}
     assert {"4 wheel_drop_left", "4 wheel_drop_right", "2 cliff_side_left"} < told[-1]

@@ -4,12 +4,11 @@ import math
 from typing import Any
 
 import pytest
-from navigation_lab import Lab, in_world, near, pose
+from navigation_lab import Lab, near, pose
 
 from jacaros.robots.plane.trigonometry import PI
 from jacaros.robots.ros.action import GoalStatus
-from jacaros.robots.ros.qos import QoS
-from played import played
+from jacaros.robots.ros.qos import LATCHED
 
 FROM_START = """
 name: from start
@@ -26,7 +25,7 @@ robots:
     ("frame", "x", "y"),
     [("robot_1/odom", -1, 1), ("odom", -1, 1), ("robot_1/base_link", -1, 1), ("map", 0, -1)],
 )
-@played(in_world, FROM_START)
+@pytest.mark.world(FROM_START)
 async def test_goals_may_be_in_any_frame_of_the_robot(lab: Lab, frame: str, x: float, y: float) -> None:
     """At the start odometry and base are the same frame: one metre to the right of the map's middle, looking up."""
     goal = (x, y, 0.0) if frame != "map" else (0.0, -1.0, PI / 2)
@@ -35,7 +34,10 @@ async def test_goals_may_be_in_any_frame_of_the_robot(lab: Lab, frame: str, x: f
     near(lab.world, 0, -1, PI / 2)
 
 
-@played(in_world, FROM_START)
+pytestmark = pytest.mark.world("empty")
+
+
+@pytest.mark.world(FROM_START)
 async def test_the_tf_tree_joins_map_odometry_and_base(lab: Lab) -> None:
     lab.backend.tf_listen()
     assert (await lab.go(-1, 1, 0, "robot_1/odom", "/robot_1")).status == GoalStatus.SUCCEEDED
@@ -49,28 +51,27 @@ async def test_the_tf_tree_joins_map_odometry_and_base(lab: Lab) -> None:
     assert lab.backend.tf_lookup("robot_1/map", "map").translation == pytest.approx((0, 0, 0))
 
 
-@played(in_world, "empty")
 async def test_goals_in_foreign_frames_go_through_tf(lab: Lab) -> None:
-    table = {
-        "header": {"frame_id": "map"},
-        "child_frame_id": "table",
-        "transform": {"translation": {"x": 1.0, "y": 1.0}, "rotation": {"z": 1.0, "w": 0.0}},
-    }
+    turn = {"translation": {"x": 1.0, "y": 1.0}, "rotation": {"z": 1.0, "w": 0.0}}
+    table = {"header": {"frame_id": "map"}, "child_frame_id": "table", "transform": turn}
     lab.backend.tf_broadcast(table, static=True)
     outcome = await lab.go(1, 0, 0.0, "table")
     assert outcome.status == GoalStatus.SUCCEEDED
     near(lab.world, 0, 1, PI)
 
 
+TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
+
+
 def tell_pose(
     lab: Lab, x: float, y: float, yaw: float = 0.0, frame: str = "map", spread: float = 0.0
 ) -> None:
     """As rviz's "2D Pose Estimate", whose spread is 0.25."""
-    publisher = lab.backend.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
-    told = pose(x, y, yaw, frame)
-    covariance = [0.0] * 36
+    told, covariance = pose(x, y, yaw, frame), [0.0] * 36
     covariance[0] = covariance[7] = spread
-    publisher.publish({"header": told["header"], "pose": {"pose": told["pose"], "covariance": covariance}})
+    lab.say(
+        "/initialpose", TYPE, header=told["header"], pose={"pose": told["pose"], "covariance": covariance}
+    )
 
 
 @pytest.mark.parametrize(
@@ -86,7 +87,6 @@ def tell_pose(
         (2.0, 0.0, 0.0, "map", -1.0, False),
     ],
 )
-@played(in_world, "empty")
 async def test_a_received_pose_sets_the_estimate(
     lab: Lab, x: float, y: float, yaw: float, frame: str, spread: float, lost: bool
 ) -> None:
@@ -98,7 +98,6 @@ async def test_a_received_pose_sets_the_estimate(
     assert (*believed.translation[:2], believed.yaw) == pytest.approx(expected, abs=1e-6)
 
 
-@played(in_world, "empty")
 async def test_a_lost_robot_drives_wrong_until_it_receives_its_pose(lab: Lab) -> None:
     tell_pose(lab, 1, 0)
     assert (await lab.go(2, 0)).status == GoalStatus.SUCCEEDED
@@ -109,17 +108,6 @@ async def test_a_lost_robot_drives_wrong_until_it_receives_its_pose(lab: Lab) ->
     near(lab.world, 2, 0, 0)
 
 
-TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
-
-
-def heard(lab: Lab, topic: str = "/amcl_pose") -> list[Any]:
-    """The messages of a topic, from now on."""
-    messages: list[Any] = []
-    quality = QoS(durability="transient_local", depth=1)
-    lab.backend.subscription(topic, TYPE, lambda sample: messages.append(sample.message), quality)
-    return messages
-
-
 def believed(message: Any) -> tuple[float, float, float, float]:
     """x, y and the variances of x and of the heading."""
     place, covariance = message.pose.pose.position, message.pose.covariance
@@ -127,9 +115,8 @@ def believed(message: Any) -> tuple[float, float, float, float]:
     return (round(place.x, 3), round(place.y, 3), round(covariance[0], 6), round(covariance[35], 6))
 
 
-@played(in_world, "empty")
 async def test_the_estimated_pose_is_latched_and_published_after_25_cm_or_11_degrees(lab: Lab) -> None:
-    first = heard(lab)
+    first = lab.hear("/amcl_pose", TYPE, LATCHED)
     await lab.clock.sleep(3.0)
     assert [believed(each) for each in first] == [(0.0, 0.0, 0.0025, 0.001)]
     assert first[0].header.frame_id == "map"
@@ -149,14 +136,13 @@ async def test_the_estimated_pose_is_latched_and_published_after_25_cm_or_11_deg
         robot.command(0.0, 0.6)
         await lab.clock.sleep(0.1)
     assert len(first) == count + 1
-    late = heard(lab)
+    late = lab.hear("/amcl_pose", TYPE, LATCHED)
     await lab.clock.sleep(0.1)
     assert [believed(each) for each in late] == [believed(first[-1])]
 
 
-@played(in_world, "empty")
 async def test_a_received_pose_keeps_its_covariance_until_it_is_corrected(lab: Lab) -> None:
-    messages = heard(lab)
+    messages = lab.hear("/amcl_pose", TYPE, LATCHED)
     await lab.clock.sleep(0.2)
     tell_pose(lab, 0.3, 0.0, spread=0.25)
     await lab.clock.sleep(2.0)
@@ -170,9 +156,9 @@ async def test_a_received_pose_keeps_its_covariance_until_it_is_corrected(lab: L
     ]
 
 
-@played(in_world, "two_robots")
+@pytest.mark.world("two_robots")
 async def test_the_pose_of_a_robot_is_in_its_namespace(lab: Lab) -> None:
     name = lab.world.description.robots[0].namespace
-    messages = heard(lab, f"/{name}/amcl_pose")
+    messages = lab.hear(f"/{name}/amcl_pose", TYPE, LATCHED)
     await lab.clock.sleep(0.2)
     assert [each.header.frame_id for each in messages] == [f"{name}/map"]

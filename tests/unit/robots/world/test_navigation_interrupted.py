@@ -8,10 +8,10 @@ from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
 
 from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.ros.open import open_backend
-from played import played
+
+pytestmark = pytest.mark.world("house")
 
 
-@played(in_world, "house")
 async def test_cancelling_stops_the_robot(lab: Lab) -> None:
     handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
     await lab.clock.sleep(3.0)
@@ -21,7 +21,6 @@ async def test_cancelling_stops_the_robot(lab: Lab) -> None:
     await lab.stands()
 
 
-@played(in_world, "house")
 async def test_a_newer_goal_preempts_goals_of_other_actions_too(lab: Lab) -> None:
     first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
     await lab.clock.sleep(2.0)
@@ -44,7 +43,6 @@ async def occupied(lab: Lab, name: str, type_name: str, **fields: Any) -> None:
     assert "is running; cancel that goal first" in outcome.text
 
 
-@played(in_world, "house")
 async def test_a_goal_cancelled_just_before_the_next_one_ends_as_aborted(lab: Lab) -> None:
     first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
     await lab.clock.sleep(1.0)
@@ -57,7 +55,6 @@ async def test_a_goal_cancelled_just_before_the_next_one_ends_as_aborted(lab: La
     assert (await second.outcome()).status == GoalStatus.SUCCEEDED
 
 
-@played(in_world, "house")
 async def test_nav2s_two_navigators_do_not_preempt_each_other(lab: Lab) -> None:
     through = "nav2_msgs/action/NavigateThroughPoses"
     first = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
@@ -76,7 +73,6 @@ async def test_nav2s_two_navigators_do_not_preempt_each_other(lab: Lab) -> None:
     assert (empty.status, empty.result.error_code) == (GoalStatus.ABORTED, 309)
 
 
-@played(in_world, "house")
 async def test_a_goal_preempts_docking(lab: Lab) -> None:
     for wait in (1.0, 5.5):  # on the way to the dock, and close before it
         docking = await lab.send("/dock_robot", "nav2_msgs/action/DockRobot", dock_id="dock")
@@ -88,7 +84,6 @@ async def test_a_goal_preempts_docking(lab: Lab) -> None:
         await lab.stands()
 
 
-@played(in_world, "house")
 async def test_closing_the_servers_stops_the_robot(lab: Lab) -> None:
     handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 2))
     await lab.clock.sleep(3.0)
@@ -98,7 +93,6 @@ async def test_closing_the_servers_stops_the_robot(lab: Lab) -> None:
     await lab.stands()
 
 
-@played(in_world, "house")
 async def test_a_battery_that_runs_empty_ends_the_goal(lab: Lab) -> None:
     lab.world.robot().battery.level = 2.0
     outcome = await lab.go(2, 2)
@@ -116,44 +110,40 @@ robots:
 """
 
 
-def test_a_robot_that_never_moves_blocks_a_corridor() -> None:
-    async def body(lab: Lab) -> None:
-        outcome = await lab.go(2, 0, robot="/one")
-        assert outcome.status == GoalStatus.ABORTED
-        assert outcome.result.error_code == 208
-        assert "another robot blocks the path" in outcome.result.error_msg
-        assert lab.feedback[-1].number_of_recoveries == 3
-        assert 15.0 < lab.clock.elapsed < 45.0
-        await lab.stands("one")
-
-    assert bumps(in_world(PARKED, body).world) == []
-
-
-def test_the_robot_waits_for_a_robot_that_leaves_in_time() -> None:
-    async def body(lab: Lab) -> None:
-        first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(1.4, 0))
-        await lab.clock.sleep(8.0)
-        assert (await lab.go(2.5, 0, robot="/two")).status == GoalStatus.SUCCEEDED
-        assert (await first.outcome()).status == GoalStatus.SUCCEEDED
-
-    assert bumps(in_world(PARKED, body).world) == []
+@pytest.mark.world(PARKED)
+async def test_a_robot_that_never_moves_blocks_a_corridor(lab: Lab) -> None:
+    outcome = await lab.go(2, 0, robot="/one")
+    assert outcome.status == GoalStatus.ABORTED
+    assert outcome.result.error_code == 208
+    assert "another robot blocks the path" in outcome.result.error_msg
+    assert lab.feedback[-1].number_of_recoveries == 3
+    assert 15.0 < lab.clock.elapsed < 45.0
+    await lab.stands("one")
+    assert bumps(lab.world) == []
 
 
-def test_robots_pass_each_other() -> None:
-    async def body(lab: Lab) -> None:
-        async def shuttle(robot: str, ends: list[tuple[float, float]]) -> None:
-            for x, y in ends * 2:
-                outcome = await lab.go(x, y, robot=f"/{robot}")
-                assert outcome.status == GoalStatus.SUCCEEDED, outcome.text
+@pytest.mark.world(PARKED)
+async def test_the_robot_waits_for_a_robot_that_leaves_in_time(lab: Lab) -> None:
+    first = await lab.send("/one/navigate_to_pose", NAVIGATE, pose=pose(1.4, 0))
+    await lab.clock.sleep(8.0)
+    assert (await lab.go(2.5, 0, robot="/two")).status == GoalStatus.SUCCEEDED
+    assert (await first.outcome()).status == GoalStatus.SUCCEEDED
+    assert bumps(lab.world) == []
 
-        await asyncio.gather(
-            shuttle("robot_1", [(3, 0.2), (-3, 0)]),
-            shuttle("robot_2", [(-3, -0.2), (3, 2.2)]),
-            shuttle("robot_3", [(3, -2.2), (0, 2.2)]),
-        )
 
-    done = in_world("three_robots", body)
-    assert bumps(done.world) == []
+@pytest.mark.world("three_robots")
+async def test_robots_pass_each_other(lab: Lab) -> None:
+    async def shuttle(robot: str, ends: list[tuple[float, float]]) -> None:
+        for x, y in ends * 2:
+            outcome = await lab.go(x, y, robot=f"/{robot}")
+            assert outcome.status == GoalStatus.SUCCEEDED, outcome.text
+
+    await asyncio.gather(
+        shuttle("robot_1", [(3, 0.2), (-3, 0)]),
+        shuttle("robot_2", [(-3, -0.2), (3, 2.2)]),
+        shuttle("robot_3", [(3, -2.2), (0, 2.2)]),
+    )
+    assert bumps(lab.world) == []
 
 
 STOREHOUSE = """
@@ -188,7 +178,7 @@ def test_a_detour_is_abandoned_when_the_obstacles_have_gone(x: float, they_go: b
                 robot.x, robot.y = away, 2.5
         assert (await first.outcome(timeout=300.0)).status == GoalStatus.SUCCEEDED
 
-    done = in_world(STOREHOUSE.format(x=x), body).world
+    done = in_world(body, STOREHOUSE.format(x=x)).world
     driven = done.robot("one").odometer
     assert driven < 8.0 if they_go else driven > 8.5
     assert bumps(done) == []

@@ -1,10 +1,10 @@
 """Robots among people: they drive around them or wait."""
 
-from navigation_lab import NAVIGATE, Lab, bumps, in_world, near, pose
+import pytest
+from navigation_lab import NAVIGATE, Lab, bumps, near, pose
 
 from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.world import PersonDescription
-from played import played
 
 HALL = """
 name: hall
@@ -23,7 +23,7 @@ people: [{name: ann, path: [[0.5, 0]]}]
 """
 
 
-@played(in_world, HALL)
+@pytest.mark.world(HALL)
 async def test_a_robot_crosses_the_path_of_a_person_without_a_touch(lab: Lab) -> None:
     for x in (2.0, -2.0) * 4:
         outcome = await lab.go(x, 0)
@@ -32,7 +32,7 @@ async def test_a_robot_crosses_the_path_of_a_person_without_a_touch(lab: Lab) ->
     assert bumps(lab.world) == []
 
 
-@played(in_world, CORRIDOR)
+@pytest.mark.world(CORRIDOR)
 async def test_a_person_in_a_corridor_blocks_the_way(lab: Lab) -> None:
     outcome = await lab.go(2, 0)
     assert outcome.result.error_code == 208
@@ -40,7 +40,7 @@ async def test_a_person_in_a_corridor_blocks_the_way(lab: Lab) -> None:
     assert bumps(lab.world) == []
 
 
-@played(in_world, CORRIDOR)
+@pytest.mark.world(CORRIDOR)
 async def test_a_robot_continues_when_the_person_has_gone(lab: Lab) -> None:
     handle = await lab.send("/navigate_to_pose", NAVIGATE, pose=pose(2, 0))
     await lab.clock.sleep(10.0)

@@ -1,18 +1,15 @@
 """The names of a robot on the graph: those of its kind, renamed and added to in the world file."""
 
-from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
+from navigation_lab import Lab, in_world, pose
 
 from jacaros.robots.ros.action import GoalStatus
-from jacaros.robots.ros.backend import Backend, GraphContents
-from jacaros.robots.ros.open import open_backend
-from jacaros.robots.world import SimNode, World, WorldError
+from jacaros.robots.ros.backend import GraphContents
+from jacaros.robots.world import World, WorldError
 from jacaros.robots.world.data.robot import ACTIONS, SERVICES, TOPICS
 from jacaros.runtime.cli.main import call
-from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.errors import UsageError
 
 FULL = "robots: [{gripper: true, tools: {mop: {removes: [dust]}}}]\n"
@@ -35,30 +32,14 @@ robots:
 """
 
 
-def in_world(text: str, body: Callable[[Backend, SimNode, VirtualClock], Awaitable[Any]]) -> Any:
-    """Run *body* beside a world on the memory graph; return what it returns."""
-    clock = VirtualClock()
-
-    async def main() -> Any:
-        backend = open_backend("memory", clock, "test", log=lambda text: None)
-        await backend.start()
-        node = SimNode(World.load(text), backend, clock)
-        try:
-            node.start()
-            return await body(backend, node, clock)
-        finally:
-            node.close()
-            await backend.close()
-
-    return run(main, clock)
+async def contents(lab: Lab) -> GraphContents:
+    found: GraphContents = await lab.backend.contents()
+    return found
 
 
-async def contents(backend: Backend, node: SimNode, clock: VirtualClock) -> GraphContents:
-    return await backend.contents()
-
-
-def test_a_robot_without_a_kind_has_all_that_can_be_named_in_a_world_file() -> None:
-    found = in_world(FULL, contents)
+@pytest.mark.world(FULL)
+async def test_a_robot_without_a_kind_has_all_that_can_be_named_in_a_world_file(lab: Lab) -> None:
+    found = await contents(lab)
     assert set(found.topics) - {"/map", "/tf", "/tf_static"} == {f"/{name}" for name in TOPICS}
     assert set(found.actions) == {f"/{name}" for name in ACTIONS}
     assert set(found.services) - {"/map_server/map"} == {f"/{name}" for name in SERVICES}
@@ -78,8 +59,9 @@ def test_only_the_mapping_of_a_robot_fits_the_robot(
     assert "Traceback" not in capsys.readouterr().err
 
 
-def test_names_are_replaced_and_added() -> None:
-    found = in_world(ROVER, contents)
+@pytest.mark.world(ROVER)
+async def test_names_are_replaced_and_added(lab: Lab) -> None:
+    found = await contents(lab)
     for name in ("/rover/front/scan", "/odometry", "/rover/base/cmd", "/rover/bumper"):
         assert name in found.topics
     for name in ("/rover/scan", "/rover/odom", "/rover/cmd_vel", "/rover/mobile_base/events/cliff"):
@@ -89,49 +71,36 @@ def test_names_are_replaced_and_added() -> None:
     assert found.topics["/rover/temperature"].types == ("sensor_msgs/msg/Temperature",)
 
 
-def test_a_renamed_robot_obeys_its_own_topic_and_its_navigation_uses_it() -> None:
-    async def body(backend: Backend, node: SimNode, clock: VirtualClock) -> None:
-        backend.subscription("/odometry", "nav_msgs/msg/Odometry", lambda sample: seen.append(sample.message))
-        publisher = backend.publisher("/rover/base/cmd", "geometry_msgs/msg/Twist")
-        publisher.publish({"linear": {"x": 0.2}})
-        await clock.sleep(0.5)
-        assert seen[-1].pose.pose.position.x > 0.0
-        client = backend.action_client("/rover/go_to", "nav2_msgs/action/NavigateToPose")
-        pose = {
-            "header": {"frame_id": "rover/map"},
-            "pose": {"position": {"x": 0.5}, "orientation": {"w": 1.0}},
-        }
-        goal = await client.send({"pose": pose}, timeout=5.0)
-        assert (await goal.outcome(60.0)).status is GoalStatus.SUCCEEDED
-        assert node.world.robot("rover").x == pytest.approx(0.5, abs=0.06)
-
-    seen: list[Any] = []
-    in_world(ROVER, body)
+@pytest.mark.world(ROVER)
+async def test_a_renamed_robot_obeys_its_own_topic_and_its_navigation_uses_it(lab: Lab) -> None:
+    seen = lab.hear("/odometry", "nav_msgs/msg/Odometry")
+    lab.say("/rover/base/cmd", "geometry_msgs/msg/Twist", linear={"x": 0.2})
+    await lab.clock.sleep(0.5)
+    assert seen[-1].pose.pose.position.x > 0.0
+    goal = pose(0.5, 0, frame="rover/map")
+    done = await lab.do("/rover/go_to", "nav2_msgs/action/NavigateToPose", pose=goal)
+    assert done.status is GoalStatus.SUCCEEDED
+    assert lab.world.robot("rover").x == pytest.approx(0.5, abs=0.06)
 
 
-def test_added_topics_are_published_and_received_and_added_services_answer() -> None:
-    async def body(backend: Backend, node: SimNode, clock: VirtualClock) -> None:
-        backend.subscription(
-            "/rover/temperature", "sensor_msgs/msg/Temperature", lambda sample: warm.append(sample.message)
-        )
-        await clock.sleep(5.02)
-        assert {message.temperature for message in warm} == {21.5}
-        assert len(warm) == 10
-        assert {message.header.frame_id for message in warm} == {"rover/base_link"}
-        backend.publisher("/rover/horn", "std_msgs/msg/Bool").publish({"data": True})
-        await clock.sleep(0.1)
-        (event,) = node.world.ground_truth.events_of("received", robot="rover")
-        assert event.data == {"topic": "/rover/horn", "message": {"data": True}}
-        answer = await backend.client("/rover/reset", "std_srvs/srv/Trigger").call({}, 2.0)
-        assert (answer.success, answer.message) == (True, "done")
-
-    warm: list[Any] = []
-    in_world(ROVER, body)
+@pytest.mark.world(ROVER)
+async def test_added_topics_are_published_and_received_and_added_services_answer(lab: Lab) -> None:
+    warm = lab.hear("/rover/temperature", "sensor_msgs/msg/Temperature")
+    await lab.clock.sleep(5.02)
+    assert {message.temperature for message in warm} == {21.5}
+    assert len(warm) == 10
+    assert {message.header.frame_id for message in warm} == {"rover/base_link"}
+    lab.say("/rover/horn", "std_msgs/msg/Bool", data=True)
+    await lab.clock.sleep(0.1)
+    (event,) = lab.world.ground_truth.events_of("received", robot="rover")
+    assert event.data == {"topic": "/rover/horn", "message": {"data": True}}
+    answer = await lab.call("/rover/reset", "std_srvs/srv/Trigger")
+    assert (answer.success, answer.message) == (True, "done")
 
 
-def test_names_may_be_exchanged() -> None:
-    text = "robots: [{topics: {imu: sonar, sonar: imu}}]\n"
-    found = in_world(text, contents)
+@pytest.mark.world("robots: [{topics: {imu: sonar, sonar: imu}}]\n")
+async def test_names_may_be_exchanged(lab: Lab) -> None:
+    found = await contents(lab)
     assert found.topics["/sonar"].types == ("sensor_msgs/msg/Imu",)
     assert found.topics["/imu"].types == ("sensor_msgs/msg/Range",)
 
@@ -191,5 +160,5 @@ def test_mistakes_are_reported_with_their_place(entry: str, problem: str, help: 
 )
 def test_a_type_that_does_not_fit_ends_the_start_with_the_name(entry: str, problem: str) -> None:
     with pytest.raises(UsageError, match="`t` of the robot `turtlebot`") as wrong:
-        in_world(f"robots:\n  - {{{entry}}}\n", contents)
+        in_world(contents, f"robots:\n  - {{{entry}}}\n")
     assert problem in str(wrong.value)

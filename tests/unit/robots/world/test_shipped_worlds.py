@@ -56,7 +56,7 @@ def test_a_robot_drives_through_the_rooms_and_docks(name: str, goals: list[tuple
         robot, (dock,) = lab.world.robot(), lab.world.description.docks
         assert math.hypot(robot.x - dock.pose.x, robot.y - dock.pose.y) < dock.radius
 
-    assert bumps(in_world(name, body).world) == []
+    assert bumps(in_world(body, name).world) == []
 
 
 @pytest.mark.slow
@@ -67,4 +67,4 @@ def test_robots_of_the_warehouse_work_side_by_side() -> None:
         ends = await asyncio.gather(*(lab.go(*goal, robot=f"/{robot}") for robot, goal in goals.items()))
         assert [end.status for end in ends] == [GoalStatus.SUCCEEDED] * 4
 
-    assert bumps(in_world("warehouse", body).world) == []
+    assert bumps(in_world(body, "warehouse").world) == []

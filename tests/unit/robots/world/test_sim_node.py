@@ -4,13 +4,14 @@ import json
 import math
 import signal
 import threading
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from navigation_lab import Lab, in_world
+from sensor_lab import heard
 
-from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.world import GroundTruth, SimNode, World, serve
@@ -20,107 +21,63 @@ from jacaros.robots.world.graph.publishing import sensor
 from jacaros.robots.world.process import GroundTruthFile
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 
-TWIST = "geometry_msgs/msg/Twist"
+ODOMETRY = ("/odom", "nav_msgs/msg/Odometry")
 
 
-class Run:
-    """A world on the memory backend and a virtual clock, with the received messages."""
-
-    def __init__(self, world: World, backend: Backend, clock: VirtualClock) -> None:
-        self.world, self.backend, self.clock = world, backend, clock
-        self.node = SimNode(world, backend, clock)
-        self.received: list[Any] = []
-        self.times: list[float] = []
-
-    def listen(self, topic: str, type_name: str) -> None:
-        self.backend.subscription(topic, type_name, lambda sample: self.take(sample.message))
-
-    def take(self, message: Any) -> None:
-        self.received.append(message)
-        self.times.append(round(self.clock.now() - self.clock.start, 6))
-
-    async def drive(
-        self, seconds: float, speed: float, turn_rate: float = 0.0, topic: str = "/cmd_vel"
-    ) -> None:
-        publisher = self.backend.publisher(topic, TWIST)
-        for _ in range(round(seconds * 10)):
-            publisher.publish(publisher.message(linear={"x": speed}, angular={"z": turn_rate}))
-            await self.clock.sleep(0.1)
+def timed(lab: Lab, topic: str, type_name: str) -> list[tuple[float, Any]]:
+    """The messages of a topic from now on, with the time of the run."""
+    heard: list[tuple[float, Any]] = []
+    lab.backend.subscription(
+        topic, type_name, lambda sample: heard.append((round(lab.clock.elapsed, 6), sample.message))
+    )
+    return heard
 
 
-def in_world(name: str, body: Callable[[Run], Awaitable[None]]) -> Run:
-    """Run *body* beside a world; the world is closed at the end."""
-    clock = VirtualClock()
-    runs = []
-
-    async def main() -> None:
-        backend = open_backend("memory", clock, "test")
-        await backend.start()
-        runs.append(Run(World.load(name), backend, clock))
-        runs[0].node.start()
-        await body(runs[0])
-        runs[0].node.close()
-        await backend.close()
-
-    run(main, clock)
-    return runs[0]
-
-
-def test_odometry_is_published_at_20_hz_with_pose_and_twist() -> None:
-    async def body(run: Run) -> None:
-        run.listen("/odom", "nav_msgs/msg/Odometry")
-        await run.drive(2.0, 0.3, 0.5)
-
-    done = in_world("robots:\n  - name: turtlebot\n", body)
-    assert len(done.received) == pytest.approx(40, abs=1)
-    assert done.times[:3] == [0.05, 0.1, 0.15]
-    last, robot = done.received[-1], done.world.robot()
+@pytest.mark.world("robots:\n  - name: turtlebot\n")
+async def test_odometry_is_published_at_20_hz_with_pose_and_twist(lab: Lab) -> None:
+    heard = timed(lab, *ODOMETRY)
+    await lab.drive(2.0, 0.3, 0.5)
+    lab.node.close()
+    assert len(heard) == pytest.approx(40, abs=1)
+    assert [time for time, _ in heard[:3]] == [0.05, 0.1, 0.15]
+    last, robot = heard[-1][1], lab.world.robot()
     assert (last.header.frame_id, last.child_frame_id) == ("odom", "base_footprint")
     assert last.twist.twist.linear.x == pytest.approx(0.3)
     assert last.twist.twist.angular.z == pytest.approx(0.5)
     yaw = 2 * math.atan2(last.pose.pose.orientation.z, last.pose.pose.orientation.w)
-    behind = done.clock.now() - to_seconds(last.header.stamp)
+    behind = lab.clock.now() - to_seconds(last.header.stamp)
     assert yaw == pytest.approx(robot.yaw - 0.5 * behind, abs=0.02)
     assert last.pose.pose.position.x == pytest.approx(robot.x, abs=0.02)
 
 
-def test_stamps_are_the_time_of_the_state() -> None:
-    async def body(run: Run) -> None:
-        run.listen("/odom", "nav_msgs/msg/Odometry")
-        await run.clock.sleep(0.2)
-
-    done = in_world("empty", body)
-    stamps = [to_seconds(message.header.stamp) - done.clock.start for message in done.received]
+@pytest.mark.world("empty")
+async def test_stamps_are_the_time_of_the_state(lab: Lab) -> None:
+    heard = lab.hear(*ODOMETRY)
+    await lab.clock.sleep(0.2)
+    stamps = [to_seconds(message.header.stamp) - lab.clock.start for message in heard]
     assert stamps == pytest.approx([0.04, 0.1, 0.14, 0.2][: len(stamps)], abs=1e-5)
 
 
 @pytest.mark.parametrize("topic", ["/cmd_vel", "/cmd_vel_mux/input/navi", "/mobile_base/commands/velocity"])
-def test_the_robot_obeys_all_command_topics(topic: str) -> None:
-    done = in_world("empty", lambda run: run.drive(3.0, 0.2, topic=topic))
-    assert done.world.ground_truth.pose().x == pytest.approx(0.2 * 3.0, abs=0.04)
+@pytest.mark.world("empty")
+async def test_the_robot_obeys_all_command_topics_and_the_last_command_wins(lab: Lab, topic: str) -> None:
+    await lab.drive(3.0, 0.2, topic=topic)
+    assert lab.world.ground_truth.pose().x == pytest.approx(0.2 * 3.0, abs=0.04)
+    await lab.drive(1.0, -0.3, topic="/cmd_vel_mux/input/navi")
+    assert lab.world.robot().speed == pytest.approx(-0.3)
 
 
-def test_the_last_command_wins() -> None:
-    async def body(run: Run) -> None:
-        await run.drive(1.0, 0.2)
-        await run.drive(1.0, -0.3, topic="/cmd_vel_mux/input/navi")
-
-    assert in_world("empty", body).world.robot().speed == pytest.approx(-0.3)
-
-
-def test_a_command_takes_effect_at_its_time_although_the_world_is_stepped_later() -> None:
-    async def body(run: Run) -> None:
-        await run.clock.sleep(0.071)
-        publisher = run.backend.publisher("/cmd_vel", TWIST)
-        publisher.publish(publisher.message(linear={"x": 0.3}))
-        await run.clock.sleep(1.0)
-
-    [event] = in_world("empty", body).world.ground_truth.events_of("command_timeout")
+@pytest.mark.world("empty")
+async def test_a_command_takes_effect_at_its_time_although_the_world_is_stepped_later(lab: Lab) -> None:
+    await lab.clock.sleep(0.071)
+    lab.say("/cmd_vel", "geometry_msgs/msg/Twist", linear={"x": 0.3})
+    await lab.clock.sleep(1.0)
+    [event] = lab.world.ground_truth.events_of("command_timeout")
     assert event.time == pytest.approx(0.06 + 0.52)
 
 
 def test_late_steps_give_the_same_run() -> None:
-    done = in_world("patrol", lambda run: run.drive(4.0, 0.3, 0.4))
+    done = in_world(lambda lab: lab.drive(4.0, 0.3, 0.4), "patrol")
     direct = World.load("patrol")
     for _ in range(40):
         direct.command("turtlebot", 0.3, 0.4)
@@ -128,85 +85,70 @@ def test_late_steps_give_the_same_run() -> None:
     assert done.world.ground_truth.digest() == direct.ground_truth.digest()
 
 
-def test_the_battery_is_published_every_second_and_when_charging_changes() -> None:
-    async def body(run: Run) -> None:
-        run.world.robot().battery.level = 50.0
-        run.listen("/battery_state", "sensor_msgs/msg/BatteryState")
-        await run.clock.sleep(2.5)
-        run.world.robot().x, run.world.robot().y = 1.0, 1.0  # into the dock by hand
-        await run.clock.sleep(15.0)
-
-    done = in_world("patrol", body)
-    states = [message.power_supply_status for message in done.received]
+@pytest.mark.world("patrol")
+async def test_the_battery_is_published_every_second_and_when_charging_changes(lab: Lab) -> None:
+    lab.world.robot().battery.level = 50.0
+    heard = timed(lab, "/battery_state", "sensor_msgs/msg/BatteryState")
+    await lab.clock.sleep(2.5)
+    lab.world.robot().x, lab.world.robot().y = 1.0, 1.0  # into the dock by hand
+    await lab.clock.sleep(15.0)
+    states = [message.power_supply_status for _, message in heard]
     assert states[:4] == [2, 2, 2, 1], "discharging, then charging"
-    assert done.times[:4] == [0.05, 1.05, 2.05, 2.55]
+    assert [time for time, _ in heard[:4]] == [0.05, 1.05, 2.05, 2.55]
     assert states[-1] == 4, "full, in the dock"
-    assert done.received[0].percentage == pytest.approx(0.5, abs=0.001)
-    assert done.received[-1].percentage == 1.0
+    assert heard[0][1].percentage == pytest.approx(0.5, abs=0.001)
+    assert heard[-1][1].percentage == 1.0
 
 
-def test_the_laser_is_computed_only_with_subscribers(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def quiet(run: Run) -> None:
-        await run.clock.sleep(1.0)
-
+@pytest.mark.world("patrol")
+async def test_the_laser_is_computed_only_with_subscribers(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(World, "scan", lambda *_: pytest.fail("computed"))
-        in_world("patrol", quiet)
-
-    async def listening(run: Run) -> None:
-        run.listen("/scan", "sensor_msgs/msg/LaserScan")
-        await run.clock.sleep(2.0)
-
-    done = in_world("patrol", listening)
-    assert len(done.received) == pytest.approx(10, abs=1)
-    scan = done.received[0]
+        await lab.clock.sleep(1.0)
+    heard = lab.hear("/scan", "sensor_msgs/msg/LaserScan")
+    await lab.clock.sleep(2.0)
+    assert len(heard) == pytest.approx(10, abs=1)
+    scan = heard[0]
     assert len(scan.ranges) == 360
     assert scan.ranges[180] == pytest.approx(2.8), "the wall ahead"
     assert scan.angle_min + 180 * scan.angle_increment == pytest.approx(0.0)
 
 
-def test_transforms_are_published_only_with_subscribers() -> None:
-    async def body(run: Run) -> None:
-        run.listen("/tf", "tf2_msgs/msg/TFMessage")
-        await run.clock.sleep(1.0)
-
-    done = in_world("empty", body)
-    assert len(done.received) == pytest.approx(20, abs=1)
-    frames = [(each.header.frame_id, each.child_frame_id) for each in done.received[0].transforms]
+@pytest.mark.world("empty")
+async def test_transforms_are_published_only_with_subscribers(lab: Lab) -> None:
+    heard = lab.hear("/tf", "tf2_msgs/msg/TFMessage")
+    await lab.clock.sleep(1.0)
+    assert len(heard) == pytest.approx(20, abs=1)
+    frames = [(each.header.frame_id, each.child_frame_id) for each in heard[0].transforms]
     assert frames == [("odom", "base_footprint"), ("map", "odom")]
 
 
-def test_two_robots_differ_by_their_namespaces() -> None:
-    async def body(run: Run) -> None:
-        run.listen("/robot_1/odom", "nav_msgs/msg/Odometry")
-        await run.drive(2.0, 0.2, topic="/robot_1/cmd_vel")
-
-    done = in_world("two_robots", body)
-    truth = done.world.ground_truth
+@pytest.mark.world("two_robots")
+async def test_two_robots_differ_by_their_namespaces(lab: Lab) -> None:
+    heard = lab.hear("/robot_1/odom", "nav_msgs/msg/Odometry")
+    await lab.drive(2.0, 0.2, topic="/robot_1/cmd_vel")
+    truth = lab.world.ground_truth
     assert truth.pose("robot_0") == (-1, -1, 0)
     assert truth.pose("robot_1").x == pytest.approx(1 - 0.4, abs=0.04)
-    assert done.received[0].child_frame_id == "robot_1/base_footprint"
+    assert heard[0].child_frame_id == "robot_1/base_footprint"
 
 
-def test_a_cleaning_task_on_the_topic_is_recorded_with_the_true_pose() -> None:
-    async def body(run: Run) -> None:
-        await run.drive(2.0, 0.3)
-        publisher = run.backend.publisher("/cleaning/task", "std_msgs/msg/String")
-        publisher.publish(publisher.message(data="mop floor"))
-        await run.clock.sleep(0.1)
-
-    [event] = in_world("house", body).world.ground_truth.events_of("task")
+@pytest.mark.world("house")
+async def test_a_cleaning_task_on_the_topic_is_recorded_with_the_true_pose(lab: Lab) -> None:
+    await lab.drive(2.0, 0.3)
+    lab.say("/cleaning/task", "std_msgs/msg/String", data="mop floor")
+    await lab.clock.sleep(0.1)
+    [event] = lab.world.ground_truth.events_of("task")
     assert event.data == {"task": "mop floor", "room": "hallway"}
     assert event.x == pytest.approx(0.6, abs=0.1)
 
 
-def test_a_closed_node_stops_the_world() -> None:
-    async def body(run: Run) -> None:
-        await run.drive(1.0, 0.2)
-        run.node.close()
-        await run.clock.sleep(5.0)
-
-    assert in_world("empty", body).world.time == pytest.approx(1.0)
+@pytest.mark.world("empty")
+async def test_a_closed_node_stops_the_world(lab: Lab) -> None:
+    await lab.drive(1.0, 0.2)
+    lab.node.close()
+    await lab.clock.sleep(5.0)
+    assert lab.world.time == pytest.approx(1.0)
 
 
 class HeldUpClock:
@@ -277,9 +219,7 @@ def test_served_worlds_write_their_ground_truth_and_it_reads_back_the_same(tmp_p
     assert records[-1] == {"kind": "end", "time": 5.0}
 
 
-def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(
-    tmp_path: Path,
-) -> None:
+def test_the_ground_truth_is_on_disk_during_the_run_and_a_truncated_line_is_skipped(tmp_path: Path) -> None:
     path, world = tmp_path / "truth.jsonl", World.load("empty")
     with GroundTruthFile(path, world, 0.0):
         world.command("turtlebot", 0.3, 0.0)
@@ -329,11 +269,6 @@ def test_another_sensor_is_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
 
     far = sensor("/far", "sensor_msgs/msg/Range", fill, every=10, frame="far")
     monkeypatch.setattr(robot_node, "SENSORS", (far,))
-
-    async def body(run: Run) -> None:
-        run.listen("/far", "sensor_msgs/msg/Range")
-        await run.clock.sleep(1.02)
-
-    received = in_world("patrol", body).received
+    _, received = heard("/far", "sensor_msgs/msg/Range", 1.02, 0.0)
     assert [message.header.frame_id for message in received] == ["far", "far"]
     assert received[0].range >= 0.0

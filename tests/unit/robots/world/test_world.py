@@ -25,14 +25,15 @@ def drive(
         world.step()
 
 
-def stop(world: World) -> None:
-    drive(world, 1.0, 0.0)
+@pytest.fixture
+def world() -> World:
+    """The empty world."""
+    return World.load("empty")
 
 
-def test_a_robot_drives_straight_with_its_acceleration() -> None:
-    world = World.load("empty")
+def test_a_robot_drives_straight_with_its_acceleration(world: World) -> None:
     drive(world, 5.0, 0.2)
-    stop(world)
+    drive(world, 1.0, 0.0)
     robot = world.robot()
     # The ramp up loses what the ramp down adds, but for half a step each.
     assert robot.x == pytest.approx(1.0, abs=0.005)
@@ -40,8 +41,7 @@ def test_a_robot_drives_straight_with_its_acceleration() -> None:
     assert robot.odometer == pytest.approx(robot.x)
 
 
-def test_speed_and_acceleration_obey_the_limits() -> None:
-    world = World.load("empty")
+def test_speed_and_acceleration_obey_the_limits(world: World) -> None:
     drive(world, 0.5, 3.0)
     assert world.robot().speed == pytest.approx(0.4)
     drive(world, 1.5, 3.0)
@@ -50,40 +50,34 @@ def test_speed_and_acceleration_obey_the_limits() -> None:
     assert world.robot().turn_rate == PI
 
 
-def test_a_turn_on_the_spot_keeps_the_place() -> None:
-    world = World.load("empty")
-    drive(world, 1.0, 0.0, PI / 2)
-    stop(world)
-    assert (world.robot().x, world.robot().y) == (0.0, 0.0)
-    assert world.robot().yaw == pytest.approx(PI / 2, abs=0.05)
-
-
-def test_a_circle_closes() -> None:
-    world = World.load("empty")
-    world.robot().speed, world.robot().turn_rate = 0.2, 0.5
-    drive(world, 4 * PI, 0.2, 0.5)
+def test_a_turn_on_the_spot_keeps_the_place_and_a_circle_closes(world: World) -> None:
     robot = world.robot()
+    drive(world, 1.0, 0.0, PI / 2)
+    drive(world, 1.0, 0.0)
+    assert (robot.x, robot.y) == (0.0, 0.0)
+    assert robot.yaw == pytest.approx(PI / 2, abs=0.05)
+    robot.speed, robot.turn_rate = 0.2, 0.5
+    drive(world, 4 * PI, 0.2, 0.5)
     assert math.hypot(robot.x, robot.y) < 0.01
     assert robot.odometer == pytest.approx(0.2 * 4 * PI, rel=0.01)
 
 
-def test_a_robot_stops_without_a_ramp_when_commands_cease() -> None:
-    world = World.load("empty")
+def test_a_robot_stops_without_a_ramp_when_commands_cease(world: World) -> None:
+    robot = world.robot()
     world.command("turtlebot", 0.3, 0.0)
     world.run(0.5)
-    assert world.robot().speed == pytest.approx(0.3)
+    assert robot.speed == pytest.approx(0.3)
     world.step()
-    assert world.robot().speed == 0.0
+    assert robot.speed == 0.0
     [event] = world.ground_truth.events_of("command_timeout")
     assert event.time == pytest.approx(0.52)
     assert event.data["speed"] == pytest.approx(0.3)
-    where = world.robot().x
+    where = robot.x
     world.run(1.0)
-    assert world.robot().x == where
+    assert robot.x == where
 
 
-def test_an_invalid_command_stops_the_robot() -> None:
-    world = World.load("empty")
+def test_an_invalid_command_stops_the_robot(world: World) -> None:
     drive(world, 1.0, 0.3)
     world.command("turtlebot", math.nan, 0.0)
     world.run(0.5)
@@ -125,17 +119,10 @@ def test_a_robot_behind_touches_with_its_back() -> None:
 
 
 def test_two_robots_push_each_other_apart_and_both_have_an_event() -> None:
-    world = World(
-        WorldDescription(
-            robots=(
-                RobotDescription(name="a"),
-                RobotDescription(name="b", namespace="b", pose=Pose(1.0, 0.0, PI)),
-            )
-        )
-    )
+    other = RobotDescription(name="b", namespace="b", pose=Pose(1.0, 0.0, PI))
+    world = World(WorldDescription(robots=(RobotDescription(name="a"), other)))
     drive(world, 4.0, 0.3, robot="a")
-    gap = world.robot("b").x - world.robot("a").x
-    assert gap >= 0.34 - 0.01
+    assert world.robot("b").x - world.robot("a").x >= 0.34 - 0.01
     collisions = world.ground_truth.events_of("collision")
     assert [(event.robot, event.data) for event in collisions] == [
         ("a", {"with": "b", "side": "front"}),
@@ -159,47 +146,39 @@ def docking_world(x: float) -> World:
     return World(WorldDescription(docks=(Dock("home", Pose(0.0, 0.0, 0.0), 0.25),), robots=(robot,)))
 
 
-def test_a_battery_charges_in_the_dock_until_it_is_full_and_stays_full() -> None:
-    world = docking_world(0.2)
-    world.run(30.0)
-    assert world.ground_truth.battery() == 100.0
-    kinds = [event.kind for event in world.log if event.kind != "battery"]
-    assert kinds == ["docked", "charging", "charged"]
-    assert not world.robot().battery.charging
+def kinds(world: World) -> list[str]:
+    return [event.kind for event in world.log if event.kind != "battery"]
 
 
-def test_a_battery_does_not_charge_just_outside_the_dock() -> None:
-    world = docking_world(0.26)
-    world.run(10.0)
-    assert world.ground_truth.battery() == pytest.approx(40.0)
-    assert world.ground_truth.events_of("docked", "charging") == []
-
-
-def test_driving_through_a_dock_does_not_charge() -> None:
-    world = docking_world(-1.0)
-    drive(world, 10.0, 0.2)
-    assert world.robot().x > 0.9
-    assert world.ground_truth.events_of("docked", "charging") == []
-
-
-def test_charging_starts_immediately_in_the_dock() -> None:
+def test_a_battery_charges_in_the_dock_from_the_start_until_it_is_full_and_stays_full() -> None:
     """In between it reported a full battery at 20 %."""
     world = docking_world(0.2)
+    robot = world.robot()
     for _ in range(50):
         world.step()
-        robot = world.robot()
         assert robot.battery.charging == (robot.dock is not None)
+    world.run(29.0)
+    assert world.ground_truth.battery() == 100.0
+    assert kinds(world) == ["docked", "charging", "charged"]
+    assert not robot.battery.charging
+
+
+def test_a_battery_does_not_charge_just_outside_the_dock_nor_on_the_way_through_it() -> None:
+    outside = docking_world(0.26)
+    outside.run(10.0)
+    assert outside.ground_truth.battery() == pytest.approx(40.0)
+    through = docking_world(-1.0)
+    drive(through, 10.0, 0.2)
+    assert through.robot().x > 0.9
+    for world in (outside, through):
+        assert world.ground_truth.events_of("docked", "charging") == []
 
 
 def test_leaving_the_dock_ends_charging() -> None:
     world = docking_world(0.0)
     world.run(2.0)
     drive(world, 3.0, 0.2)
-    assert [event.kind for event in world.log if event.kind != "battery"] == [
-        "docked",
-        "charging",
-        "undocked",
-    ]
+    assert kinds(world) == ["docked", "charging", "undocked"]
     assert not world.robot().battery.charging
 
 
@@ -221,11 +200,10 @@ def test_odometry_without_errors_is_the_true_pose_to_the_last_bit() -> None:
 
 
 def test_odometry_may_count_from_the_start() -> None:
-    settings = OdometrySettings(from_start=True)
-    robot = RobotDescription(pose=Pose(1.0, 1.0, PI / 2), odometry=settings)
+    robot = RobotDescription(pose=Pose(1.0, 1.0, PI / 2), odometry=OdometrySettings(from_start=True))
     world = World(WorldDescription(robots=(robot,)))
     drive(world, 5.0, 0.2)
-    stop(world)
+    drive(world, 1.0, 0.0)
     odometry = world.robot().odometry
     assert odometry.x == pytest.approx(world.robot().y - 1.0)
     assert (odometry.y, odometry.yaw) == (0.0, 0.0)
@@ -256,23 +234,22 @@ def test_a_cleaning_task_is_logged_with_the_true_pose_and_room() -> None:
     assert event.data == {"task": "mop floor", "room": "hallway"}
 
 
+NOISY = """
+name: noisy
+bounds: {from: [-2, -2], to: [2, 2]}
+border: walls
+walls: [{box: {from: [0.5, 0.5], to: [1, 1]}}]
+robots:
+  - name: a
+    odometry: {noise_per_metre: 0.05, noise_degrees_per_turn: 3}
+    laser: {noise: 0.01}
+  - {name: b, namespace: b, pose: {x: -1, y: 1, yaw_degrees: 45}}
+"""
+
+
 def wander(seed: int) -> World:
-    """A seeded drive through the house with noise everywhere."""
-    text = "\n".join(
-        [
-            "name: noisy",
-            "bounds: {from: [-2, -2], to: [2, 2]}",
-            "border: walls",
-            "walls: [{box: {from: [0.5, 0.5], to: [1, 1]}}]",
-            "robots:",
-            "  - name: a",
-            "    odometry: {noise_per_metre: 0.05, noise_degrees_per_turn: 3}",
-            "    laser: {noise: 0.01}",
-            "  - {name: b, namespace: b, pose: {x: -1, y: 1, yaw_degrees: 45}}",
-        ]
-    )
-    world = World.load(text, seed)
-    draw = random.Random("driver")
+    """A seeded drive with noise everywhere."""
+    world, draw = World.load(NOISY, seed), random.Random("driver")
     for _ in range(150):
         for name in world.robots:
             world.command(name, draw.uniform(-0.2, 0.6), draw.uniform(-2.0, 2.0))
@@ -281,21 +258,16 @@ def wander(seed: int) -> World:
     return world
 
 
-def test_the_same_seed_gives_the_same_run_twice() -> None:
+def test_the_same_seed_gives_the_same_run_twice_and_on_every_machine() -> None:
     one, two = wander(1), wander(1)
-    assert one.ground_truth.digest() == two.ground_truth.digest()
+    digest = "d4309c6bf0ef8bf4b343849d4225f4ba8cd78d21027acf1a3c1b8e7cf867e092"
+    assert one.ground_truth.digest() == two.ground_truth.digest() == digest
     assert one.scan("a") == two.scan("a")
     assert one.robot("a").odometry.x == two.robot("a").odometry.x
     assert wander(2).robot("a").odometry.x != one.robot("a").odometry.x
 
 
-def test_a_run_has_the_same_digest_on_every_machine() -> None:
-    digest = wander(1).ground_truth.digest()
-    assert digest == "d4309c6bf0ef8bf4b343849d4225f4ba8cd78d21027acf1a3c1b8e7cf867e092"
-
-
-def test_the_path_is_sampled_ten_times_a_second_in_motion_and_seldom_at_rest() -> None:
-    world = World.load("empty")
+def test_the_path_is_sampled_ten_times_a_second_in_motion_and_seldom_at_rest(world: World) -> None:
     drive(world, 2.0, 0.2)
     moving = len(world.ground_truth.path())
     assert 19 <= moving <= 22

@@ -1,21 +1,18 @@
 """What a robot of the world does at the edges: walls, docks, doors, gaps, and other robots beside it."""
 
 import math
-from typing import Any
 
 import pytest
-from navigation_lab import Lab, in_world
+from navigation_lab import Lab
 
 from jacaros.robots.plane.pose import Placement
 from jacaros.robots.plane.shapes import Rectangle, Segment
 from jacaros.robots.ros.action import GoalStatus
-from jacaros.robots.ros.open import open_backend
-from jacaros.robots.world import SimNode, World
+from jacaros.robots.world import World
 from jacaros.robots.world.data.grid import Grid
 from jacaros.robots.world.data.world import WorldDescription
 from jacaros.robots.world.navigation.driver import Driver, Pace, Route
 from jacaros.robots.world.navigation.planner import GOAL_OCCUPIED, NavigationFailure, Planner
-from jacaros.runtime.clock import VirtualClock, run
 
 RADIUS = 0.17
 
@@ -66,36 +63,17 @@ def test_a_door_does_not_close_on_a_person() -> None:
     assert world.move_door("gate", False) is None
 
 
-def test_an_acceleration_is_not_computed_over_a_gap_of_messages() -> None:
-    clock, world = VirtualClock(), World.load("empty", noise=0.0)
-    messages: list[Any] = []
-
-    async def main() -> None:
-        backend = open_backend("memory", clock, "test")
-        await backend.start()
-        node = SimNode(world, backend, clock)
-        node.start()
-        wheels = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
-
-        async def roll(seconds: float, speed: float) -> None:
-            for _ in range(round(10 * seconds)):
-                wheels.publish({"linear": {"x": speed}})
-                await clock.sleep(0.1)
-
-        first = backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: None)
-        await roll(0.5, 0.0)
-        first.close()
-        await roll(3.0, 0.4)
-        backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: messages.append(sample.message))
-        await roll(0.5, 0.4)
-        node.close()
-        await backend.close()
-
-    run(main, clock)
+@pytest.mark.world("robots: [{name: turtlebot}]\n")
+async def test_an_acceleration_is_not_computed_over_a_gap_of_messages(lab: Lab) -> None:
+    first = lab.backend.subscription("/imu", "sensor_msgs/msg/Imu", lambda sample: None)
+    await lab.drive(0.5, 0.0)
+    first.close()
+    await lab.drive(3.0, 0.4)
+    messages = lab.hear("/imu", "sensor_msgs/msg/Imu")
+    await lab.drive(0.5, 0.4)
     assert messages
-    assert [message.linear_acceleration.x for message in messages] == pytest.approx(
-        [0.0] * len(messages), abs=1e-9
-    )
+    ahead = [message.linear_acceleration.x for message in messages]
+    assert ahead == pytest.approx([0.0] * len(messages), abs=1e-9)
 
 
 def planner(*walls: Segment) -> Planner:
@@ -121,22 +99,21 @@ def test_a_robot_passes_another_slowly_unless_it_is_far(beside: float, speed: fl
     assert command.speed == pytest.approx(speed)
 
 
-def test_a_robot_with_a_wall_behind_it_leaves_its_dock_forwards() -> None:
-    text = (
-        "size: [6, 6]\n"
-        "walls: [{segment: [[-0.2, -1], [-0.2, 1]]}]\n"
-        "docks: [{name: dock, x: 0, y: 0}]\n"
-        "robots: [{pose: {x: 0, y: 0}}]\n"
-    )
+DOCK_AT_WALL = """
+size: [6, 6]
+walls: [{segment: [[-0.2, -1], [-0.2, 1]]}]
+docks: [{name: dock, x: 0, y: 0}]
+robots: [{pose: {x: 0, y: 0}}]
+"""
 
-    async def body(lab: Lab) -> None:
-        await lab.clock.sleep(1.0)
-        assert lab.world.robot().dock is not None
-        outcome = await lab.do("/undock_robot", "nav2_msgs/action/UndockRobot")
-        assert outcome.status is GoalStatus.SUCCEEDED
-        assert lab.world.robot().x > 0.3
 
-    in_world(text, body)
+@pytest.mark.world(DOCK_AT_WALL)
+async def test_a_robot_with_a_wall_behind_it_leaves_its_dock_forwards(lab: Lab) -> None:
+    await lab.clock.sleep(1.0)
+    assert lab.world.robot().dock is not None
+    outcome = await lab.do("/undock_robot", "nav2_msgs/action/UndockRobot")
+    assert outcome.status is GoalStatus.SUCCEEDED
+    assert lab.world.robot().x > 0.3
 
 
 def test_a_fault_that_is_begun_on_request_ends_after_its_time() -> None:

@@ -3,17 +3,14 @@
 import hashlib
 import json
 import math
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from navigation_lab import Lab, in_world, pose
 
-from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.open import open_backend
-from jacaros.robots.world import GroundTruth, SimNode, World
+from jacaros.robots.world import GroundTruth, World
 from jacaros.robots.world.process import GroundTruthFile
-from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.errors import UsageError
 
 WORLD = """
@@ -87,13 +84,8 @@ def test_a_kidnapped_robot_does_not_notice() -> None:
 
 
 def test_a_battery_drops_and_a_dead_dock_does_not_charge() -> None:
-    world = World.load(
-        WORLD,
-        faults="""
-faults:
-  tired: {kind: battery_drop, to: 15, at: 1}
-  cold: {kind: dead_dock, dock: dock, at: 1, for: 5}
-""",
+    world = world_with(
+        "{kind: battery_drop, to: 15, at: 1}\n  cold: {kind: dead_dock, dock: dock, at: 1, for: 5}"
     )
     world.run(0.5)
     assert world.robot().battery.charging
@@ -142,8 +134,7 @@ def test_faults_can_be_started_and_ended() -> None:
 
 def test_the_same_seed_gives_the_same_faults() -> None:
     def digest(seed: int) -> str:
-        text = "faults:\n  f: {kind: wheel_slip, share: 0.5, at: 0.5}\n"
-        world = World.load(WORLD, seed, text)
+        world = World.load(WORLD, seed, "faults:\n  f: {kind: wheel_slip, share: 0.5, at: 0.5}\n")
         drive(world, 5.0, 0.3, 0.2)
         return hashlib.sha256(json.dumps(world.robot().pose).encode()).hexdigest()
 
@@ -154,34 +145,23 @@ def test_the_same_seed_gives_the_same_faults() -> None:
 # Messages.
 
 
-def heard(faults: str, topic: str, type_name: str, seconds: float = 3.0) -> list[tuple[float, Any]]:
+def heard(fault: str, topic: str, type_name: str, seconds: float = 3.0) -> list[tuple[float, Any]]:
     """Return the messages of a topic, with their times."""
     found: list[tuple[float, Any]] = []
 
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        backend.subscription(
-            topic, type_name, lambda sample: found.append((round(clock.elapsed, 3), sample.message))
+    async def body(lab: Lab) -> None:
+        lab.backend.subscription(
+            topic, type_name, lambda sample: found.append((round(lab.clock.elapsed, 3), sample.message))
         )
-        await clock.sleep(seconds)
+        await lab.clock.sleep(seconds)
 
-    in_graph(faults, body)
+    in_world(body, world_with(fault))
     return found
 
 
-def in_graph(faults: str, body: Callable[[Backend, VirtualClock], Awaitable[None]]) -> World:
-    world, clock = world_with(faults), VirtualClock()
-
-    async def main() -> None:
-        backend = open_backend("memory", clock, "test", log=lambda text: None)
-        await backend.start()
-        node = SimNode(world, backend, clock)
-        node.start()
-        await body(backend, clock)
-        node.close()
-        await backend.close()
-
-    run(main, clock)
-    return world
+def faulty(fault: str) -> pytest.MarkDecorator:
+    """The mark of a scene in the world with a fault."""
+    return pytest.mark.world(WORLD, None, f"faults:\n  f: {fault}\n")
 
 
 SCAN = ("/scan", "sensor_msgs/msg/LaserScan")
@@ -195,18 +175,12 @@ def test_a_dead_sensor_is_silent() -> None:
     assert len([time for time in times if time > 2.0]) >= 4
 
 
-def test_a_frozen_sensor_repeats_itself_with_new_stamps() -> None:
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        backend.subscription(*ODOMETRY, lambda sample: found.append(sample.message))
-        wheels = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
-        for _ in range(20):
-            wheels.publish(wheels.message(linear={"x": 0.3}))
-            await clock.sleep(0.1)
-
-    found: list[Any] = []
-    world = in_graph("{kind: frozen, topic: odom, at: 1}", body)
+@faulty("{kind: frozen, topic: odom, at: 1}")
+async def test_a_frozen_sensor_repeats_itself_with_new_stamps(lab: Lab) -> None:
+    found = lab.hear(*ODOMETRY)
+    await lab.drive(2.0, 0.3)
     places = [message.pose.pose.position.x for message in found]
-    assert places[-1] == places[-15] < world.robot().x - 0.1
+    assert places[-1] == places[-15] < lab.world.robot().x - 0.1
     stamps = [str(message.header.stamp) for message in found]
     assert len(set(stamps)) == len(stamps)
 
@@ -227,25 +201,18 @@ def test_messages_are_lost_repeated_and_late() -> None:
     assert (whole[0][0], late[0][0]) == (0.05, 0.55)
 
 
-def test_commands_are_lost_too() -> None:
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        wheels = backend.publisher("/cmd_vel", "geometry_msgs/msg/Twist")
-        for _ in range(20):
-            wheels.publish(wheels.message(linear={"x": 0.3}))
-            await clock.sleep(0.1)
-
-    assert in_graph("{kind: dead, topic: /cmd_vel, at: 0}", body).robot().x == 0.0
+@faulty("{kind: dead, topic: /cmd_vel, at: 0}")
+async def test_commands_are_lost_too(lab: Lab) -> None:
+    await lab.drive(2.0, 0.3)
+    assert lab.world.robot().x == 0.0
 
 
-def test_every_fault_has_a_service() -> None:
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        client = backend.client("/faults/f", "std_srvs/srv/SetBool")
-        await clock.sleep(1.0)
-        assert (await client.call({"data": True}, 1.0)).success
-        await clock.sleep(1.0)
-        assert (await client.call({"data": False}, 1.0)).success
-
-    assert [state for _, state in states(in_graph("{kind: blocked_wheel}", body))] == ["begins", "ends"]
+@faulty("{kind: blocked_wheel}")
+async def test_every_fault_has_a_service(lab: Lab) -> None:
+    for on in (True, False):
+        await lab.clock.sleep(1.0)
+        assert (await lab.call("/faults/f", "std_srvs/srv/SetBool", data=on)).success
+    assert [state for _, state in states(lab.world)] == ["begins", "ends"]
 
 
 def test_a_fault_of_an_unknown_topic_is_reported() -> None:
@@ -253,53 +220,43 @@ def test_a_fault_of_an_unknown_topic_is_reported() -> None:
         heard("{kind: dead, topic: /skan}", *SCAN)
 
 
-def outcomes(fault: str, begins: list[float]) -> list[tuple[float, str, str]]:
+async def outcomes(lab: Lab, begins: list[float]) -> list[tuple[float, str, str]]:
     """Return when goals started at given times end, how, and why."""
-    ended: list[tuple[float, str, str]] = []
-
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        client = backend.action_client("/navigate_to_pose", "nav2_msgs/action/NavigateToPose")
-        for begin in begins:
-            await clock.sleep(begin - clock.elapsed)
-            pose = {
-                "header": {"frame_id": "map"},
-                "pose": {"position": {"x": 1.0}, "orientation": {"w": 1.0}},
-            }
-            goal = await client.send({"pose": pose})
-            result = await goal.outcome()
-            ended.append((round(clock.elapsed, 1), result.status.name, result.result.error_msg))
-
-    in_graph(fault, body)
+    ended = []
+    for begin in begins:
+        await lab.clock.sleep(begin - lab.clock.elapsed)
+        result = await lab.go(1, 0)
+        ended.append((round(lab.clock.elapsed, 1), result.status.name, result.result.error_msg))
     return ended
 
 
-def test_goals_of_an_action_are_aborted_while_the_fault_lasts() -> None:
-    ended = outcomes("{kind: aborted_action, action: navigate_to_pose, at: 1, for: 2}", [0.1, 2.0, 3.5])
+@faulty("{kind: aborted_action, action: navigate_to_pose, at: 1, for: 2}")
+async def test_goals_of_an_action_are_aborted_while_the_fault_lasts(lab: Lab) -> None:
+    ended = await outcomes(lab, [0.1, 2.0, 3.5])
     assert ended[0] == (1.0, "ABORTED", "aborted by the fault f")
     assert ended[1] == (2.0, "ABORTED", "aborted by the fault f")
     assert ended[2][1] == "SUCCEEDED"
 
 
-def test_a_share_of_the_goals_is_aborted() -> None:
-    begins = [5.0 * n for n in range(1, 41)]
-    ended = outcomes("{kind: aborted_action, action: /navigate_to_pose, share: 0.25, at: 0}", begins)
-    aborted = [status for _, status, _ in ended].count("ABORTED")
+@faulty("{kind: aborted_action, action: /navigate_to_pose, share: 0.25, at: 0}")
+async def test_a_share_of_the_goals_is_aborted(lab: Lab) -> None:
+    statuses = [status for _, status, _ in await outcomes(lab, [5.0 * n for n in range(1, 41)])]
+    aborted = statuses.count("ABORTED")
     assert 4 <= aborted <= 16
-    assert [status for _, status, _ in ended].count("SUCCEEDED") == 40 - aborted
+    assert statuses.count("SUCCEEDED") == 40 - aborted
 
 
 def door_replies(fault: str, requests: list[bool]) -> list[tuple[bool, str]]:
     """Return the replies of the service of an open door to requests to open (True) or close it."""
     replies: list[tuple[bool, str]] = []
 
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        await clock.sleep(1.0)
-        client = backend.client("/doors/kitchen/open", "std_srvs/srv/SetBool")
+    async def body(lab: Lab) -> None:
+        await lab.clock.sleep(1.0)
         for opened in requests:
-            reply = await client.call({"data": opened}, 5.0)
+            reply = await lab.call("/doors/kitchen/open", "std_srvs/srv/SetBool", data=opened)
             replies.append((reply.success, reply.message))
 
-    in_graph(fault, body)
+    in_world(body, world_with(fault))
     return replies
 
 
@@ -328,21 +285,16 @@ def test_a_fault_of_an_unknown_action_is_reported() -> None:
         heard("{kind: aborted_action, action: /navigate_to}", *SCAN)
 
 
-def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose() -> None:
-    async def body(backend: Backend, clock: VirtualClock) -> None:
-        backend.tf_listen()
-        await clock.sleep(2.0)
-        lost = backend.tf_lookup("map", "base_link").translation
-        assert lost[:2] == pytest.approx((0, 0), abs=0.01)
-        told = backend.publisher("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped")
-        place = {"position": {"x": 1.0, "y": -2.0}, "orientation": {"w": 1.0}}
-        told.publish(
-            told.message(header={"frame_id": "map"}, pose={"pose": place, "covariance": [0.25] * 36})
-        )
-        await clock.sleep(2.0)
-        assert backend.tf_lookup("map", "base_link").translation[:2] == pytest.approx((1, -2), abs=0.01)
-
-    in_graph("{kind: kidnapped_robot, to: {x: 1, y: -2}, at: 1}", body)
+@faulty("{kind: kidnapped_robot, to: {x: 1, y: -2}, at: 1}")
+async def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose(lab: Lab) -> None:
+    lab.backend.tf_listen()
+    await lab.clock.sleep(2.0)
+    lost = lab.backend.tf_lookup("map", "base_link").translation
+    assert lost[:2] == pytest.approx((0, 0), abs=0.01)
+    told = {**pose(1, -2), "pose": {"pose": pose(1, -2)["pose"], "covariance": [0.25] * 36}}
+    lab.say("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", **told)
+    await lab.clock.sleep(2.0)
+    assert lab.backend.tf_lookup("map", "base_link").translation[:2] == pytest.approx((1, -2), abs=0.01)
 
 
 def test_a_fault_that_starts_with_the_world_is_in_the_file(tmp_path: Path) -> None:
