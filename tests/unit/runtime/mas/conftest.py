@@ -5,10 +5,13 @@ What ``play`` makes replaces the fixtures of the same names, such as the running
 
 import inspect
 from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 import jacaros
+from jacaros.testing import RunResult, run_project
 
 Play = Callable[[Callable[..., Awaitable[None]]], object]
 
@@ -47,3 +50,32 @@ def lines() -> list[str]:
 def logs() -> list[str]:
     """What a scene has logged."""
     return []
+
+
+SUFFIXES = ("asl", "jcm", "mas2j", "py")
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[..., Path]:
+    """Writes files (``a_asl`` is a.asl). Returns the path of the first."""
+
+    def write(**files: str) -> Path:
+        paths = [tmp_path / ".".join(name.rsplit("_", 1)) for name in files]
+        for path, text in zip(paths, files.values(), strict=True):
+            path.write_text(text, encoding="utf-8")
+        return paths[0]
+
+    return write
+
+
+@pytest.fixture
+def ran(write: Callable[..., Path]) -> Callable[..., RunResult]:
+    """Writes a program a.asl, or files, and runs the first until nothing is left to do, if no option says otherwise."""
+
+    def run(program: str = "", **given: Any) -> RunResult:
+        files = {name: given.pop(name) for name in tuple(given) if name.rpartition("_")[2] in SUFFIXES}
+        if program:
+            files = {"a_asl": program, **files}
+        return run_project(write(**files), **{"until_idle": True, **given})
+
+    return run
