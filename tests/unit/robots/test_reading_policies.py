@@ -6,11 +6,10 @@ from functools import partial
 from typing import Any, ClassVar
 
 import pytest
+from jacaros.artifacts.streams import ReadingPolicy
 from robot_lab import Lab, Watcher, made
 
-from jacaros.artifacts import Structure, operation
 from jacaros.artifacts import ArtifactId, Structure, operation
-from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
@@ -18,7 +17,6 @@ from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.mapping.decoding import Values
 from jacaros.robots.streams import ReadingPolicy
-from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.trace import Cause
 

@@ -1,7 +1,7 @@
 """Calls of commands."""
 
 import pytest
-from command_lab import Outcome
+from command_lab import Outcome, Told
 
 from jacaros.runtime.cli.main import call
 
@@ -15,5 +15,15 @@ def outcome(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str]) 
         code = call([*command, *arguments])
         captured = capsys.readouterr()
         return code, captured.out, captured.err
+
+    return run
+
+
+@pytest.fixture
+def told(outcome: Outcome) -> Told:
+    def run(*arguments: str) -> str:
+        code, output, errors = outcome(*arguments)
+        assert (code, errors) == (0, ""), errors
+        return output
 
     return run

@@ -4,8 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome, Told
 
-from jacaros.runtime.cli.main import call
+COMMAND = ("describe",)
+
 
 ARTIFACTS = '''
 """Artifacts of a test."""
@@ -78,45 +80,36 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def described(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    assert call(["describe", *arguments]) == 0
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    return captured.out
+def test_a_type_of_the_project_is_described(folder: Path, told: Told) -> None:
+    assert told("Lamp") == LAMP
+    assert told("Lamp", "--project", str(folder)) == LAMP
 
 
-def test_a_type_of_the_project_is_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert described(capsys, "Lamp") == LAMP
-    assert described(capsys, "Lamp", "--project", str(folder)) == LAMP
-
-
-def test_descriptions_have_no_backquotes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    said = described(capsys, "nav2.yaml")
+def test_descriptions_have_no_backquotes(folder: Path, told: Told) -> None:
+    said = told("nav2.yaml")
     assert 'such as "robot_1", rate(5)' in said
     assert "`" not in said
 
 
-def test_all_types_of_a_file_are_described(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert described(capsys, "artifacts.py") == f"{LAMP}\n{BARE}"
+def test_all_types_of_a_file_are_described(folder: Path, told: Told) -> None:
+    assert told("artifacts.py") == f"{LAMP}\n{BARE}"
 
 
-def test_a_project_is_described_with_its_types(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    output = described(capsys, "house.jcm")
+def test_a_project_is_described_with_its_types(folder: Path, told: Told) -> None:
+    output = told("house.jcm")
     assert "  workspace w\n    artifact lamp: Lamp\n" in output
     assert "    artifact odd: Lump (unknown artifact type `Lump`; did you mean `Lamp`?)\n" in output
     assert f"\n\n{LAMP}\nBlackboard\n  A tuple space" in output
     assert output.endswith(f"\n{BARE}")
 
 
-def test_a_program_without_a_project_is_described_with_neighbouring_types(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    output = described(capsys, "bob.asl")
+def test_a_program_without_a_project_is_described_with_neighbouring_types(folder: Path, told: Told) -> None:
+    output = told("bob.asl")
     assert "  agent bob: bob.asl\n" in output
     assert LAMP in output
 
 
-def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_folders_of_a_project_are_searched(folder: Path, told: Told) -> None:
     tools = folder / "src" / "env" / "tools"
     tools.mkdir(parents=True)
     (tools / "lights.py").write_text(ARTIFACTS, encoding="utf-8")
@@ -125,22 +118,20 @@ def test_the_folders_of_a_project_are_searched(folder: Path, capsys: pytest.Capt
         "  }\n}\n",
         encoding="utf-8",
     )
-    output = described(capsys, "hall.jcm")
+    output = told("hall.jcm")
     assert "    artifact lamp: tools.Lamp\n" in output
     assert "`tools.Lomp`; did you mean `tools.Lamp`" in output
     assert LAMP in output
 
 
-def test_json_output_is_complete(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    lamp = json.loads(described(capsys, "Lamp", "--json"))
+def test_json_output_is_complete(folder: Path, told: Told) -> None:
+    lamp = json.loads(told("Lamp", "--json"))
     assert lamp["type_name"] == "Lamp"
     assert "on: true or false" in lamp["operations"][0]["usage"]
     assert [each["name"] for each in lamp["properties"]] == ["power", "lit"]
-    assert [each["type_name"] for each in json.loads(described(capsys, "artifacts.py", "--json"))] == [
-        "Lamp",
-        "Bare",
-    ]
-    house = json.loads(described(capsys, "house.jcm", "--json"))
+    types = [each["type_name"] for each in json.loads(told("artifacts.py", "--json"))]
+    assert types == ["Lamp", "Bare"]
+    house = json.loads(told("house.jcm", "--json"))
     assert house["agents"][0]["name"] == "bob"
     assert house["workspaces"][0]["artifacts"][0] == {"name": "lamp", "type": "Lamp"}
     assert {each["type_name"] for each in house["types"]} == {"Lamp", "Blackboard", "Bare"}
@@ -154,8 +145,7 @@ def test_json_output_is_complete(folder: Path, capsys: pytest.CaptureFixture[str
         ("empty.py", "no artifact type in `empty.py`"),
     ],
 )
-def test_unknown_types_and_files_are_reported(
-    folder: Path, capsys: pytest.CaptureFixture[str], what: str, told: str
-) -> None:
-    assert call(["describe", what]) == 2
-    assert told in capsys.readouterr().err
+def test_unknown_types_and_files_are_reported(folder: Path, outcome: Outcome, what: str, told: str) -> None:
+    code, _, errors = outcome(what)
+    assert code == 2
+    assert told in errors

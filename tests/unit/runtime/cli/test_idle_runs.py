@@ -38,19 +38,12 @@ def notes(folder: Path, program: str, name: str = "robot.asl", seconds: float = 
 HOW_TO_END = "press Ctrl+C to end the run, or start it with --until-idle"
 
 
-def test_a_run_without_goals_and_events_logs_a_note(tmp_path: Path) -> None:
+def test_a_run_with_nothing_left_to_do_logs_a_note(tmp_path: Path) -> None:
     (note,) = notes(tmp_path, "!go.\n+!go <- .wait(1000).")
     assert note == f"note: nothing left to do: no agent has a goal or an event; {HOW_TO_END}"
-
-
-def test_agents_that_wait_forever_are_named(tmp_path: Path) -> None:
     (note,) = notes(tmp_path, "!go.\n+!go <- .wait({+never}).")
-    assert (
-        note == f"note: nothing left to do: the goals of robot wait, and no agent can wake them; {HOW_TO_END}"
-    )
-
-
-def test_a_goal_that_failed_before_creating_an_artifact_leaves_an_idle_run(tmp_path: Path) -> None:
+    waits = "the goals of robot wait, and no agent can wake them"
+    assert note == f"note: nothing left to do: {waits}; {HOW_TO_END}"
     program = '!go.\n+!go <- makeArtifact("w", "NoSuchType", [], Id).'
     assert len(notes(tmp_path, program)) == 1
 
@@ -79,12 +72,9 @@ def code(folder: Path, program: str, fail: bool = True) -> tuple[int, list[str]]
     return result.exit_code, [line for line in result.errors if line.startswith("error:")]
 
 
-def test_a_lost_goal_fails_the_run_if_asked_for(tmp_path: Path) -> None:
+def test_lost_goals_fail_the_run_if_asked_for(tmp_path: Path) -> None:
     assert code(tmp_path, "!go.\n+!go <- .fail.") == (1, ["error: 1 goal was lost (--fail-on-lost-goal)"])
     assert code(tmp_path, "!go.\n+!go <- .fail.", fail=False) == (0, [])
-
-
-def test_all_lost_goals_are_counted(tmp_path: Path) -> None:
     program = "!a. !b. !c.\n+!b <- .fail.\n-!b : never.\n+!c <- .wait(100); .kill_agent(robot)."
     assert code(tmp_path, program) == (1, ["error: 2 goals were lost (--fail-on-lost-goal)"])
 

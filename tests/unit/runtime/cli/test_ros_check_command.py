@@ -1,31 +1,33 @@
 """`jacaros ros check`: mapping files compared with the graph of the embedded world; and what `ros map` writes is run."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome
 
 from jacaros.runtime.cli.main import call
 
-
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Exit code, standard output and standard error output of a command."""
-    code = call(list(arguments))
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
+Checked = Callable[..., str]
 
 
-def checked(capsys: pytest.CaptureFixture[str], folder: Path, text: str, *options: str) -> str:
+@pytest.fixture
+def checked(outcome: Outcome, tmp_path: Path) -> Checked:
     """Return the report about a mapping that does not match."""
-    file = folder / "robot.yaml"
-    file.write_text(text, encoding="utf-8")
-    code, output, errors = outcome(capsys, "ros", "check", str(file), "--world", "house", *options)
-    assert code == 1
-    assert "Traceback" not in errors
-    return output.replace(f"{folder}/", "")
+
+    def check(text: str, *options: str) -> str:
+        file = tmp_path / "robot.yaml"
+        file.write_text(text, encoding="utf-8")
+        code, output, errors = outcome("ros", "check", str(file), "--world", "house", *options)
+        assert code == 1
+        assert "Traceback" not in errors
+        return output.replace(f"{tmp_path}/", "")
+
+    return check
 
 
-def test_an_unknown_type_is_reported_once(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    told = checked(capsys, tmp_path, "properties:\n  a: {topic: odom, type: nav_msgs/msg/Odometri}\n")
+def test_an_unknown_type_is_reported_once(tmp_path: Path, checked: Checked) -> None:
+    told = checked("properties:\n  a: {topic: odom, type: nav_msgs/msg/Odometri}\n")
     assert "expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Odometri`" in told
     assert "is not known here" not in told
 
@@ -111,34 +113,32 @@ def test_an_unknown_type_is_reported_once(capsys: pytest.CaptureFixture[str], tm
     ],
 )
 def test_each_problem_has_a_location_and_a_suggested_fix(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, text: str, problem: str, help: str
+    tmp_path: Path, text: str, problem: str, help: str, checked: Checked
 ) -> None:
-    told = checked(capsys, tmp_path, text)
+    told = checked(text)
     assert problem in told
     assert help in told
 
 
-def test_names_without_namespace_are_suggested(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    told = checked(capsys, tmp_path, "namespace: r1\nproperties:\n  pose: {topic: odom}\n")
+def test_names_without_namespace_are_suggested(tmp_path: Path, checked: Checked) -> None:
+    told = checked("namespace: r1\nproperties:\n  pose: {topic: odom}\n")
     assert "no node publishes `/r1/odom`" in told
     assert "did you mean `/odom`?" in told
 
 
-def test_all_problems_are_reported_in_line_order(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    told = checked(capsys, tmp_path, "properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
+def test_all_problems_are_reported_in_line_order(tmp_path: Path, checked: Checked) -> None:
+    told = checked("properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
     assert told.index("robot.yaml:2:") < told.index("robot.yaml:3:")
     assert "robot.yaml:4:" not in told
 
 
-def test_mistakes_in_the_mapping_file_itself_are_reported(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_mistakes_in_the_mapping_file_itself_are_reported(tmp_path: Path, outcome: Outcome) -> None:
     file = tmp_path / "wrong.yaml"
     file.write_text("propertys: {}\n", encoding="utf-8")
-    code, _, errors = outcome(capsys, "ros", "check", str(file))
+    code, _, errors = outcome("ros", "check", str(file))
     assert code == 1
     assert "did you mean `properties`?" in errors
-    code, _, errors = outcome(capsys, "ros", "check", str(tmp_path / "absent.yaml"))
+    code, _, errors = outcome("ros", "check", str(tmp_path / "absent.yaml"))
     assert code == 1
     assert "mapping file not found" in errors
 
@@ -158,47 +158,43 @@ PROGRAM = """
 """
 
 
-def test_a_generated_mapping_is_valid_matches_the_graph_and_runs(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_a_generated_mapping_is_valid_matches_the_graph_and_runs(tmp_path: Path, outcome: Outcome) -> None:
     file, program = str(tmp_path / "robot.yaml"), tmp_path / "go.asl"
     program.write_text(PROGRAM, encoding="utf-8")
-    assert outcome(capsys, "ros", "map", "--world", "house", "-o", file)[0] == 0
-    assert outcome(capsys, "check", file, "--strict")[0] == 0
-    assert outcome(capsys, "ros", "check", file, "--world", "house") == (
+    assert outcome("ros", "map", "--world", "house", "-o", file)[0] == 0
+    assert outcome("check", file, "--strict")[0] == 0
+    assert outcome("ros", "check", file, "--world", "house") == (
         0,
         f"{file} matches this graph\n",
         "",
     )
     run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
-    code, output, errors = outcome(capsys, *run)
+    code, output, errors = outcome(*run)
     assert (code, output) == (0, "[go] 1 0.5 discharging\n"), errors
 
 
 @pytest.mark.parametrize("world", ["house", "two_robots"])
-def test_everything_of_a_graph_can_be_mapped(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, world: str
-) -> None:
-    code, listed, _ = outcome(capsys, "ros", "list", "--world", world)
+def test_everything_of_a_graph_can_be_mapped(tmp_path: Path, world: str, outcome: Outcome) -> None:
+    code, listed, _ = outcome("ros", "list", "--world", world)
     names = [line.split()[1] for line in listed.splitlines() if not line.startswith("node")]
     assert len(names) > 20
     file = str(tmp_path / "all.yaml")
-    assert outcome(capsys, "ros", "map", *names, "--world", world, "-o", file)[0] == 0
-    code, _, errors = outcome(capsys, "check", file, "--strict")
+    assert outcome("ros", "map", *names, "--world", world, "-o", file)[0] == 0
+    code, _, errors = outcome("check", file, "--strict")
     assert code == 0, errors
-    code, output, _ = outcome(capsys, "ros", "check", file, "--world", world)
+    code, output, _ = outcome("ros", "check", file, "--world", world)
     assert code == 0, output
 
 
-def test_lists_of_poses_are_filled(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_lists_of_poses_are_filled(tmp_path: Path, outcome: Outcome) -> None:
     file, program = str(tmp_path / "ways.yaml"), tmp_path / "go.asl"
     program.write_text(
         "!go. +!go <- follow_waypoints([place(0.4, 0, 0), place(0.4, 0.4, 90)]); .print(there); .stopMAS.",
         encoding="utf-8",
     )
-    assert outcome(capsys, "ros", "map", "/follow_waypoints", "--world", "house", "-o", file)[0] == 0
+    assert outcome("ros", "map", "/follow_waypoints", "--world", "house", "-o", file)[0] == 0
     run = ("run", str(program), "--mapping", file, "--world", "house", "--clock", "fast", "--for", "300")
-    code, output, errors = outcome(capsys, *run)
+    code, output, errors = outcome(*run)
     assert (code, output) == (0, "[go] there\n"), errors
 
 

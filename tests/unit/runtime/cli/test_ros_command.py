@@ -4,40 +4,29 @@ import json
 from pathlib import Path
 
 import pytest
+from command_lab import Outcome, Told
 
 from jacaros.runtime.cli.main import call
 
-
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    """Exit code, standard output and standard error output of a command."""
-    code = call(["ros", *arguments])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
-def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """The output of a command that must succeed."""
-    code, output, errors = outcome(capsys, *arguments)
-    assert (code, errors) == (0, ""), errors
-    return output
+COMMAND = ("ros",)
 
 
 def test_types_are_defined_in_folders_that_the_command_names(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Told
 ) -> None:
     monkeypatch.chdir(tmp_path)
     definition = tmp_path / "types" / "arm_msgs" / "msg" / "Thing.msg"
     definition.parent.mkdir(parents=True)
     definition.write_text("float64 weight\n")
-    told(capsys, "show", "arm_msgs/msg/Thing", "--world", "house", "--interfaces", "types")
+    told("show", "arm_msgs/msg/Thing", "--world", "house", "--interfaces", "types")
     (tmp_path / "maps").mkdir()
-    told(capsys, "map", "odom", "--world", "house", "--interfaces", "types", "-o", "maps/robot.yaml")
+    told("map", "odom", "--world", "house", "--interfaces", "types", "-o", "maps/robot.yaml")
     assert '\ninterfaces: ["../types"]\n' in (tmp_path / "maps" / "robot.yaml").read_text()
-    told(capsys, "check", "maps/robot.yaml", "--world", "house")
+    told("check", "maps/robot.yaml", "--world", "house")
 
 
-def test_each_entry_is_listed_on_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    lines = told(capsys, "list", "--world", "house").splitlines()
+def test_each_entry_is_listed_on_one_line(told: Told) -> None:
+    lines = told("list", "--world", "house").splitlines()
     assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0" in lines
     assert "topic /cmd_vel geometry_msgs/msg/Twist publishers=0 subscriptions=1" in lines
     assert "action /navigate_to_pose nav2_msgs/action/NavigateToPose" in lines
@@ -46,39 +35,32 @@ def test_each_entry_is_listed_on_one_line(capsys: pytest.CaptureFixture[str]) ->
 
 
 def test_environment_variables_select_the_graph(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch, outcome: Outcome, told: Told
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "two_robots")
-    assert "action /robot_1/dock irobot_create_msgs/action/Dock" in told(capsys, "list").splitlines()
+    assert "action /robot_1/dock irobot_create_msgs/action/Dock" in told("list").splitlines()
     monkeypatch.setenv("JACAROS_ROS", "ros3")
-    code, _, errors = outcome(capsys, "list")
+    code, _, errors = outcome("list")
     assert code == 2
     assert "'ros3' is not one of" in errors
 
 
-def test_rates_are_measured(capsys: pytest.CaptureFixture[str]) -> None:
-    lines = told(capsys, "list", "--rates").splitlines()
+def test_rates_are_measured(told: Told) -> None:
+    lines = told("list", "--rates").splitlines()
     assert "topic /odom nav_msgs/msg/Odometry publishers=1 subscriptions=0 rate=20" in lines
     assert "topic /scan sensor_msgs/msg/LaserScan publishers=1 subscriptions=0 rate=5" in lines
 
 
-def test_the_list_is_available_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    data = json.loads(told(capsys, "list", "--world", "two_robots", "--json", "--rates"))
+def test_the_list_is_available_as_json(told: Told) -> None:
+    data = json.loads(told("list", "--world", "two_robots", "--json", "--rates"))
     assert set(data) == {"topics", "actions", "services", "nodes"}
     [odom] = [topic for topic in data["topics"] if topic["name"] == "/robot_1/odom"]
-    assert odom == {
-        "name": "/robot_1/odom",
-        "types": ["nav_msgs/msg/Odometry"],
-        "publishers": ["/world"],
-        "subscriptions": [],
-        "rate": 20.0,
-    }
+    ends = {"publishers": ["/world"], "subscriptions": []}
+    assert odom == {"name": "/robot_1/odom", "types": ["nav_msgs/msg/Odometry"], **ends, "rate": 20.0}
 
 
-def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    text = told(capsys, "show", "odom")
+def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(told: Told) -> None:
+    text = told("show", "odom")
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert lines[:3] == [
         "topic /odom",
@@ -92,27 +74,27 @@ def test_a_topic_is_shown_with_fields_units_endpoints_and_a_message(
     assert "- {path: pose.pose.orientation, as: yaw, unit: degrees, round: 1}" in lines
 
 
-def test_long_lists_are_shortened(capsys: pytest.CaptureFixture[str]) -> None:
-    data = json.loads(told(capsys, "show", "/scan", "--json"))
+def test_long_lists_are_shortened(told: Told) -> None:
+    data = json.loads(told("show", "/scan", "--json"))
     [ranges] = [row for row in data["parts"]["message"] if row["path"] == "ranges"]
     assert (ranges["type"], ranges["unit"]) == ("float32[]", "m")
     assert len(ranges["value"]["first"]) == 6
     assert ranges["value"]["length"] > 100
 
 
-def test_an_action_is_shown_with_its_three_parts(capsys: pytest.CaptureFixture[str]) -> None:
-    data = json.loads(told(capsys, "show", "/navigate_to_pose", "--json"))
+def test_an_action_is_shown_with_its_three_parts(told: Told) -> None:
+    data = json.loads(told("show", "/navigate_to_pose", "--json"))
     assert list(data["parts"]) == ["goal", "result", "feedback"]
     assert {"path": "distance_remaining", "type": "float32", "unit": "m"} in data["parts"]["feedback"]
     assert "    action: navigate_to_pose" in data["mapping"]
 
 
-def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    service = json.loads(told(capsys, "show", "/map_server/map", "--json"))
+def test_a_service_a_node_and_a_type_are_shown(told: Told) -> None:
+    service = json.loads(told("show", "/map_server/map", "--json"))
     assert list(service["parts"]) == ["request", "response"]
-    node = told(capsys, "show", "/world")
+    node = told("show", "/world")
     assert "publishes: /amcl_pose, /battery_state, " in node
-    text = told(capsys, "show", "sensor_msgs/BatteryState")
+    text = told("show", "sensor_msgs/BatteryState")
     assert text.startswith("type sensor_msgs/msg/BatteryState")
     assert "0 to 1" in text
     assert "entry for a mapping file" not in text
@@ -139,17 +121,15 @@ def test_a_service_a_node_and_a_type_are_shown(capsys: pytest.CaptureFixture[str
         ),
     ],
 )
-def test_mistakes_are_reported(
-    capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, text: str
-) -> None:
-    got, output, errors = outcome(capsys, *arguments)
+def test_mistakes_are_reported(arguments: list[str], code: int, text: str, outcome: Outcome) -> None:
+    got, output, errors = outcome(*arguments)
     assert (got, output) == (code, "")
     assert text in errors
     assert "Traceback" not in errors
 
 
-def test_the_usual_things_of_a_robot_are_mapped(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(capsys, "map", "--world", "house")
+def test_the_usual_things_of_a_robot_are_mapped(told: Told) -> None:
+    text = told("map", "--world", "house")
     for name in ("odom", "scan", "battery", "map", "drive", "stop", "navigate_to", "dock", "undock", "pose"):
         assert f"\n  {name}:" in text
     assert "\nframes:\n" in text
@@ -157,8 +137,8 @@ def test_the_usual_things_of_a_robot_are_mapped(capsys: pytest.CaptureFixture[st
     assert "#   jacaros ros check robot.yaml --world house" in text
 
 
-def test_the_file_names_what_it_leaves_out(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(capsys, "map", "--world", "house")
+def test_the_file_names_what_it_leaves_out(told: Told) -> None:
+    text = told("map", "--world", "house")
     _, _, left = text.partition("\n# Not in this file; `jacaros ros show NAME --world house` prints")
     lines = left.splitlines()
     assert "#   action /move_base" in lines
@@ -166,49 +146,47 @@ def test_the_file_names_what_it_leaves_out(capsys: pytest.CaptureFixture[str]) -
     assert lines[-1].startswith("#   and ")
     assert "/tf" not in left
     assert "/odom" not in left
-    assert "not taken" not in told(capsys, "map", "/odom", "--world", "house")
+    assert "not taken" not in told("map", "/odom", "--world", "house")
 
 
-def test_each_robot_gets_an_artifact(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(capsys, "map", "/robot_0/odom", "/robot_1/cmd_vel", "--world", "two_robots")
+def test_each_robot_gets_an_artifact(told: Told) -> None:
+    text = told("map", "/robot_0/odom", "/robot_1/cmd_vel", "--world", "two_robots")
     assert "\n  robot_0:\n    namespace: robot_0 " in text
     assert "\n  robot_1:\n    namespace: robot_1 " in text
     assert "        topic: odom\n" in text
     assert "        publish: cmd_vel\n" in text
 
 
-def test_one_robot_in_a_namespace_needs_no_list_of_artifacts(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(capsys, "map", "odom", "scan", "--namespace", "robot_1", "--world", "two_robots")
+def test_one_robot_in_a_namespace_needs_no_list_of_artifacts(told: Told) -> None:
+    text = told("map", "odom", "scan", "--namespace", "robot_1", "--world", "two_robots")
     assert "\nnamespace: robot_1 " in text
     assert '# connected("/robot_1/odom") and so on' in text
     assert "    topic: scan\n" in text
     assert "artifacts:" not in text
 
 
-def test_names_do_not_clash(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(
-        capsys, "map", "/dock", "/dock_robot", "/navigate_to_pose", "/move_base", "/cmd_vel", "/goal_pose"
-    )
+def test_names_do_not_clash(told: Told) -> None:
+    text = told("map", "/dock", "/dock_robot", "/navigate_to_pose", "/move_base", "/cmd_vel", "/goal_pose")
     for name in ("dock", "dock_robot", "navigate_to", "move_base", "drive", "goal_pose"):
         assert text.count(f"\n  {name}:") == 1
     assert "parameters: [x, y, yaw]" in text
 
 
-def test_docking_of_a_kobuki_has_the_usual_name(capsys: pytest.CaptureFixture[str]) -> None:
-    text = told(capsys, "map", "/dock_drive_action", "--world", "house")
+def test_docking_of_a_kobuki_has_the_usual_name(told: Told) -> None:
+    text = told("map", "/dock_drive_action", "--world", "house")
     assert "  dock:   " in text
     assert "outputs" not in text
 
 
-def test_a_file_is_written_but_not_overwritten(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_file_is_written_but_not_overwritten(tmp_path: Path, outcome: Outcome, told: Told) -> None:
     file = tmp_path / "robot.yaml"
-    assert "wrote " in told(capsys, "map", "/odom", "-o", str(file))
+    assert "wrote " in told("map", "/odom", "-o", str(file))
     first = file.read_text(encoding="utf-8")
-    code, _, errors = outcome(capsys, "map", "/scan", "-o", str(file))
+    code, _, errors = outcome("map", "/scan", "-o", str(file))
     assert code == 2
     assert "--force overwrites it" in errors
     assert file.read_text(encoding="utf-8") == first
-    told(capsys, "map", "/scan", "-o", str(file), "--force")
+    told("map", "/scan", "-o", str(file), "--force")
     assert "LaserScan" in file.read_text(encoding="utf-8")
 
 
@@ -224,18 +202,16 @@ def test_a_field_is_shown_with_the_constants_that_name_its_values(capsys: pytest
     assert not told[at + 1].startswith("      ")
 
 
-def test_constants_that_name_no_single_field_are_shown_after_the_fields(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    shown = told(capsys, "show", "visualization_msgs/msg/MarkerArray")
+def test_constants_that_name_no_single_field_are_shown_after_the_fields(told: Told) -> None:
+    shown = told("show", "visualization_msgs/msg/MarkerArray")
     _, others = shown.split("\nconstants of visualization_msgs/msg/Marker\n")
     assert others.splitlines()[:2] == ["      0 = ARROW", "      1 = CUBE"]
     assert "      9 = TEXT_VIEW_FACING" in others  # not the value of the string `text`
-    data = json.loads(told(capsys, "show", "visualization_msgs/msg/MarkerArray", "--json"))
+    data = json.loads(told("show", "visualization_msgs/msg/MarkerArray", "--json"))
     assert data["constants"]["visualization_msgs/msg/Marker"]["ARROW"] == 0
-    assert "constants of" not in told(capsys, "show", "sensor_msgs/msg/JoyFeedback")
+    assert "constants of" not in told("show", "sensor_msgs/msg/JoyFeedback")
 
 
-def test_bounds_of_strings_and_lists_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "string<=255" in told(capsys, "show", "type_description_interfaces/msg/FieldType")
-    assert "float64[<=3]" in told(capsys, "show", "shape_msgs/msg/SolidPrimitive")
+def test_bounds_of_strings_and_lists_are_shown(told: Told) -> None:
+    assert "string<=255" in told("show", "type_description_interfaces/msg/FieldType")
+    assert "float64[<=3]" in told("show", "shape_msgs/msg/SolidPrimitive")

@@ -1,16 +1,16 @@
 """Options set by environment variables: weaker than a project's world, and named in messages."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from jacaros.runtime.cli.main import call
+from command_lab import Outcome
 
 HELLO = "!start.\n+!start <- .print(hello); .stopMAS.\n"
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def projects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a program, a project in the world `patrol`, and a project that names no world."""
     for variable in ("JACAROS_WORLD", "JACAROS_ROS", "JACAROS_CLOCK"):
@@ -22,59 +22,54 @@ def projects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
-    """The exit code of a command, and its standard error output."""
-    code = call([*arguments])
-    return code, capsys.readouterr().err
+WorldOf = Callable[..., tuple[str, str]]
 
 
-def world_of(capsys: pytest.CaptureFixture[str], project: str, *options: str) -> tuple[str, str]:
-    """The name of the world that a run takes place in, and the standard error output of the run."""
-    code, errors = outcome(
-        capsys, "run", project, "--ground-truth", "truth.jsonl", "--clock", "fast", *options
-    )
-    assert code == 0, errors
-    name: str = json.loads(Path("truth.jsonl").read_text().splitlines()[0])["world"]["name"]
-    return name, errors
+@pytest.fixture
+def world_of(outcome: Outcome) -> WorldOf:
+    """Runs a project; the name of its world, and the standard error output."""
+
+    def run(*arguments: str) -> tuple[str, str]:
+        code, _, errors = outcome("run", *arguments, "--ground-truth", "truth.jsonl", "--clock", "fast")
+        assert code == 0, errors
+        return json.loads(Path("truth.jsonl").read_text().splitlines()[0])["world"]["name"], errors
+
+    return run
 
 
-@pytest.mark.usefixtures("projects")
 def test_a_project_overrides_the_world_of_the_environment(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch, world_of: WorldOf
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "house")
-    world, errors = world_of(capsys, "patrol.jcm")
+    world, errors = world_of("patrol.jcm")
     assert world == "patrol"
     note = "note: patrol.jcm names the world `patrol`; JACAROS_WORLD=house is ignored (to use it: --world house)\n"
     assert errors == note
-    assert world_of(capsys, "worldless.jcm") == ("house", "")
-    assert world_of(capsys, "patrol.jcm", "--world", "flat") == ("flat", "")
+    assert world_of("worldless.jcm") == ("house", "")
+    assert world_of("patrol.jcm", "--world", "flat") == ("flat", "")
 
 
-@pytest.mark.usefixtures("projects")
 @pytest.mark.parametrize("where", [["patrol.jcm"], ["worldless.jcm", "--world", "patrol"]])
 def test_a_world_is_not_sent_to_the_graph_of_the_environment(
-    where: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    where: list[str], monkeypatch: pytest.MonkeyPatch, world_of: WorldOf
 ) -> None:
     monkeypatch.setenv("JACAROS_ROS", "rosbridge")
-    world, errors = world_of(capsys, *where)
+    world, errors = world_of(*where)
     assert world == "patrol"
     assert "JACAROS_ROS=rosbridge is ignored (to use it: --ros rosbridge)" in errors
 
 
-@pytest.mark.usefixtures("projects")
 def test_the_world_of_the_environment_is_not_simulated_in_a_real_graph(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "house")
     closed = ("--ros", "rosbridge", "--bridge", "ws://127.0.0.1:9")
     for arguments in (["run", "hello.asl", *closed], ["ros", "list", *closed, "--timeout", "0.1"]):
-        _, errors = outcome(capsys, *arguments)
+        _, _, errors = outcome(*arguments)
         assert "(--ros rosbridge); JACAROS_WORLD=house is ignored (to use it: --world house)" in errors
         assert "--world needs" not in errors
 
 
-@pytest.mark.usefixtures("projects")
 @pytest.mark.parametrize(
     ("variable", "value", "arguments", "option"),
     [
@@ -88,15 +83,10 @@ def test_the_world_of_the_environment_is_not_simulated_in_a_real_graph(
     ],
 )
 def test_an_error_in_a_variable_names_it(
-    variable: str,
-    value: str,
-    arguments: str,
-    option: str,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
+    variable: str, value: str, arguments: str, option: str, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
     monkeypatch.setenv(variable, value)
-    code, errors = outcome(capsys, *arguments.split())
+    code, _, errors = outcome(*arguments.split())
     assert code in (1, 2)
     note = f"note: {option} was set by the environment variable {variable}; to ignore it, unset {variable}\n"
     assert errors.startswith("error: ")
@@ -104,11 +94,10 @@ def test_an_error_in_a_variable_names_it(
     assert "short" not in errors, "a token is a secret"
 
 
-@pytest.mark.usefixtures("projects")
 def test_an_error_of_something_else_does_not_name_the_variables(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
     monkeypatch.setenv("JACAROS_WORLD", "house")
     (Path("wrong.asl")).write_text("!start.\n+!start <- .print(\n")
-    assert "JACAROS_WORLD" not in outcome(capsys, "run", "wrong.asl")[1]
-    assert "JACAROS_WORLD" not in outcome(capsys, "run", "missing.asl")[1]
+    assert "JACAROS_WORLD" not in outcome("run", "wrong.asl")[2]
+    assert "JACAROS_WORLD" not in outcome("run", "missing.asl")[2]

@@ -39,40 +39,42 @@ def folder(tmp_path: Path) -> Path:
 
 def check(folder: Path, program: str, project: str = PROJECT) -> list[Diagnostic]:
     (folder / "a.asl").write_text(program, encoding="utf-8")
-    (folder / "p.jcm").write_text(project, encoding="utf-8")
-    return check_files([folder / "p.jcm"]).diagnostics
+    name = "p.mas2j" if project.startswith("MAS") else "p.jcm" if project else "a.asl"
+    if project:
+        (folder / name).write_text(project, encoding="utf-8")
+    return check_files([folder / name]).diagnostics
 
 
-def told(diagnostics: list[Diagnostic]) -> list[tuple[str, str, str | None]]:
-    return [(each.code, each.message, each.help) for each in diagnostics]
+def unknown(operation: str) -> str:
+    return f"unknown operation `{operation}`: no artifact of the project has it"
+
+
+INC = (unknown("inc/2"), "did you mean `inc/0` or `inc/1`?")
+INCC = (unknown("incc/0"), "did you mean `inc`?")
 
 
 def test_unknown_operations_are_reported(folder: Path) -> None:
-    program = """
-    !go.
-    +!go <- inc; inc(2); inc(1, 2); incc; println("x", 1, 2); out(a, 1, 2, 3); jump; joinWorkspace(lab).
-    """
-    assert told(check(folder, program)) == [
-        (
-            "unknown-operation",
-            "unknown operation `inc/2`: no artifact of the project has it",
-            "did you mean `inc/0` or `inc/1`?",
-        ),
-        (
-            "unknown-operation",
-            "unknown operation `incc/0`: no artifact of the project has it",
-            "did you mean `inc`?",
-        ),
-        ("unknown-operation", "unknown operation `jump/0`: no artifact of the project has it", None),
-    ]
+    steps = 'inc; inc(2); inc(1, 2); incc; println("x", 1, 2); out(a, 1, 2, 3); jump; joinWorkspace(lab)'
+    found = check(folder, f"!go. +!go <- {steps}.")
+    assert [(each.message, each.help) for each in found] == [INC, INCC, (unknown("jump/0"), None)]
+    assert {each.code for each in found} == {"unknown-operation"}
 
 
-def test_operations_of_artifacts_that_programs_make_count(folder: Path) -> None:
-    project = "mas p {\n agent ann: a.asl\n}"
+JACA = "MAS p {{ environment: jaca.CartagoEnvironment agents: a{}; }}"
+
+
+@pytest.mark.parametrize(
+    "project",
+    [
+        "mas p {\n agent ann: a.asl\n}",
+        JACA.format(""),
+        JACA.format(" agentArchClass jaca.CAgentArch"),
+        JACA.format(" agentArchClass c4jason.CAgentArch"),
+    ],
+)
+def test_operations_of_artifacts_that_programs_make_count(folder: Path, project: str) -> None:
     program = '!go.\n+!go <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; hop.'
-    assert [each.message for each in check(folder, program, project)] == [
-        "unknown operation `hop/0`: no artifact of the project has it"
-    ]
+    assert [each.message for each in check(folder, program, project)] == [unknown("hop/0")]
 
 
 @pytest.mark.parametrize(
@@ -92,7 +94,7 @@ def test_an_architecture_has_no_effect_so_its_actions_are_reported(folder: Path)
     project = PROJECT.replace("focus: lab.c", "focus: lab.c  ag-arch: body.Body")
     assert {each.message for each in check(folder, "!go.\n+!go <- jump.", project)} == {
         "the architecture `body.Body` has no effect: JaCaROS runs no architectures of projects",
-        "unknown operation `jump/0`: no artifact of the project has it",
+        unknown("jump/0"),
     }
 
 
@@ -137,53 +139,21 @@ def test_details_of_organisations_are_notes_of_the_checker(folder: Path) -> None
     }
     """
     found = check(folder, "!go.\n+!go <- .print(x).", project)
-    assert [
-        (each.severity, each.code, each.span.line if each.span else 0, each.message) for each in found
-    ] == [
-        (
-            "warning",
-            "no-effect",
-            3,
-            "the role `boss` in `o.g` has no effect: roles in organisations are not supported",
-        ),
-        (
-            "warning",
-            "no-effect",
-            3,
-            "the role `guard` in `o.g` has no effect: roles in organisations are not supported",
-        ),
-        ("warning", "no-effect", 4, "the organisation `o` has no effect: organisations are not supported"),
-        ("note", "no-effect", 5, "the group `g` has no effect: organisations are not supported"),
-        (
-            "warning",
-            "no-effect",
-            6,
-            "the role `cook` of `ann` in `g` has no effect: roles in organisations are not supported",
-        ),
-        ("note", "no-effect", 9, "the scheme `s` has no effect: organisations are not supported"),
+    assert {each.code for each in found} == {"no-effect"}
+    roles, organisations = "roles in organisations are not supported", "organisations are not supported"
+    assert [(each.severity, each.span and each.span.line, each.message) for each in found] == [
+        ("warning", 3, f"the role `boss` in `o.g` has no effect: {roles}"),
+        ("warning", 3, f"the role `guard` in `o.g` has no effect: {roles}"),
+        ("warning", 4, f"the organisation `o` has no effect: {organisations}"),
+        ("note", 5, f"the group `g` has no effect: {organisations}"),
+        ("warning", 6, f"the role `cook` of `ann` in `g` has no effect: {roles}"),
+        ("note", 9, f"the scheme `s` has no effect: {organisations}"),
     ]
 
 
 def test_a_comment_in_the_project_file_switches_a_warning_off(folder: Path) -> None:
-    project = PROJECT.replace(
-        "focus: lab.c }", "focus: lab.c  roles: boss in o.g } // jacaros: ignore no-effect"
-    )
-    assert check(folder, "!go.\n+!go <- inc.", project) == []
-
-
-@pytest.mark.parametrize(
-    "architecture", ["", " agentArchClass jaca.CAgentArch", " agentArchClass c4jason.CAgentArch"]
-)
-def test_operations_are_checked_in_a_project_for_jaca(folder: Path, architecture: str) -> None:
-    program = '!go.\n+!go <- makeArtifact("c", "Counter", [], Id); focus(Id); inc; hop.'
-    (folder / "a.asl").write_text(program, encoding="utf-8")
-    project = folder / "p.mas2j"
-    project.write_text(
-        f"MAS p {{ environment: jaca.CartagoEnvironment agents: a{architecture}; }}", encoding="utf-8"
-    )
-    assert [each.message for each in check_files([project]).diagnostics] == [
-        "unknown operation `hop/0`: no artifact of the project has it"
-    ]
+    ignored = "focus: lab.c  roles: boss in o.g } // jacaros: ignore no-effect"
+    assert check(folder, "!go.\n+!go <- inc.", PROJECT.replace("focus: lab.c }", ignored)) == []
 
 
 @pytest.mark.parametrize(
@@ -196,32 +166,25 @@ def test_operations_are_checked_in_a_project_for_jaca(folder: Path, architecture
     ],
 )
 def test_operations_are_checked_in_a_lone_program(folder: Path, make: str) -> None:
-    lone = folder / "lone.asl"
-    lone.write_text(
-        f'{{ include("$jacaros/artifacts.asl") }}\n!go.\n+!go <- {make}; inc; inc(1, 2); incc; offered_by_a_mapping.',
-        encoding="utf-8",
-    )
-    assert [(each.message, each.help) for each in check_files([lone]).diagnostics] == [
-        ("unknown operation `inc/2`: no artifact of the project has it", "did you mean `inc/0` or `inc/1`?"),
-        ("unknown operation `incc/0`: no artifact of the project has it", "did you mean `inc`?"),
-    ]
+    program = f"{LIBRARY}!go.\n+!go <- {make}; inc; inc(1, 2); incc; offered_by_a_mapping."
+    assert [(each.message, each.help) for each in check(folder, program, "")] == [INC, INCC]
 
 
-def test_library_plans_create_the_requested_artifacts(folder: Path) -> None:
-    lone = folder / "lone.asl"
-    lone.write_text(
-        '{ include("$jacaros/artifacts.asl") }\n!go.\n+!go <- !create_cmd_vel; move(3); moove(3).',
-        encoding="utf-8",
-    )
-    assert [each.message for each in check_files([lone]).diagnostics] == [
-        "unknown operation `moove/1`: no artifact of the project has it"
-    ]
+LIBRARY = '{ include("$jacaros/artifacts.asl") }\n'
 
 
-def test_actions_of_a_lone_program_without_artifacts_are_not_reported(folder: Path) -> None:
-    lone = folder / "lone.asl"
-    lone.write_text("!go.\n+!go <- hop.", encoding="utf-8")
-    assert check_files([lone]).diagnostics == []
+@pytest.mark.parametrize(
+    ("program", "told"),
+    [
+        (f"{LIBRARY}!go.\n+!go <- !create_cmd_vel; move(3); moove(3).", [unknown("moove/1")]),
+        ("!go.\n+!go <- hop.", []),
+    ],
+    ids=["library plans create the requested artifacts", "no artifacts"],
+)
+def test_actions_of_a_lone_program_are_checked_where_it_has_artifacts(
+    folder: Path, program: str, told: list[str]
+) -> None:
+    assert [each.message for each in check(folder, program, "")] == told
 
 
 def test_a_mapping_file_that_a_goal_names_is_checked(folder: Path) -> None:
@@ -229,9 +192,5 @@ def test_a_mapping_file_that_a_goal_names_is_checked(folder: Path) -> None:
         "properties:\n  pose:\n    topic: odom\n    type: nav_msgs/msg/Odometry\n    rat: 2\n",
         encoding="utf-8",
     )
-    lone = folder / "lone.asl"
-    lone.write_text(
-        '{ include("$jacaros/artifacts.asl") }\n!go.\n+!go <- !use_artifact("r", "robot.yaml").',
-        encoding="utf-8",
-    )
+    check(folder, f'{LIBRARY}!go.\n+!go <- !use_artifact("r", "robot.yaml").', "")
     assert "wrong-mapping" in {each.code for each in check_files([folder]).diagnostics}

@@ -1,25 +1,17 @@
 """Internal actions that reach beyond one mind: files, copies of agents, the directory, the end of agents."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from jacaros.testing import RunResult, run_project
 
-
-def run(folder: Path, **files: str) -> RunResult:
-    """Write files (``a_asl`` is a.asl) and run the first until nothing is left to do."""
-    paths = []
-    for name, text in files.items():
-        stem, _, suffix = name.rpartition("_")
-        paths.append(folder / f"{stem}.{suffix}")
-        paths[-1].write_text(text, encoding="utf-8")
-    return run_project(paths[0], until_idle=True)
+Ran = Callable[..., RunResult]
 
 
-def test_the_directory_knows_who_provides_what(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_the_directory_knows_who_provides_what(ran: Ran) -> None:
+    result = ran(
         m_mas2j="MAS m { agents: a; b; }",
         a_asl="""!go. +!go <- .df_register("sell(book)"); .df_register(paint, "art"); .wait(50);
             .df_search("sell(book)", L); .print(L); .df_search(paint, art, P); .print(P);
@@ -29,13 +21,12 @@ def test_the_directory_knows_who_provides_what(tmp_path: Path) -> None:
     assert result.lines == ["[a] [a,b]", "[a] [a]", "[a] []", "[a] [a,b,df]"]
 
 
-def test_the_directory_agent_is_created_at_its_first_use(tmp_path: Path) -> None:
-    assert run(tmp_path, a_asl="!go. +!go <- .all_names(N); .print(N).").lines == ["[a] [a]"]
+def test_the_directory_agent_is_created_at_its_first_use(ran: Ran) -> None:
+    assert ran("!go. +!go <- .all_names(N); .print(N).").lines == ["[a] [a]"]
 
 
-def test_subscribers_are_notified_of_present_and_later_providers(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_subscribers_are_notified_of_present_and_later_providers(ran: Ran) -> None:
+    result = ran(
         m_mas2j="MAS m { agents: a; b; c; }",
         a_asl="""!go. +!go <- .wait(10); .df_subscribe("sell"); .df_subscribe("sell").
             +provider(A, S)[source(W)] <- .print(A, " ", S, " ", W).""",
@@ -45,23 +36,20 @@ def test_subscribers_are_notified_of_present_and_later_providers(tmp_path: Path)
     assert result.lines == ["[a] b sell df", "[a] c sell df"]
 
 
-def test_the_directory_can_be_asked(tmp_path: Path) -> None:
+def test_the_directory_can_be_asked(ran: Ran) -> None:
     program = '!go. +!go <- .df_register("sell"); .send(df, askOne, provider(A, "sell"), R); .print(R).'
-    assert run(tmp_path, a_asl=program).lines == ['[a] provider(a,"sell")[source(df)]']
+    assert ran(program).lines == ['[a] provider(a,"sell")[source(df)]']
 
 
-def test_files_are_listed_with_those_of_inner_folders(tmp_path: Path) -> None:
+def test_files_are_listed_with_those_of_inner_folders(tmp_path: Path, ran: Ran) -> None:
     (tmp_path / "data" / "inner").mkdir(parents=True)
     for name in ("b.txt", "a.asl", "inner/c.asl"):
         (tmp_path / "data" / name).write_text("", encoding="utf-8")
-    result = run(
-        tmp_path,
-        a_asl="""!go. +!go <- .list_files("data", L); .print(L); .list_files("data", ".*[.]asl", R); .print(R);
+    result = ran("""!go. +!go <- .list_files("data", L); .print(L); .list_files("data", ".*[.]asl", R); .print(R);
             !failing({ .list_files("nowhere", _) }); !failing({ .list_files(data, _) });
             !failing({ .list_files("data", "[", _) }).
             +!failing(B) <- B.
-            -!failing(_)[error(E)] <- .print(E).""",
-    )
+            -!failing(_)[error(E)] <- .print(E).""")
     assert result.lines == [
         '[a] ["data/a.asl","data/b.txt","data/inner/c.asl"]',
         '[a] ["data/a.asl","data/inner/c.asl"]',
@@ -71,15 +59,12 @@ def test_files_are_listed_with_those_of_inner_folders(tmp_path: Path) -> None:
     ]
 
 
-def test_a_saved_agent_can_be_run(tmp_path: Path) -> None:
-    first = run(
-        tmp_path,
-        a_asl="""{ register_function("my.twice", 1, "twice") }
+def test_a_saved_agent_can_be_run(tmp_path: Path, ran: Ran) -> None:
+    first = ran("""{ register_function("my.twice", 1, "twice") }
             twice(X, Y) :- Y = X * 2.
             p(1)[source(bob)]. p(2). ~q("x"). open(_).
             @known[atomic] +!go(N) : p(N) & not r <- X = my.twice(N); +seen(X); .print(X); ?seen(X).
-            !begin. +!begin <- +p(3); .add_plan("+!more <- .print(more)."); .save_agent("b.asl", [go(2), more]).""",
-    )
+            !begin. +!begin <- +p(3); .add_plan("+!more <- .print(more)."); .save_agent("b.asl", [go(2), more]).""")
     assert first.errors == []
     again = run_project(tmp_path / "b.asl", until_idle=True)
     assert sorted(again.lines) == ["[b] 4", "[b] more"]
@@ -88,9 +73,8 @@ def test_a_saved_agent_can_be_run(tmp_path: Path) -> None:
     assert "p(3).\np(1)" in text
 
 
-def test_a_program_is_included_at_run_time(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_a_program_is_included_at_run_time(ran: Ran) -> None:
+    result = ran(
         a_asl="""!go. +!go <- .include("other.asl"); .include("other.asl"); !hello; .include("other.asl", ns);
             ?ns::q(X); .print(X); .include("other.asl", N); !N::hello; .findall(P, .plan_label(_, P), L);
             .length(L, C); .print(C); .include("none.asl").
@@ -100,9 +84,8 @@ def test_a_program_is_included_at_run_time(tmp_path: Path) -> None:
     assert result.lines == ["[a] hello", "[a] 1", "[a] hello", "[a] 5", "[a] internal_action"]
 
 
-def test_a_wrong_program_is_not_included(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_a_wrong_program_is_not_included(ran: Ran) -> None:
+    result = ran(
         a_asl="""!go. @same +!go <- .include("other.asl").
             -!go[error(E), error_msg(M)] <- .print(E, " ", M).""",
         other_asl="@ok +!hello <- .print(hello). @same +!hello <- .print(other).",
@@ -112,38 +95,31 @@ def test_a_wrong_program_is_not_included(tmp_path: Path) -> None:
     ] or result.lines == ["[a] internal_action another plan has the label same already"]
 
 
-def test_a_clone_has_the_mind_of_its_original(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        a_asl="""p(1). r(X) :- p(X).
+def test_a_clone_has_the_mind_of_its_original(ran: Ran) -> None:
+    result = ran("""p(1). r(X) :- p(X).
             !count(3). !go.
             +!go <- +p(2); .add_plan({ +!new <- .print(new) }); .clone("b"); .print(cloned);
                 .send(b, achieve, show); .send(b, achieve, new).
             +!show <- .findall(X, r(X), L); .my_name(N); .print(N, L).
             +!count(0) <- .print(counted).
-            +!count(N) <- !count(N - 1).""",
-    )
+            +!count(N) <- !count(N - 1).""")
     assert result.of("a") == ["cloned", "counted"]
     assert sorted(result.of("b")) == ["b[2,1]", "counted", "new"]
 
 
-def test_a_goal_of_a_clone_gives_its_value_to_the_plan_that_posted_it(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        a_asl="""!s. !t. !c. +!a(3). +!c <- .clone("b").
-            +!s <- !a(X); .print(X). +!t <- Y = f(Z); !a(Z); .print(Y).""",
-    )
+def test_a_goal_of_a_clone_gives_its_value_to_the_plan_that_posted_it(ran: Ran) -> None:
+    result = ran("""!s. !t. !c. +!a(3). +!c <- .clone("b").
+            +!s <- !a(X); .print(X). +!t <- Y = f(Z); !a(Z); .print(Y).""")
     assert sorted(result.of("b")) == sorted(result.of("a")) == ["3", "f(3)"]
 
 
-def test_the_name_of_a_clone_is_made_unique(tmp_path: Path) -> None:
+def test_the_name_of_a_clone_is_made_unique(ran: Ran) -> None:
     program = "!go. +!go <- .clone(a); .clone(Other); .print(Other); .all_names(N); .print(N)."
-    assert run(tmp_path, a_asl=program).of("a") == ["other", "[a,a_1,other]"]
+    assert ran(program).of("a") == ["other", "[a,a_1,other]"]
 
 
-def test_a_shutdown_is_announced_to_agents(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_a_shutdown_is_announced_to_agents(ran: Ran) -> None:
+    result = ran(
         m_mas2j="MAS m { agents: a; b; }",
         a_asl="!go. +!go <- .kill_agent(b, 100); .wait(200); .all_names(N); .print(N); .stopMAS(50, 4).",
         b_asl="+jag_shutting_down(T) <- .print(T); .wait(90); .print(last); .wait(20); .print(never).",
@@ -152,50 +128,42 @@ def test_a_shutdown_is_announced_to_agents(tmp_path: Path) -> None:
     assert result.exit_code == 4
 
 
-def test_the_end_of_the_run_is_announced_to_all_agents(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_the_end_of_the_run_is_announced_to_all_agents(ran: Ran) -> None:
+    result = ran(
         a_asl="!go. +!go <- .stopMAS(70). +jag_shutting_down(T) <- .wait(60); .print(ready(T)).",
     )
     assert result.lines == ["[a] ready(70)"]
 
 
 @pytest.mark.parametrize("plan", ["+jag_sleeping <- .print(sleep).", "+jag_awaking <- .print(awake)."])
-def test_an_agent_gets_events_when_it_sleeps_and_wakes(tmp_path: Path, plan: str) -> None:
-    result = run(tmp_path, a_asl=f"!go. +!go <- .wait(10); .print(up); .wait(10). {plan}")
+def test_an_agent_gets_events_when_it_sleeps_and_wakes(ran: Ran, plan: str) -> None:
+    result = ran(f"!go. +!go <- .wait(10); .print(up); .wait(10). {plan}")
     word = "sleep" if "sleep" in plan else "awake"
     assert sorted(result.of("a")) == sorted(["up", *([word] * (3 if word == "sleep" else 2))])
 
 
 @pytest.mark.parametrize("word", ["sleeping", "awaking"])
-def test_sleep_events_trigger_plans_added_at_run_time(tmp_path: Path, word: str) -> None:
-    result = run(
-        tmp_path,
-        a_asl=f"""!go.
+def test_sleep_events_trigger_plans_added_at_run_time(ran: Ran, word: str) -> None:
+    result = ran(f"""!go.
             +!go <- .wait(10); .print(up); .add_plan("@p +jag_{word} <- .print({word}).");
                 .wait(10); .remove_plan(p); .wait(10); .add_plan("+jag_{word} <- .print(again)."); .wait(10);
-                .print(end).""",
-    )
+                .print(end).""")
     if word == "sleeping":
         assert result.of("a") == ["up", "sleeping", "again", "end", "again"]
     else:
         assert result.of("a") == ["up", "awaking", "end", "again"]
 
 
-def test_a_clone_shares_no_collections_with_its_original(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        a_asl="""!go.
+def test_a_clone_shares_no_collections_with_its_original(ran: Ran) -> None:
+    result = ran("""!go.
             +!go <- .set.create(S); .set.add(S, 1); .map.create(M); .map.put(M, k, [S]); +held(S, M); .queue.add(Q, S);
                 +queued(Q); .clone("b"); .send(b, achieve, change); .wait(10); .print(S, M).
-            +!change : held(S, M) & queued(Q) <- .set.add(S, 2); .print(S, M, Q).""",
-    )
+            +!change : held(S, M) & queued(Q) <- .set.add(S, 2); .print(S, M, Q).""")
     assert result.lines == ["[b] {1,2}{k->[{1,2}]}[{1,2}]", "[a] {1}{k->[{1}]}"]
 
 
-def test_a_message_brings_a_copy_of_a_collection(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
+def test_a_message_brings_a_copy_of_a_collection(ran: Ran) -> None:
+    result = ran(
         m_mas2j="MAS m { agents: a; b; }",
         a_asl="""!go. +!go <- .set.create(S); .set.add(S, 1); .send(b, tell, box(f(S))); .wait(20); .print(S).""",
         b_asl="+box(f(S)) <- .set.add(S, 2); .print(S).",

@@ -12,34 +12,43 @@ from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.mas.graph_warnings import EmptyGraph
 
 
-def told(contents: GraphContents | Exception, close: bool = False) -> list[str]:
-    """What is logged of a graph with these contents within a minute."""
-    clock = VirtualClock()
-    lines: list[str] = []
+@pytest.fixture
+def clock() -> VirtualClock:
+    return VirtualClock()
+
+
+@pytest.fixture(autouse=True)
+def play(clock: VirtualClock):
+    return lambda scene: run(scene, clock)
+
+
+def watched(contents: GraphContents | Exception, clock: Any, lines: list[str]) -> EmptyGraph:
+    """The warning about a graph with these contents."""
 
     async def look(timeout: float | None = None) -> GraphContents:
         if isinstance(contents, Exception):
             raise contents
         return contents
 
-    async def main() -> None:
-        backend: Any = SimpleNamespace(node_name="/agents", contents=look)
-        graph = EmptyGraph(backend, clock, "the ROS 2 graph of domain 7", lines.append)
-        if close:
-            graph.close()
-        await clock.sleep(60)
-        graph.close()
-
-    run(main, clock)
-    return lines
+    backend: Any = SimpleNamespace(node_name="/agents", contents=look)
+    return EmptyGraph(backend, clock, "the ROS 2 graph of domain 7", lines.append)
 
 
 OWN = TopicInfo("/cmd_vel", ("geometry_msgs/msg/Twist",), (Endpoint("/agents"),))
 
 
-def test_an_empty_graph_is_reported_once() -> None:
-    [line] = told(GraphContents({"/cmd_vel": OWN}, {}, {}, ("/agents",)))
+ALONE = GraphContents({}, {}, {}, ("/agents",))
+
+
+async def test_an_empty_graph_is_reported_once_unless_the_run_has_ended(clock, logs) -> None:
+    graph = watched(GraphContents({"/cmd_vel": OWN}, {}, {}, ("/agents",)), clock, logs)
+    await clock.sleep(60)
+    graph.close()
+    (line,) = logs
     assert line.startswith("no other node is in the ROS 2 graph of domain 7; check that the robot is running")
+    watched(ALONE, clock, logs).close()
+    await clock.sleep(60)
+    assert logs == [line]
 
 
 @pytest.mark.parametrize(
@@ -52,8 +61,11 @@ def test_an_empty_graph_is_reported_once() -> None:
     ],
     ids=["a node", "a publisher whose node is not known yet", "a subscription", "nothing is known"],
 )
-def test_other_nodes_or_an_unknown_graph_are_not_reported(contents: GraphContents | Exception) -> None:
-    assert told(contents) == []
+async def test_other_nodes_or_an_unknown_graph_are_not_reported(contents, clock, logs) -> None:
+    graph = watched(contents, clock, logs)
+    await clock.sleep(60)
+    graph.close()
+    assert logs == []
 
 
 class LateClock:
@@ -78,26 +90,13 @@ class LateClock:
 
 
 @pytest.mark.parametrize(("late", "seconds"), [(0.0, 3), (0.05, 30)])
-def test_a_busy_loop_gives_others_more_time_to_be_found(late: float, seconds: float) -> None:
-    lines: list[str] = []
-
-    async def look(timeout: float | None = None) -> GraphContents:
-        return GraphContents({}, {}, {}, ("/agents",))
-
-    async def main() -> None:
-        backend: Any = SimpleNamespace(node_name="/agents", contents=look)
-        clock: Any = LateClock()
-        graph = EmptyGraph(backend, clock, "the ROS 2 graph of domain 7", lines.append)
-        while clock.elapsed < seconds - 0.2:
-            await clock.ring(late)
-            assert lines == []
-        for _ in range(3):
-            await clock.ring(late)
-        assert len(lines) == 1
-        graph.close()
-
-    run(main, VirtualClock())
-
-
-def test_nothing_is_reported_after_the_end() -> None:
-    assert told(GraphContents({}, {}, {}, ("/agents",)), close=True) == []
+async def test_a_busy_loop_gives_others_more_time_to_be_found(late: float, seconds: float, logs) -> None:
+    clock = LateClock()
+    graph = watched(ALONE, clock, logs)
+    while clock.elapsed < seconds - 0.2:
+        await clock.ring(late)
+        assert logs == []
+    for _ in range(3):
+        await clock.ring(late)
+    assert len(logs) == 1
+    graph.close()

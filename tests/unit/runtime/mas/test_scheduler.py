@@ -2,14 +2,16 @@
 
 import asyncio
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.mas.scheduler import Scheduler
+from played import played
 
 
 class Worker:
@@ -25,40 +27,62 @@ class Worker:
         return self.cycles > 0
 
 
-def test_ready_agents_take_turns_first_come_first_served() -> None:
-    log: list[str] = []
-    clock = VirtualClock()
+@pytest.fixture
+def clock() -> VirtualClock:
+    return VirtualClock()
 
-    async def main() -> None:
-        scheduler = Scheduler(clock)
-        for name, cycles in (("a", 120), ("b", 10), ("c", 60)):
-            scheduler.make_ready(Worker(name, cycles, log))
-        await clock.sleep(1)
 
-    run(main, clock)
+@pytest.fixture
+def log() -> list[str]:
+    """The turns of the workers."""
+    return []
+
+
+@pytest.fixture
+def told() -> list[object]:
+    """Errors of the scheduler, and the number of turns at which it was idle."""
+    return []
+
+
+@pytest.fixture
+def scheduler(clock: VirtualClock, log: list[str], told: list[object]) -> Scheduler:
+    return Scheduler(clock, on_idle=lambda: told.append(len(log)), on_error=told.append)
+
+
+@pytest.fixture(autouse=True)
+def play(clock: VirtualClock) -> Callable[..., None]:
+    return lambda scene: run(scene, clock)
+
+
+async def test_ready_agents_take_turns_first_come_first_served(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str], told: list[object]
+) -> None:
+    for name, cycles in (("a", 120), ("b", 10), ("c", 60)):
+        scheduler.make_ready(Worker(name, cycles, log))
+    await clock.sleep(1)
     assert log == ["a", "b", "c", "a", "c", "a"]
+    assert told == [6], "idleness is reported when the last agent is done"
 
 
-def test_an_agent_is_queued_once() -> None:
-    log: list[str] = []
-    clock = VirtualClock()
-
-    async def main() -> None:
-        scheduler = Scheduler(clock)
-        worker = Worker("a", 1, log)
-        scheduler.make_ready(worker)
-        scheduler.make_ready(worker)
-        assert not scheduler.idle
-        await clock.sleep(1)
-        assert scheduler.idle
-
-    run(main, clock)
+async def test_an_agent_is_queued_once_and_not_after_the_stop(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str]
+) -> None:
+    worker = Worker("a", 1, log)
+    scheduler.make_ready(worker)
+    scheduler.make_ready(worker)
+    assert not scheduler.idle
+    await clock.sleep(1)
+    assert scheduler.idle
+    assert log == ["a"]
+    scheduler.stop()
+    scheduler.make_ready(worker)
+    await clock.sleep(1)
     assert log == ["a"]
 
 
-def test_an_agent_that_becomes_ready_in_a_turn_queues_behind_waiting_ones() -> None:
-    log: list[str] = []
-    clock = VirtualClock()
+async def test_an_agent_that_becomes_ready_in_a_turn_queues_behind_waiting_ones(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str]
+) -> None:
     late = Worker("late", 1, log)
 
     class Waker(Worker):
@@ -67,139 +91,79 @@ def test_an_agent_that_becomes_ready_in_a_turn_queues_behind_waiting_ones() -> N
             scheduler.make_ready(self)
             return super().run(fuel)
 
-    scheduler = Scheduler(clock)
-
-    async def main() -> None:
-        scheduler.make_ready(Waker("a", 60, log))
-        scheduler.make_ready(Worker("b", 60, log))
-        await clock.sleep(1)
-        scheduler.stop()
-
-    run(main, clock)
+    scheduler.make_ready(Waker("a", 60, log))
+    scheduler.make_ready(Worker("b", 60, log))
+    await clock.sleep(1)
+    scheduler.stop()
     assert log[:7] == ["a", "b", "late", "a", "b", "late", "a"]
 
 
-def test_callbacks_of_the_loop_have_their_turn_among_busy_agents() -> None:
-    clock = VirtualClock()
+async def test_callbacks_of_the_loop_have_their_turn_among_busy_agents(scheduler: Scheduler) -> None:
     seen: list[int] = []
     endless = Worker("a", 10**6, [])
-
-    async def main() -> None:
-        scheduler = Scheduler(clock)
-        scheduler.make_ready(endless)
-        for _ in range(3):
-            await asyncio.sleep(0)
-            seen.append(10**6 - endless.cycles)
-        scheduler.stop()
-
-    run(main, clock)
+    scheduler.make_ready(endless)
+    for _ in range(3):
+        await asyncio.sleep(0)
+        seen.append(10**6 - endless.cycles)
+    scheduler.stop()
     assert seen == [Scheduler.CYCLES_PER_ROUND * turns for turns in (1, 2, 3)]
 
 
-def test_timers_and_virtual_time_advance_during_endless_cycles() -> None:
-    clock = VirtualClock()
+async def test_timers_and_virtual_time_advance_during_endless_cycles(
+    scheduler: Scheduler, clock: VirtualClock
+) -> None:
     endless = Worker("a", 10**9, [])
-
-    async def main() -> float:
-        scheduler = Scheduler(clock)
-        scheduler.make_ready(endless)
-        await clock.sleep(0.01)
-        scheduler.stop()
-        return clock.elapsed
-
-    assert run(main, clock) == pytest.approx(0.01)
+    scheduler.make_ready(endless)
+    await clock.sleep(0.01)
+    scheduler.stop()
+    assert clock.elapsed == pytest.approx(0.01)
     assert 10**9 - endless.cycles >= 10 * VirtualClock.CYCLES_PER_MILLISECOND
 
 
-def test_virtual_time_advances_during_endless_short_turns() -> None:
-    clock = VirtualClock()
-
+async def test_virtual_time_advances_during_endless_short_turns(
+    scheduler: Scheduler, clock: VirtualClock
+) -> None:
     class Chatter(Worker):
         def run(self, fuel: int) -> bool:
             scheduler.make_ready(self)
             return False
 
-    scheduler = Scheduler(clock)
-
-    async def main() -> None:
-        scheduler.make_ready(Chatter("a", 1, []))
-        await clock.sleep(0.002)
-        scheduler.stop()
-
-    run(main, clock)
+    scheduler.make_ready(Chatter("a", 1, []))
+    await clock.sleep(0.002)
+    scheduler.stop()
     assert clock.elapsed >= 0.002
 
 
-def test_idleness_is_reported_when_the_last_agent_is_done() -> None:
-    clock = VirtualClock()
-    told: list[float] = []
-
-    async def main() -> None:
-        scheduler = Scheduler(clock, on_idle=lambda: told.append(clock.elapsed))
-        scheduler.make_ready(Worker("a", 200, []))
-        await clock.sleep(1)
-
-    run(main, clock)
-    assert len(told) == 1
-
-
-def test_what_escapes_from_an_agent_ends_all_turns() -> None:
-    clock = VirtualClock()
-    errors: list[BaseException] = []
-    log: list[str] = []
-
+async def test_what_escapes_from_an_agent_ends_all_turns(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str], told: list[object]
+) -> None:
     class Broken(Worker):
         def run(self, fuel: int) -> bool:
             raise InternalError("broken")
 
-    async def main() -> None:
-        scheduler = Scheduler(clock, on_error=errors.append)
-        scheduler.make_ready(Broken("a", 1, []))
-        scheduler.make_ready(Worker("b", 1, log))
-        await clock.sleep(1)
-
-    run(main, clock)
-    assert [str(e) for e in errors] == ["broken"]
+    scheduler.make_ready(Broken("a", 1, []))
+    scheduler.make_ready(Worker("b", 1, log))
+    await clock.sleep(1)
+    assert [str(e) for e in told] == ["broken"]
     assert log == []
 
 
-def test_no_agent_becomes_ready_after_the_stop() -> None:
-    clock = VirtualClock()
-    log: list[str] = []
-
-    async def main() -> None:
-        scheduler = Scheduler(clock)
-        scheduler.stop()
-        scheduler.make_ready(Worker("a", 1, log))
-        await clock.sleep(1)
-
-    run(main, clock)
-    assert log == []
-
-
-def test_hurry_gives_ready_agents_their_turns_immediately() -> None:
-    log: list[str] = []
-    idle: list[int] = []
-    clock = VirtualClock()
-
-    async def main() -> None:
-        scheduler = Scheduler(clock, lambda: idle.append(len(log)))
-        scheduler.hurry()
-        scheduler.make_ready(Worker("a", 120, log))
-        scheduler.make_ready(Worker("b", 1, log))
-        scheduler.hurry()
-        assert log == ["a", "b", "a", "a"]
-        assert scheduler.idle
-        await clock.sleep(1)
-        assert idle == [4], "told once, in the next round"
-
-    run(main, clock)
+async def test_hurry_gives_ready_agents_their_turns_immediately(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str], told: list[object]
+) -> None:
+    scheduler.hurry()
+    scheduler.make_ready(Worker("a", 120, log))
+    scheduler.make_ready(Worker("b", 1, log))
+    scheduler.hurry()
+    assert log == ["a", "b", "a", "a"]
+    assert scheduler.idle
+    await clock.sleep(1)
+    assert told == [4], "once, in the next round"
 
 
-def test_no_agent_has_a_turn_within_the_turn_of_another() -> None:
-    log: list[str] = []
-    clock = VirtualClock()
-
+async def test_no_agent_has_a_turn_within_the_turn_of_another(
+    scheduler: Scheduler, clock: VirtualClock, log: list[str]
+) -> None:
     class Hurrying(Worker):
         def run(self, fuel: int) -> bool:
             log.append("begin")
@@ -208,13 +172,24 @@ def test_no_agent_has_a_turn_within_the_turn_of_another() -> None:
             log.append("end")
             return False
 
-    async def main() -> None:
-        scheduler.make_ready(Hurrying("a", 1, log))
-        await clock.sleep(1)
-        assert log == ["begin", "end", "other"]
+    scheduler.make_ready(Hurrying("a", 1, log))
+    await clock.sleep(1)
+    assert log == ["begin", "end", "other"]
 
-    scheduler = Scheduler(clock)
-    run(main, clock)
+
+async def test_on_the_virtual_clock_an_action_does_not_end_the_round(
+    scheduler: Scheduler, log: list[str]
+) -> None:
+    class Acting(Worker):
+        def run(self, fuel: int) -> bool:
+            scheduler.poll_soon()
+            return super().run(fuel)
+
+    scheduler.make_ready(Acting("a", 1000, log))
+    await asyncio.sleep(0)
+    log.append("loop")
+    scheduler.stop()
+    assert log == ["a"] * 20 + ["loop"]
 
 
 class Bench:
@@ -250,6 +225,11 @@ async def have_turns(bench: Bench) -> list[float]:
     await bench.over.wait()
     scheduler.stop()
     return free
+
+
+def asyncio_run(scene: Callable[[list[str]], Coroutine[Any, Any, None]]) -> None:
+    """Run a scene on a plain loop, with the list of what happens in it."""
+    asyncio.run(scene([]))
 
 
 def bench_of(microseconds: float, turns: int) -> tuple[list[int], list[float]]:
@@ -290,89 +270,57 @@ def test_after_long_cycles_turns_become_full_again() -> None:
     assert [fuel for _, fuel in bench.turns] == [50, 25, 12, 6, 3, 1, 1, 2, 4, 8, 16, 32, 50]
 
 
-def test_sockets_are_read_before_the_next_round_of_turns() -> None:
-    order: list[str] = []
+@played(asyncio_run)
+async def test_sockets_are_read_before_the_next_round_of_turns(order: list[str]) -> None:
+    ours, theirs = socket.socketpair()
 
-    async def main() -> None:
-        ours, theirs = socket.socketpair()
+    def make_turn(bench: Bench) -> bool:
+        order.append("turn")
+        if len(order) == 3:
+            theirs.send(b"x")
+        return len(order) == 6
 
-        def make_turn(bench: Bench) -> bool:
-            order.append("turn")
-            if len(order) == 3:
-                theirs.send(b"x")
-            return len(order) == 6
+    def read() -> None:
+        ours.recv(1)
+        order.append("message")
 
-        def read() -> None:
-            ours.recv(1)
-            order.append("message")
-
-        with ours, theirs:
-            loop = asyncio.get_running_loop()
-            loop.add_reader(ours, read)
-            await have_turns(Bench(1.0, make_turn))
-            loop.remove_reader(ours)
-
-    asyncio.run(main())
+    with ours, theirs:
+        loop = asyncio.get_running_loop()
+        loop.add_reader(ours, read)
+        await have_turns(Bench(1.0, make_turn))
+        loop.remove_reader(ours)
     assert order == ["turn", "turn", "turn", "message", "turn", "turn"]
 
 
-def test_a_message_makes_its_hops_to_the_agent_between_two_rounds() -> None:
-    order: list[str] = []
+@played(asyncio_run)
+async def test_a_message_makes_its_hops_to_the_agent_between_two_rounds(order: list[str]) -> None:
+    loop = asyncio.get_running_loop()
 
-    async def main() -> None:
-        loop = asyncio.get_running_loop()
+    def hop(left: int) -> None:
+        order.append("hop")
+        if left > 1:
+            loop.call_soon(hop, left - 1)
 
-        def hop(left: int) -> None:
-            order.append("hop")
-            if left > 1:
-                loop.call_soon(hop, left - 1)
+    def make_turn(bench: Bench) -> bool:
+        order.append("turn")
+        if len(order) == 1:
+            loop.call_soon(hop, Scheduler.PASSES - 1)
+        return order.count("turn") == 2
 
-        def make_turn(bench: Bench) -> bool:
-            order.append("turn")
-            if len(order) == 1:
-                loop.call_soon(hop, Scheduler.PASSES - 1)
-            return order.count("turn") == 2
-
-        await have_turns(Bench(1.0, make_turn))
-
-    asyncio.run(main())
+    await have_turns(Bench(1.0, make_turn))
     assert order == ["turn", "hop", "hop", "hop", "turn"]
 
 
-def test_an_agent_that_has_begun_an_action_ends_the_round_with_its_turn() -> None:
-    free: list[float] = []
-
-    async def main() -> None:
-        def make_turn(bench: Bench) -> bool:
-            if len(bench.turns) == 3:
-                scheduler.poll_soon()
-                asyncio.get_running_loop().call_soon(lambda: free.append(len(bench.turns)))
-            return len(bench.turns) == 6
-
-        bench = Bench(1e-9, make_turn)
-        scheduler = Scheduler(WallClock(), real_time=lambda: bench.now)
-        scheduler.make_ready(bench)
-        await bench.over.wait()
-
-    asyncio.run(main())
-    assert free == [3]
-
-
-def test_on_the_virtual_clock_an_action_does_not_end_the_round() -> None:
-    clock = VirtualClock()
-    log: list[str] = []
-
-    class Acting(Worker):
-        def run(self, fuel: int) -> bool:
+@played(asyncio_run)
+async def test_an_agent_that_has_begun_an_action_ends_the_round_with_its_turn(order: list[str]) -> None:
+    def make_turn(bench: Bench) -> bool:
+        if len(bench.turns) == 3:
             scheduler.poll_soon()
-            return super().run(fuel)
+            asyncio.get_running_loop().call_soon(lambda: order.append(f"after {len(bench.turns)}"))
+        return len(bench.turns) == 6
 
-    async def main() -> None:
-        scheduler.make_ready(Acting("a", 1000, log))
-        await asyncio.sleep(0)
-        log.append("loop")
-        scheduler.stop()
-
-    scheduler = Scheduler(clock)
-    run(main, clock)
-    assert log == ["a"] * 20 + ["loop"]
+    bench = Bench(1e-9, make_turn)
+    scheduler = Scheduler(WallClock(), real_time=lambda: bench.now)
+    scheduler.make_ready(bench)
+    await bench.over.wait()
+    assert order == ["after 3"]

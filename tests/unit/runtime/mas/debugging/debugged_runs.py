@@ -6,7 +6,6 @@ from typing import Any
 
 import jacaros
 from jacaros import Mas
-from jacaros.runtime.mas.debugging import Debugger
 
 EXAMPLES = Path(__file__).parents[5] / "examples"
 
@@ -36,25 +35,23 @@ def observed(
     """Run a project for some seconds of virtual time, paused and continued by *during*."""
     found = Observed()
 
+    def printed(agent: str, text: str) -> None:
+        found.lines.append((mas.clock.elapsed, agent, text))
+
+    def moved(frame: Any) -> None:
+        if mas.exit_code is None:
+            found.frames.append(frame)
+
     async def main() -> None:
-        mas = Mas(
-            project,
-            seed=1,
-            on_print=lambda agent, text: found.lines.append((mas.clock.elapsed, agent, text)),
-            on_log=lambda *line: None,
-            seconds=seconds,
-            **options,
-        )
         async with mas:
             world = mas.system.ros.world
             if world is not None:
-                world.ground_truth.listen(
-                    lambda frame: found.frames.append(frame) if mas.exit_code is None else None
-                )
+                world.ground_truth.listen(moved)
             if during is not None:
                 await during(mas, found)
             await mas.ended()
 
+    mas = Mas(project, seed=1, on_print=printed, on_log=lambda *line: None, seconds=seconds, **options)
     jacaros.run(main(), clock="fast")
     return found
 
@@ -74,16 +71,19 @@ count(0).
 
 
 def debugged(
-    test: Callable[[Mas, Debugger, list[str]], Awaitable[None]], program: str = COUNTER, **options: Any
+    test: Callable[[Mas], Awaitable[None]],
+    program: str = COUNTER,
+    lines: list[str] | None = None,
+    **options: Any,
 ) -> list[str]:
     """Run *test* with an agent bob; what bob printed."""
-    lines: list[str] = []
+    said = [] if lines is None else lines
 
     async def main() -> None:
-        mas = Mas(seed=1, on_print=lambda agent, text: lines.append(text), on_log=lambda *line: None)
+        mas = Mas(seed=1, on_print=lambda agent, text: said.append(text), on_log=lambda *line: None)
         async with mas:
             mas.add_agent("bob", program, options=options)
-            await test(mas, mas.debugger, lines)
+            await test(mas)
 
     jacaros.run(main(), clock="fast")
-    return lines
+    return said

@@ -1,8 +1,6 @@
 """A pause on a real graph first stops the robots that our artifacts drive."""
 
 import asyncio
-import sys
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,47 +15,41 @@ from jacaros.runtime.clock import WallClock
 from jacaros.runtime.mas.debugging.debugger import command_standstill, not_paused
 from jacaros.runtime.mas.options import RunOptions
 
-sys.path.insert(0, str(Path(__file__).parents[3]))
-from fake_real_time import FakeTimeLoop, in_fake_time
-
 REAL = RunOptions(ros="ros2")
 
 
-def test_the_robot_stops_during_a_pause_and_continues_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.real_time
+async def test_the_robot_stops_during_a_pause_and_continues_afterwards() -> None:
     """The world has a clock of its own, as a real robot has; only that of the run is paused."""
-
-    async def main(loop: FakeTimeLoop) -> None:
-        ours, theirs = WallClock(), WallClock()
-        backend = open_backend("memory", theirs, "test")
-        await backend.start()
-        world = World.load("empty", 1)
-        sim = SimNode(world, backend, theirs)
-        sim.start()
-        environment = Environment(ours, {"ros": backend})
-        workspace = environment.workspace("/main")
-        artifact = await workspace.make_artifact("wheels", ArtCmdVel)
-        robot = world.robot(None)
-        outcomes: list[Any] = []
-        workspace.execute(OperationRequest(artifact, "moveForward", (2.0,), "bob", None, outcomes.append))
-        await asyncio.sleep(2.0)
-        graph: Any = SimpleNamespace(joined=backend)
-        command_standstill(graph, REAL)
-        ours.pause_timers()
-        await asyncio.sleep(2.0)
-        stopped = robot.pose[0]
-        assert 0.1 < stopped < 1.9
-        await asyncio.sleep(30.0)
-        assert robot.pose[0] == pytest.approx(stopped, abs=0.001)
-        assert not outcomes
-        ours.resume()
-        await asyncio.sleep(30.0)
-        assert [(outcome.ok, outcome.message) for outcome in outcomes] == [(True, None)]
-        assert robot.pose[0] == pytest.approx(2.0, abs=0.05)
-        await environment.close()
-        sim.close()
-        await backend.close()
-
-    in_fake_time(monkeypatch, main)
+    ours, theirs = WallClock(), WallClock()
+    backend = open_backend("memory", theirs, "test")
+    await backend.start()
+    world = World.load("empty", 1)
+    sim = SimNode(world, backend, theirs)
+    sim.start()
+    environment = Environment(ours, {"ros": backend})
+    workspace = environment.workspace("/main")
+    artifact = await workspace.make_artifact("wheels", ArtCmdVel)
+    robot = world.robot(None)
+    outcomes: list[Any] = []
+    workspace.execute(OperationRequest(artifact, "moveForward", (2.0,), "bob", None, outcomes.append))
+    await asyncio.sleep(2.0)
+    graph: Any = SimpleNamespace(joined=backend)
+    command_standstill(graph, REAL)
+    ours.pause_timers()
+    await asyncio.sleep(2.0)
+    stopped = robot.pose[0]
+    assert 0.1 < stopped < 1.9
+    await asyncio.sleep(30.0)
+    assert robot.pose[0] == pytest.approx(stopped, abs=0.001)
+    assert not outcomes
+    ours.resume()
+    await asyncio.sleep(30.0)
+    assert [(outcome.ok, outcome.message) for outcome in outcomes] == [(True, None)]
+    assert robot.pose[0] == pytest.approx(2.0, abs=0.05)
+    await environment.close()
+    sim.close()
+    await backend.close()
 
 
 def test_the_embedded_world_is_paused_itself_and_no_command_is_sent() -> None:

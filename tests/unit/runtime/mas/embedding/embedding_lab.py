@@ -1,12 +1,13 @@
 """Systems in Python programs: an artifact that counts, and a run on the virtual clock."""
 
 from collections.abc import Awaitable, Callable
+from typing import Any
 
 import jacaros
 from jacaros import Mas
 from jacaros.artifacts import Artifact, Out, operation
 
-Test = Callable[[Mas], Awaitable[None]]
+Test = Callable[..., Awaitable[None]]
 
 
 class Counter(Artifact):
@@ -33,19 +34,16 @@ class Counter(Artifact):
         result.set(2 * number)
 
 
-def run(test: Test, lines: list[str] | None = None, logs: list[str] | None = None, **options: object) -> Mas:
+def run(test: Test, lines: list[str], logs: list[str], **options: Any) -> Mas:
     """Run a test in a system of its own, on the virtual clock."""
 
-    def printed(agent: str, text: str) -> None:
-        if lines is not None:
-            lines.append(f"[{agent}] {text}")
-
-    def logged(text: str, level: str) -> None:
-        if logs is not None:
-            logs.append(text)
-
     async def main() -> Mas:
-        async with Mas(seed=1, on_print=printed, on_log=logged, **options) as mas:  # type: ignore[arg-type]
+        async with Mas(
+            seed=1,
+            on_print=lambda agent, text: lines.append(f"[{agent}] {text}"),
+            on_log=lambda text, level: logs.append(text),
+            **options,
+        ) as mas:
             await test(mas)
         return mas
 

@@ -2,8 +2,8 @@
 
 import asyncio
 import json
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pytest
 from embedding_lab import Counter, run
@@ -16,49 +16,31 @@ from jacaros.runtime.clock import VirtualClock, WallClock, clock_of, new_event_l
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.deployment import AgentSpec, FocusSpec, ProjectError
 from jacaros.runtime.mas.embedding.waits import RunEnded, UnknownAgent
-from played import played
 
 
-def test_an_agent_from_a_text_achieves_a_goal() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "+!greet(X) <- .wait(1000); .print(hello, X).")
-        goal = bob.achieve("greet(world)")
-        assert not goal.achieved
-        await goal
-        assert goal.achieved
-        assert mas.clock.now() - began == pytest.approx(1.0)
-
-    began = VirtualClock().now()
-    lines: list[str] = []
-    mas = run(test, lines)
+async def test_an_agent_from_a_text_achieves_a_goal(mas: Mas, lines: list[str]) -> None:
+    goal = mas.add_agent("bob", "+!greet(X) <- .wait(1000); .print(hello, X).").achieve("greet(world)")
+    assert not goal.achieved
+    await goal
+    assert goal.achieved
+    assert mas.clock.elapsed == pytest.approx(1.0)
     assert lines == ["[bob] helloworld"]
+    mas.stop()
     assert mas.exit_code == 0
 
 
-def test_agents_come_from_files_and_specs(tmp_path: Path) -> None:
-    (tmp_path / "ann.asl").write_text("!go. +!go : p(X) <- .print(X).", encoding="utf-8")
-
-    async def test(mas: Mas) -> None:
-        mas.add_agent("ann", beliefs="p(1)")
-        mas.add_agent("second", tmp_path / "ann.asl", beliefs="p(2)")
-        mas.add_agent(AgentSpec("third", tmp_path / "ann.asl", beliefs="p(3)"))
-        assert [agent.name for agent in mas.agents] == ["ann", "second", "third"]
-        await mas.until_idle()
-
-    lines: list[str] = []
-    run(test, lines, folder=tmp_path)
+async def test_agents_come_from_files_and_specs(mas: Mas, lines: list[str], tmp_path: Path) -> None:
+    program = tmp_path / "ann.asl"
+    program.write_text("!go. +!go : p(X) <- .print(X).", encoding="utf-8")
+    mas.add_agent("ann", beliefs="p(1)")
+    mas.add_agent("second", program, beliefs="p(2)")
+    mas.add_agent(AgentSpec("third", program, beliefs="p(3)"))
+    assert [agent.name for agent in mas.agents] == ["ann", "second", "third"]
+    await mas.until_idle()
     assert lines == ["[ann] 1", "[second] 2", "[third] 3"]
-
-
-def test_a_program_in_a_text_includes_files_of_the_folder(tmp_path: Path) -> None:
-    (tmp_path / "greeting.asl").write_text("+!greet <- .print(hi).", encoding="utf-8")
-
-    async def test(mas: Mas) -> None:
-        await mas.add_agent("bob", '{ include("greeting.asl") }').achieve("greet")
-
-    lines: list[str] = []
-    run(test, lines, folder=tmp_path)
-    assert lines == ["[bob] hi"]
+    program.write_text("+!greet <- .print(hi).", encoding="utf-8")
+    await mas.add_agent("bob", '{ include("ann.asl") }').achieve("greet")
+    assert lines[3:] == ["[bob] hi"], "a program in a text includes files of the folder"
 
 
 def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
@@ -69,9 +51,7 @@ def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
     )
     (tmp_path / "a.asl").write_text("+!stop <- .stopMAS(0, 3).", encoding="utf-8")
     project = tmp_path / "p.jcm"
-    project.write_text(
-        "mas p {\n agent a {\n focus: lab.l\n }\n workspace lab {\n artifact l: Lamp()\n }\n}\n"
-    )
+    project.write_text("mas p { agent a { focus: lab.l } workspace lab { artifact l: Lamp() } }")
 
     async def test(mas: Mas) -> None:
         await mas.agent("a").until("lit(false)", timeout=1)
@@ -81,10 +61,9 @@ def test_a_project_runs_inside_a_program(tmp_path: Path) -> None:
         with pytest.raises(RunEnded, match="the run has ended"):
             mas.add_agent("late", "!go.")
 
-    assert run(test, project=project).exit_code == 3
+    assert run(test, [], [], project=project).exit_code == 3
 
 
-@played(run)
 async def test_artifacts_are_made_focused_and_used(mas: Mas) -> None:
     mas.add_artifact_types(Counter)
     lab = mas.create_workspace("lab")
@@ -99,7 +78,6 @@ async def test_artifacts_are_made_focused_and_used(mas: Mas) -> None:
     assert bob.ask("doubled(X)") == {"X": 8}
 
 
-@played(run)
 async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
     mas.create_workspace("lab")
     for workspace in ("/main", "lab"):
@@ -119,7 +97,6 @@ async def test_focus_takes_names_paths_and_specs(mas: Mas) -> None:
     assert "e" not in [agent.name for agent in mas.agents]
 
 
-@played(run)
 async def test_output_is_a_stream(mas: Mas) -> None:
     everything, bobs = mas.output(), mas.output("bob")
     mas.add_agent("bob", "!go. +!go <- .print(a); .wait(1000); .print(b); .wait(1000); .stopMAS.")
@@ -129,19 +106,15 @@ async def test_output_is_a_stream(mas: Mas) -> None:
     assert [tuple(line) for line in everything.take()] == [("bob", "a"), ("ann", "c"), ("bob", "b")]
 
 
-def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[str]) -> None:
-    async def main() -> None:
-        async with Mas() as mas:
-            mas.add_agent("bob", "!go. +!go <- .print(hi); .log(warning, careful).")
-            await mas.until_idle()
-
-    jacaros.run(main(), clock="fast")
+async def test_lines_go_to_standard_output_by_default(capsys: pytest.CaptureFixture[str]) -> None:
+    async with Mas() as mas:
+        mas.add_agent("bob", "!go. +!go <- .print(hi); .log(warning, careful).")
+        await mas.until_idle()
     shown = capsys.readouterr()
     assert shown.out == "[bob] hi\n"
     assert "careful" in shown.err
 
 
-@played(run)
 async def test_a_session_can_act_beside_the_agents(mas: Mas) -> None:
     await mas.make_artifact("counter", Counter, [5])
     bob = mas.add_agent("bob", "", focus=["counter"])
@@ -153,66 +126,55 @@ async def test_a_session_can_act_beside_the_agents(mas: Mas) -> None:
         mas.session("other", workspace="lab")
 
 
-def test_errors_are_raised_at_the_call(tmp_path: Path) -> None:
-    async def test(mas: Mas) -> None:
-        with pytest.raises(AslError, match=r"<bob>:1:16: error: expected a term"):
-            mas.add_agent("bob", "+!go <- .print(.")
-        with pytest.raises(UsageError, match=r"program not found: carl\.asl; expected in"):
-            mas.add_agent("carl")
+async def test_errors_are_raised_at_the_call(mas: Mas, tmp_path: Path) -> None:
+    with pytest.raises(AslError, match=r"<bob>:1:16: error: expected a term"):
+        mas.add_agent("bob", "+!go <- .print(.")
+    with pytest.raises(UsageError, match=r"program not found: carl\.asl; expected in"):
+        mas.add_agent("carl")
+    mas.add_agent("bob", "")
+    with pytest.raises(UsageError, match="duplicate agent name `bob`"):
         mas.add_agent("bob", "")
-        with pytest.raises(UsageError, match="duplicate agent name `bob`"):
-            mas.add_agent("bob", "")
-        with pytest.raises(UnknownAgent, match="unknown agent `bbo`; did you mean `bob`"):
-            mas.agent("bbo")
-        with pytest.raises(UnknownAgent, match="unknown agent `x`; agents: bob"):
-            mas.agent("x")
-        mas.add_artifact_types(Counter)
-        with pytest.raises(OperationFailed, match="unknown artifact type `Countr`; did you mean `Counter`"):
-            await mas.make_artifact("c", "Countr")
-        with pytest.raises(OperationFailed, match="cannot create artifact"):
-            await mas.make_artifact("c", Counter, ["far"])
-
-    run(test, folder=tmp_path)
+    with pytest.raises(UnknownAgent, match="unknown agent `bbo`; did you mean `bob`"):
+        mas.agent("bbo")
+    with pytest.raises(UnknownAgent, match="unknown agent `x`; agents: bob"):
+        mas.agent("x")
+    mas.add_artifact_types(Counter)
+    with pytest.raises(OperationFailed, match="unknown artifact type `Countr`; did you mean `Counter`"):
+        await mas.make_artifact("c", "Countr")
+    with pytest.raises(OperationFailed, match="cannot create artifact"):
+        await mas.make_artifact("c", Counter, ["far"])
     with pytest.raises(ProjectError, match=r"nothing.jcm"):
         Mas(tmp_path / "nothing.jcm")
     with pytest.raises(UsageError, match="unknown ROS backend 'ros3'"):
         Mas(ros="ros3")
 
 
-def test_a_system_is_used_inside_its_block() -> None:
+async def test_a_system_is_used_inside_its_block() -> None:
     mas = Mas()
     assert repr(mas) == "<Mas mas, not begun>"
     with pytest.raises(RunEnded, match="use it inside `async with Mas"):
         mas.add_agent("bob", "")
-
-    async def twice() -> None:
-        async with mas:
-            assert repr(mas) == "<Mas mas, running>"
+    async with mas:
+        assert repr(mas) == "<Mas mas, running>"
+    with pytest.raises(UsageError, match="this Mas has already run"):
         async with mas:
             pass
-
-    with pytest.raises(UsageError, match="this Mas has already run"):
-        jacaros.run(twice(), clock="fast")
     assert repr(mas) == "<Mas mas, ended with exit code 0>"
 
 
-def test_two_systems_share_a_loop() -> None:
-    async def main() -> None:
-        lines: list[str] = []
-        async with (
-            Mas(name="one", on_print=lambda agent, text: lines.append(f"one {text}")) as one,
-            Mas(name="two", on_print=lambda agent, text: lines.append(f"two {text}")) as two,
-        ):
-            for mas in (one, two):
-                mas.add_agent("bob", "!go. +!go <- .wait(1000); .my_name(N); .print(N); +done.")
-            await one.agent("bob").until("done")
-            await two.agent("bob").until("done")
-            one.stop(4)
-            assert (one.exit_code, two.exit_code) == (4, None)
-            await two.agent("bob").achieve("go")
-        assert lines == ["one bob", "two bob", "two bob"]
-
-    jacaros.run(main(), clock="fast")
+async def test_two_systems_share_a_loop(lines: list[str]) -> None:
+    async with (
+        Mas(name="one", on_print=lambda agent, text: lines.append(f"one {text}")) as one,
+        Mas(name="two", on_print=lambda agent, text: lines.append(f"two {text}")) as two,
+    ):
+        for mas in (one, two):
+            mas.add_agent("bob", "!go. +!go <- .wait(1000); .my_name(N); .print(N); +done.")
+        await one.agent("bob").until("done")
+        await two.agent("bob").until("done")
+        one.stop(4)
+        assert (one.exit_code, two.exit_code) == (4, None)
+        await two.agent("bob").achieve("go")
+    assert lines == ["one bob", "two bob", "two bob"]
 
 
 def test_a_system_works_on_a_plain_loop_and_in_a_running_one() -> None:
@@ -242,97 +204,64 @@ def test_the_clock_of_a_loop_is_known() -> None:
     loop.close()
 
 
-def test_an_output_callback_that_raises_does_not_affect_agents() -> None:
-    async def test(mas: Mas) -> None:
-        def refuse(agent: str, text: str) -> None:
-            raise ValueError("no printing")
+async def test_an_output_callback_that_raises_does_not_affect_agents(
+    mas: Mas, lines: list[str], logs: list[str]
+) -> None:
+    def refuse(agent: str, text: str) -> None:
+        raise ValueError("no printing")
 
-        mas.on_print(refuse)
-        await mas.add_agent("bob", "+!go <- .print(a); .print(b).").achieve("go")
-
-    lines: list[str] = []
-    logs: list[str] = []
-    run(test, lines, logs)
+    mas.on_print(refuse)
+    await mas.add_agent("bob", "+!go <- .print(a); .print(b).").achieve("go")
     assert lines == ["[bob] a", "[bob] b"]
     assert "ValueError: no printing" in logs[0]
 
 
-def test_calls_from_another_thread_are_refused_with_a_fix() -> None:
-    async def test(mas: Mas) -> None:
-        bob = mas.add_agent("bob", "+!work(N) <- .print(N).")
-        calls = {
-            "achieve": lambda: bob.achieve("work(1)"),
-            "perceive": lambda: bob.perceive("x(1)"),
-            "add_agent": lambda: mas.add_agent("eve", "x."),
-            "stop": mas.stop,
-        }
-        for name, call in calls.items():
-            with pytest.raises(UsageError, match=r"called in thread .*loop\.call_soon_threadsafe"):
-                await asyncio.to_thread(call)
-            refused.append(name)
-
-    refused: list[str] = []
-    mas = run(test, [])
-    assert refused == ["achieve", "perceive", "add_agent", "stop"]
-    assert mas.exit_code == 0
+async def test_calls_from_another_thread_are_refused_with_a_fix(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "+!work(N) <- .print(N).")
+    add = partial(mas.add_agent, "eve", "x.")
+    for call in (partial(bob.achieve, "work(1)"), partial(bob.perceive, "x(1)"), add, mas.stop):
+        with pytest.raises(UsageError, match=r"called in thread .*loop\.call_soon_threadsafe"):
+            await asyncio.to_thread(call)
+    assert mas.exit_code is None
 
 
 @pytest.mark.parametrize("name", ["", "a b", "a\n[b] forged", "n\0"])
-@played(run, lines=[])
 async def test_a_name_that_would_forge_output_is_refused(mas: Mas, name: str) -> None:
     with pytest.raises(UsageError, match="invalid agent name"):
         mas.add_agent(name, "x.")
 
 
-def test_an_agent_continues_in_another_run() -> None:
+async def test_an_agent_continues_in_another_run(mas: Mas, lines: list[str], logs: list[str]) -> None:
     program = "day(0). !work. +!work : day(N) <- -+day(N + 1); .print(N + 1); .wait(1000); !work."
-    lines: list[str] = []
-    kept: list[str] = []
-
-    async def first(mas: Mas) -> None:
-        bob = mas.add_agent("bob", program)
-        await mas.sleep(2.5)
-        kept.append(json.dumps(bob.stored()))
-
-    async def second(mas: Mas) -> None:
-        began = mas.clock.now()
-        bob = mas.add_agent("bob", program, stored=json.loads(kept[0]))
-        await bob.until("day(4)")
-        # Half of the wait was left, and the clock begins anew with the run.
-        assert mas.clock.now() - began == pytest.approx(0.5)
-
-    run(first, lines)
-    run(second, lines)
+    bob = mas.add_agent("bob", program)
+    await mas.sleep(2.5)
+    kept = json.dumps(bob.stored())
+    mas.stop()
+    async with Mas(on_print=lambda agent, text: lines.append(f"[{agent}] {text}")) as other:
+        began = other.clock.now()
+        await other.add_agent("bob", program, stored=json.loads(kept)).until("day(4)")
+        assert other.clock.now() - began == pytest.approx(0.5), "half of the wait was left"
     assert lines == ["[bob] 1", "[bob] 2", "[bob] 3", "[bob] 4"]
 
 
-def test_an_agent_that_continues_perceives_anew() -> None:
+async def test_an_agent_that_continues_perceives_anew(mas: Mas, lines: list[str]) -> None:
     program = "+door(X) <- +last(X); .print(X)."
-    lines: list[str] = []
-    kept: list[dict[str, Any]] = []
-
-    async def first(mas: Mas) -> None:
-        bob = mas.add_agent("bob", program)
-        bob.perceive("door(open)", "door(wide)")
-        await mas.until_idle()
-        kept.append(bob.stored())
-
-    async def second(mas: Mas) -> None:
-        bob = mas.add_agent("bob", program, stored=kept[0])
-        bob.perceive("door(open)")
-        await mas.until_idle()
-        assert [each["X"] for each in bob.answers("door(X)")] == [Atom("open")]
-        bob.perceive_no_more("door(open)")
-        await mas.until_idle()
-        assert not bob.believes("door(_)")
-        assert bob.believes("last(wide)")
-
-    run(first, lines)
-    run(second, lines)
+    bob = mas.add_agent("bob", program)
+    bob.perceive("door(open)", "door(wide)")
+    await mas.until_idle()
+    kept = bob.stored()
+    bob.kill()
+    bob = mas.add_agent("bob", program, stored=kept)
+    bob.perceive("door(open)")
+    await mas.until_idle()
+    assert [each["X"] for each in bob.answers("door(X)")] == [Atom("open")]
+    bob.perceive_no_more("door(open)")
+    await mas.until_idle()
+    assert not bob.believes("door(_)")
+    assert bob.believes("last(wide)")
     assert lines == ["[bob] open", "[bob] wide", "[bob] open"]
 
 
-@played(run)
 async def test_there_is_no_agent_when_what_was_stored_does_not_fit_its_program(mas: Mas) -> None:
     bob = mas.add_agent("bob", "!go. +!go <- .wait(1000).")
     await mas.sleep(0.5)
@@ -346,9 +275,8 @@ async def test_there_is_no_agent_when_what_was_stored_does_not_fit_its_program(m
     assert [each.name for each in mas.agents] == ["bob"]
 
 
-@played(run)
-async def test_an_agent_in_the_middle_of_a_step_is_not_stored(mas: Mas) -> None:
-    bob = mas.add_agent("bob", "!go. +!go <- .print(now).")
+async def test_an_agent_in_the_middle_of_a_step_or_with_an_awaited_goal_is_not_stored(mas: Mas) -> None:
+    bob = mas.add_agent("bob", "!now. +!now <- .print(now). +!go <- .wait(1000).")
     refused: list[str] = []
 
     def store(agent: str, text: str) -> None:
@@ -359,11 +287,6 @@ async def test_an_agent_in_the_middle_of_a_step_is_not_stored(mas: Mas) -> None:
     mas.on_print(store)
     await mas.until_idle()
     assert refused == ["bob now UsageError"]
-
-
-@played(run)
-async def test_an_agent_whose_goal_python_code_awaits_is_not_stored(mas: Mas) -> None:
-    bob = mas.add_agent("bob", "+!go <- .wait(1000).")
     goal = bob.achieve("go")
     await mas.sleep(0.5)
     with pytest.raises(jacaros.NotStorable, match="Python code awaits a goal"):

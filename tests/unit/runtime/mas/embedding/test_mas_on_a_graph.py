@@ -6,19 +6,15 @@ from typing import Any
 import pytest
 from embedding_lab import run
 
-import jacaros
 from jacaros import Mas
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.deployment import ProjectError
 
 
-def test_a_virtual_clock_excludes_a_real_graph() -> None:
-    async def main() -> None:
+async def test_a_virtual_clock_excludes_a_real_graph() -> None:
+    with pytest.raises(UsageError, match="--clock fast excludes"):
         async with Mas(ros="ros1"):
             pytest.fail("it began")
-
-    with pytest.raises(UsageError, match="--clock fast excludes"):
-        jacaros.run(main(), clock="fast")
 
 
 def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Path) -> None:
@@ -34,14 +30,8 @@ def test_a_mapping_and_other_names_are_given_as_on_the_command_line(tmp_path: Pa
         assert mas.ros.resolve("odom") == "/odom"
         assert mas.ros.resolve("scan") == "/other/scan"
 
-    run(
-        test,
-        lines,
-        mappings=[mapping],
-        world="empty",
-        remap={"/other/odom": "/odom"},
-        namespace="other",
-    )
+    other = {"remap": {"/other/odom": "/odom"}, "namespace": "other"}
+    run(test, lines, [], mappings=[mapping], world="empty", **other)
     assert lines == ["[bob] 0"]
 
 

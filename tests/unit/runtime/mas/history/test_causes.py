@@ -19,9 +19,8 @@ def recorder() -> tuple[CauseRecords, list[dict[str, Any]], VirtualClock]:
 
 def twist(x: float) -> Any:
     """A velocity command."""
-    return SimpleNamespace(
-        linear=SimpleNamespace(x=x, y=0.0, z=0.0), angular=SimpleNamespace(x=0.0, y=0.0, z=0.0)
-    )
+    still = {"y": 0.0, "z": 0.0}
+    return SimpleNamespace(linear=SimpleNamespace(x=x, **still), angular=SimpleNamespace(x=0.0, **still))
 
 
 def test_a_cause_of_the_generation_before_is_still_known(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,22 +48,13 @@ def test_a_command_to_stop_is_recorded_at_once() -> None:
 
 def command(number: int, t: float, x: float) -> tuple[float, str, dict[str, Any]]:
     """The record of a command."""
-    what = f"/cmd_vel: linear.x={x}"
-    return (
-        t,
-        "cause",
-        {"id": number, "parent": 0, "kind": "command", "what": what, "topic": "/cmd_vel", "at": t},
-    )
+    data = {"kind": "command", "what": f"/cmd_vel: linear.x={x}", "topic": "/cmd_vel", "at": t}
+    return t, "cause", {"id": number, "parent": 0, **data}
 
 
 def test_the_robot_stopped_at_the_first_command_after_its_last_motion() -> None:
-    records = [
-        command(1, 1.0, 0.0),
-        command(2, 2.0, 0.3),
-        command(3, 3.0, 0.0),
-        command(4, 4.0, 0.0),
-        (9.0, "agent", {"agent": "ann", "state": "began"}),
-    ]
+    records = [command(number, float(number), x) for number, x in enumerate((0.0, 0.3, 0.0, 0.0), 1)]
+    records.append((9.0, "agent", {"agent": "ann", "state": "began"}))
     assert explain(records, "stopped").text().startswith("the robot stopped at 3.000 s")
 
 

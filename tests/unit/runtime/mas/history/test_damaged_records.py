@@ -12,55 +12,13 @@ from jacaros.look.why.why import explain
 from jacaros.runtime.errors import UsageError
 
 QUESTIONS = (
-    "stopped",
-    "command",
-    "operation",
-    "+battery(_)",
-    "+alarm",
-    "!patrol(_)",
-    "plan @low",
-    "plan guard.asl:8",
-    "belief battery(_)",
-    "waiting",
-    "nothing",
-    "go",
-)
+    "stopped", "command", "operation", "+battery(_)", "+alarm", "!patrol(_)", "plan @low", "plan guard.asl:8",
+    "belief battery(_)", "waiting", "nothing", "go",
+)  # fmt: skip
 PIECES = (
-    *(
-        "why",
-        "plan",
-        "belief",
-        "changed",
-        "@low",
-        "+",
-        "-",
-        "!",
-        "?",
-        "alarm(_)",
-        "battery(X",
-        "go(dock)",
-        "(",
-        ")",
-    ),
-    *(
-        "robot.asl:14",
-        ":",
-        "stopped",
-        "'",
-        '"',
-        "[",
-        "]",
-        "{",
-        "~",
-        "^",
-        "X",
-        "1",
-        "p::q(1)",
-        "+!",
-        "-?",
-        "'a b'(1)",
-    ),
-)
+    "why", "plan", "belief", "changed", "@low", "+", "-", "!", "?", "alarm(_)", "battery(X", "go(dock)", "(", ")",
+    "robot.asl:14", ":", "stopped", "'", '"', "[", "]", "{", "~", "^", "X", "1", "p::q(1)", "+!", "-?", "'a b'(1)",
+)  # fmt: skip
 WRONG: tuple[Any, ...] = (None, 1, "x", "(", [], {}, [1], {"a": 1}, -1, 1e9)
 
 

@@ -10,9 +10,8 @@ from jacaros.runtime.mas.history.history import History
 
 
 def test_agents_created_later_are_observed():
-    records = records_of(
-        {"ann": "p."}, during=lambda mas: mas.add_agent("bob", "!go. +!go <- .wait(1000); .print(x).")
-    )
+    program = "!go. +!go <- .wait(1000); .print(x)."
+    records = records_of({"ann": "p."}, during=lambda mas: mas.add_agent("bob", program))
     assert [(t, data["agent"], data["state"]) for t, event, data in records if event == "goal"] == [
         (5.0, "bob", "pursued"),
         (6.0, "bob", "achieved"),
@@ -21,102 +20,88 @@ def test_agents_created_later_are_observed():
 
 def test_a_goal_that_is_open_when_the_run_ends_is_dropped():
     records = records_of({"ann": "!go. +!go <- !on. +!on <- .wait(3000); .stopMAS(0, 4)."})
-    assert [
-        (t, data["goal"]) for t, event, data in records if event == "goal" and data["state"] == "dropped"
-    ] == [
-        (3.0, "!go"),
-        (3.0, "!on"),
-    ]
+    goals = [(t, data) for t, event, data in records if event == "goal"]
+    dropped = [(t, data["goal"]) for t, data in goals if data["state"] == "dropped"]
+    assert dropped == [(3.0, "!go"), (3.0, "!on")]
     assert of(records, "ended") == [{"code": 4}]
 
 
-def observed(act):
-    """Run *act* with the history of a system on which nothing happens."""
+@pytest.fixture(autouse=True)
+def play():
+    """Run a scene with the history of a system on which nothing happens."""
 
-    async def main():
+    async def main(scene):
         async with Mas(on_log=lambda *line: None) as mas:
-            act(History(mas.system, kept=3))
+            await scene(mas=mas, history=History(mas.system, kept=3))
 
-    jacaros.run(main(), clock="fast")
-
-
-def test_old_records_are_dropped_except_those_that_describe_present_agents():
-    def act(history):
-        history.record(records.Agent("ann", "began"))
-        history.record(records.Agent("bob", "began"))
-        for number in range(3):
-            history.record(records.Log("info", str(number)))
-        assert [data for _, _, data in history.all()][:2] == [
-            {"agent": "ann", "state": "began"},
-            {"agent": "bob", "state": "began"},
-        ]
-        assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
-        history.record(records.Agent("ann", "ended"))
-        for number in range(3):
-            history.record(records.Log("info", str(number)))
-        assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
-
-    observed(act)
+    return lambda scene: jacaros.run(main(scene), clock="fast")
 
 
-def test_nothing_of_an_ended_agent_lasts():
-    def act(history):
-        for name in ("ann", "bob"):
-            history.record(records.Agent(name, "began"))
-            history.record(records.Belief(name, "+", "kind"))
-            history.record(records.Goal(name, "!go", "pursued", 1))
-            history.record(records.Goal(name, "!go", "suspended", 1))
-        history.record(records.Agent("ann", "ended"))
-        for number in range(3):
-            history.record(records.Log("info", str(number)))
-        assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
-            ("agent", "began"),
-            ("belief", None),
-            ("goal", "pursued"),
-            ("goal", "suspended"),
-        ]
-        assert all(data["agent"] == "bob" for _, _, data in history.all()[:-3])
-
-    observed(act)
+@pytest.fixture
+def history():
+    """The place of the history."""
 
 
-def test_a_listener_hears_until_it_ends():
-    def act(history):
-        heard = []
-        end = history.listen(lambda t, event, data: heard.append(data["text"]))
-        history.record(records.Log("info", "one"))
-        end()
-        end()
-        history.record(records.Log("info", "two"))
-        assert heard == ["one"]
+def log(history, *texts):
+    for text in texts:
+        history.record(records.Log("info", text))
 
-    observed(act)
+
+async def test_old_records_are_dropped_except_those_that_describe_present_agents(history):
+    history.record(records.Agent("ann", "began"))
+    history.record(records.Agent("bob", "began"))
+    log(history, "0", "1", "2")
+    present = [{"agent": name, "state": "began"} for name in ("ann", "bob")]
+    assert [data for _, _, data in history.all()][:2] == present
+    assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
+    history.record(records.Agent("ann", "ended"))
+    log(history, "0", "1", "2")
+    assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
+
+
+async def test_nothing_of_an_ended_agent_lasts(history):
+    for name in ("ann", "bob"):
+        history.record(records.Agent(name, "began"))
+        history.record(records.Belief(name, "+", "kind"))
+        history.record(records.Goal(name, "!go", "pursued", 1))
+        history.record(records.Goal(name, "!go", "suspended", 1))
+    history.record(records.Agent("ann", "ended"))
+    log(history, "0", "1", "2")
+    assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
+        ("agent", "began"),
+        ("belief", None),
+        ("goal", "pursued"),
+        ("goal", "suspended"),
+    ]
+    assert all(data["agent"] == "bob" for _, _, data in history.all()[:-3])
+
+
+async def test_an_artifact_that_was_disposed_is_not_kept(history):
+    for state in ("made", "disposed"):
+        history.record(records.Artifact("/main/lamp", state=state))
+    history.record(records.Artifact("/main/door", state="made"))
+    log(history, "0", "1", "2")
+    assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
+
+
+async def test_a_listener_hears_until_it_ends(history):
+    heard = []
+    end = history.listen(lambda t, event, data: heard.append(data["text"]))
+    log(history, "one")
+    end()
+    end()
+    log(history, "two")
+    assert heard == ["one"]
 
 
 @pytest.mark.parametrize("starts", [1, 2])
-def test_the_last_stop_ends_the_observation(starts):
-    async def main():
-        async with Mas(on_log=lambda *line: None) as mas:
-            history = mas.system.history()
-            assert mas.system.history() is history
-            for _ in range(starts):
-                history.start()
-            history.stop()
-            mas.add_agent("ann", "!go. +!go.")
-            await mas.system.clock.sleep(1.0)
-            assert ("goal" in {each.event for each in history.events}) == (starts == 2)
-            history.stop()
-
-    jacaros.run(main(), clock="fast")
-
-
-def test_an_artifact_that_was_disposed_is_not_kept():
-    def act(history):
-        for state in ("made", "disposed"):
-            history.record(records.Artifact("/main/lamp", state=state))
-        history.record(records.Artifact("/main/door", state="made"))
-        for number in range(3):
-            history.record(records.Log("info", str(number)))
-        assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
-
-    observed(act)
+async def test_the_last_stop_ends_the_observation(mas, starts):
+    history = mas.system.history()
+    assert mas.system.history() is history
+    for _ in range(starts):
+        history.start()
+    history.stop()
+    mas.add_agent("ann", "!go. +!go.")
+    await mas.system.clock.sleep(1.0)
+    assert ("goal" in {each.event for each in history.events}) == (starts == 2)
+    history.stop()

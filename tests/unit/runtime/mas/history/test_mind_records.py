@@ -9,25 +9,20 @@ from jacaros import PythonAgent
 from jacaros.runtime.mas.embedding.mas import Mas
 
 
-def test_a_run_says_what_it_is():
-    (run,) = of(records_of({"ann": "p."}), "run")
-    assert (run["clock"], run["ros"], run["seed"]) == ("fast", "memory", 1)
-    assert run["jacaros"]
-    assert run["name"]
-
-
 def test_agents_begin_and_end():
     def during(mas):
         mas.add_agent("bob", "p.")
         mas.system.end_agent("ann")
 
-    agents = of(records_of({"ann": "p."}, during=during), "agent")
-    assert [(each["agent"], each["state"]) for each in agents] == [
-        ("ann", "began"),
-        ("bob", "began"),
-        ("ann", "ended"),
-    ]
+    records = records_of({"ann": "p."}, during=during)
+    agents = of(records, "agent")
+    states = [(each["agent"], each["state"]) for each in agents]
+    assert states == [("ann", "began"), ("bob", "began"), ("ann", "ended")]
     assert agents[0]["what"] == "asl"
+    (run,) = of(records, "run")
+    assert (run["clock"], run["ros"], run["seed"]) == ("fast", "memory", 1)
+    assert run["jacaros"]
+    assert run["name"]
 
 
 def test_a_program_has_its_plans_rules_and_source(tmp_path):
@@ -37,15 +32,8 @@ def test_a_program_has_its_plans_rules_and_source(tmp_path):
     (program,) = of(records, "program")
     assert program["rules"] == ["safe(X) :- p(X) & X > 2"]
     first, second = program["plans"]
-    assert first == {
-        "id": 1,
-        "label": "first",
-        "trigger": "+!go",
-        "context": "safe(Y)",
-        "file": first["file"],
-        "line": 4,
-        "end": 6,
-    }
+    place = {"file": first["file"], "line": 4, "end": 6}
+    assert first == {"id": 1, "label": "first", "trigger": "+!go", "context": "safe(Y)", **place}
     assert (second["id"], second["trigger"], second["context"]) == (2, "-!go", "")
     (source,) = of(records, "source")
     assert source == {"file": first["file"], "text": file.read_text()}
@@ -58,12 +46,8 @@ def test_a_program_is_recorded_again_when_its_plans_change():
 
 
 def test_beliefs_say_where_they_come_from():
-    records = records_of(
-        {
-            "ann": 'p(1). !go. +!go <- .wait(1000);\n +q("a b", X); -p(_); .send(bob, tell, r(2)).',
-            "bob": "true.".replace("true.", "s."),
-        }
-    )
+    program = 'p(1). !go. +!go <- .wait(1000);\n +q("a b", X); -p(_); .send(bob, tell, r(2)).'
+    records = records_of({"ann": program, "bob": "s."})
     beliefs = [(t, data) for t, event, data in records if event == "belief"]
     assert [(t, data["agent"], data["op"], data["belief"]) for t, data in beliefs] == [
         (0.0, "ann", "+", "p(1)[source(self)]"),
@@ -97,9 +81,8 @@ def test_the_chain_leads_from_the_act_over_the_percept_to_the_event(tmp_path):
     (tmp_path / "ann.asl").write_text(
         "!go.\n+!go\n <- switch(5).\n+power(P) : P > 2 <- !react(P).\n+!react(P) <-\n switch(1).\n"
     )
-    (tmp_path / "p.jcm").write_text(
-        "mas p { agent ann { focus: w.lamp } workspace w { artifact lamp: Lamp } }"
-    )
+    project = "mas p { agent ann { focus: w.lamp } workspace w { artifact lamp: Lamp } }"
+    (tmp_path / "p.jcm").write_text(project)
     records = records_of({}, project=tmp_path / "p.jcm")
     links = {each["id"]: each for each in (*of(records, "cause"), *of(records, "deliberation"))}
     second = [each for each in of(records, "cause") if each["kind"] == "act"][1]
@@ -132,9 +115,6 @@ def test_a_deliberation_says_why_plans_were_refused():
         {"plan": 2, "why": "stops at `B > L` with B=12, L=20"},
     ]
     assert (sub["trigger"], sub["parent"], sub["intention"]) == ("+!sub(12)", go["id"], 1)
-
-
-def test_a_deliberation_without_an_applicable_plan_chooses_none():
     (event,) = of(records_of({"ann": "p(1). +p(X) : X > 3 <- true."}), "deliberation")
     assert (event["chosen"], event["untried"]) == (None, [])
     assert event["options"] == [{"plan": 1, "why": "stops at `X > 3` with X=1"}]
@@ -182,13 +162,10 @@ def test_a_suspended_intention_says_why():
     assert suspended[0]["reason"]
 
 
-def test_intentions_are_checked_ten_times_a_second():
+def test_intentions_are_checked_ten_times_a_second_some_of_many():
     program = "!go. +!go <- for (.range(I, 1, 300)) { .wait(10) }."
     found = of(records_of({"ann": program}, seconds=4.0), "intention")
     assert 20 <= len(found) <= 32
-
-
-def test_of_many_agents_some_are_checked_in_each_period():
     programs: dict[str, str | Path] = {f"a{number}": "!go. +!go <- .wait(9000)." for number in range(120)}
     found = Counter(t for t, event, _ in records_of(programs, seconds=4.0) if event == "intention")
     assert found == {0.1: 50, 0.2: 50, 0.3: 20}
@@ -196,19 +173,13 @@ def test_of_many_agents_some_are_checked_in_each_period():
 
 def test_an_agent_that_ends_drops_its_goals():
     records = records_of({"ann": "!go. +!go <- .wait(9000)."}, during=lambda mas: mas.system.end_agent("ann"))
-    assert [(t, data["state"]) for t, event, data in records if event == "goal"] == [
-        (0.0, "pursued"),
-        (5.0, "dropped"),
-    ]
+    states = [(t, data["state"]) for t, event, data in records if event == "goal"]
+    assert states == [(0.0, "pursued"), (5.0, "dropped")]
 
 
 def test_messages_link_what_two_agents_do():
-    records = records_of(
-        {
-            "ann": "!go. +!go <- .send(bob, achieve, greet(ann)); .send(bob, askOne, name(_), name(N)).",
-            "bob": "name(bob). +!greet(A) <- .wait(10).",
-        }
-    )
+    asks = "!go. +!go <- .send(bob, achieve, greet(ann)); .send(bob, askOne, name(_), name(N))."
+    records = records_of({"ann": asks, "bob": "name(bob). +!greet(A) <- .wait(10)."})
     achieve, ask, *rest = [each for each in of(records, "message") if each["state"] == "sent"]
     assert (achieve["from"], achieve["to"], achieve["performative"]) == ("ann", "bob", "achieve")
     assert (achieve["content"], ask["content"]) == ("greet(ann)", "name(_)")
@@ -217,11 +188,8 @@ def test_messages_link_what_two_agents_do():
     go, greet = of(records, "deliberation")
     assert achieve["cause"] == go["id"]
     assert greet["parent"] == achieve["id"]
-    assert [each["id"] for each in of(records, "message") if each["state"] == "read"] == [
-        achieve["id"],
-        ask["id"],
-        answer["id"],
-    ]
+    read = [each["id"] for each in of(records, "message") if each["state"] == "read"]
+    assert read == [achieve["id"], ask["id"], answer["id"]]
 
 
 class Reader(PythonAgent):
@@ -233,31 +201,22 @@ class Reader(PythonAgent):
 
 
 def test_agents_in_python_read_messages():
-    records = records_of(
-        {"ann": "name(ann). !go. +!go <- .send(pia, tell, p(1)).", "pia": Reader},
-    )
-    assert [(each["what"], each["state"]) for each in of(records, "agent")[:2]] == [
-        ("asl", "began"),
-        ("python", "began"),
-    ]
+    records = records_of({"ann": "name(ann). !go. +!go <- .send(pia, tell, p(1)).", "pia": Reader})
+    states = [(each["what"], each["state"]) for each in of(records, "agent")[:2]]
+    assert states == [("asl", "began"), ("python", "began")]
     told, asked, answer = [each["id"] for each in of(records, "message") if each["state"] == "sent"]
     assert [each["id"] for each in of(records, "message") if each["state"] == "read"] == [told, asked, answer]
 
 
-def test_without_a_listener_nothing_is_observed():
-    async def main():
-        async with Mas(on_log=lambda *line: None) as mas:
-            mas.add_agent("ann", "p.")
-            host = mas.system.directory.find("ann")
-            assert host.mind.observers.mind is None
-            history = mas.system.history()
-            history.start()
-            assert host.mind.observers.mind is not None
-            assert mas.system.mailboxes.observer is not None
-            history.stop()
-            assert host.mind.observers.mind is None
-            assert mas.system.mailboxes.observer is None
-
-    import jacaros
-
-    jacaros.run(main(), clock="fast")
+async def test_without_a_listener_nothing_is_observed():
+    async with Mas(on_log=lambda *line: None) as mas:
+        mas.add_agent("ann", "p.")
+        host = mas.system.directory.find("ann")
+        assert host.mind.observers.mind is None
+        history = mas.system.history()
+        history.start()
+        assert host.mind.observers.mind is not None
+        assert mas.system.mailboxes.observer is not None
+        history.stop()
+        assert host.mind.observers.mind is None
+        assert mas.system.mailboxes.observer is None

@@ -4,7 +4,8 @@ import re
 from pathlib import Path
 from typing import Any
 
-import jacaros
+from observed_runs import records_of
+
 from jacaros import Mas
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.mas.history.run_environment import RobotRecords
@@ -49,20 +50,7 @@ def happened(
     """Run one agent for some seconds and return the records."""
     for name, text in (files or {}).items():
         (folder / name).write_text(text, encoding="utf-8")
-    found: Happened = []
-
-    async def main() -> None:
-        async with Mas(seed=1, folder=folder, on_print=lambda agent, text: None, **options) as mas:
-            history = mas.system.history()
-            end = history.listen(lambda t, event, data: found.append((t, event, dict(data))))
-            history.start()
-            mas.add_agent("ann", program)
-            await mas.sleep(seconds)
-            history.stop()
-            end()
-
-    jacaros.run(main(), clock="fast")
-    return found
+    return records_of({"ann": program}, seconds, folder=folder, **options)
 
 
 def of(found: Happened, event: str, **fields: Any) -> list[dict[str, Any]]:
@@ -74,25 +62,16 @@ def of(found: Happened, event: str, **fields: Any) -> list[dict[str, Any]]:
 
 
 def test_an_artifact_is_recorded_from_creation_to_disposal(tmp_path: Path) -> None:
-    program = """
-        !start.
-        +!start <- makeArtifact(lamp, "Lamp", [], L); focus(L); switch(3); stopFocus(L); disposeArtifact(L).
-    """
+    steps = 'makeArtifact(lamp, "Lamp", [], L); focus(L); switch(3); stopFocus(L); disposeArtifact(L)'
+    program = f"!start. +!start <- {steps}."
     found = happened(tmp_path, program, 1, {"artifacts.py": LAMPS})
-    lamp = [
-        (event, data)
-        for _, event, data in found
-        if data.get("artifact") == "/main/lamp" and event not in ("cause", "operation")
-    ]
-    assert lamp[0] == (
-        "artifact",
-        {"artifact": "/main/lamp", "type": "Lamp", "state": "made", "robot": None},
-    )
-    assert next(data["values"] for event, data in lamp if event == "property") == [0]
-    assert of(found, "focus") == [
-        {"agent": "ann", "artifact": "/main/lamp", "on": True},
-        {"agent": "ann", "artifact": "/main/lamp", "on": False},
-    ]
+    lamp = [each for each in found if each[2].get("artifact") == "/main/lamp"]
+    (_, kind, made), *_ = [each for each in lamp if each[1] not in ("cause", "operation")]
+    assert kind == "artifact"
+    assert made == {"artifact": "/main/lamp", "type": "Lamp", "state": "made", "robot": None}
+    assert of(lamp, "property")[0]["values"] == [0]
+    focus = {"agent": "ann", "artifact": "/main/lamp"}
+    assert of(found, "focus") == [{**focus, "on": True}, {**focus, "on": False}]
     [signal] = of(found, "signal")
     assert signal["signal"] == 'switched(3,"by hand")'
     began, done = of(found, "operation", operation="switch(3)")
@@ -119,10 +98,8 @@ def test_an_operation_fails_with_its_reason_or_because_it_is_cancelled(tmp_path:
         -!broken <- .drop_intention(long).
     """
     found = happened(tmp_path, program, 1, {"artifacts.py": LAMPS})
-    assert [each["reason"] for each in of(found, "operation", state="failed")] == [
-        "it is of glass",
-        "cancelled",
-    ]
+    reasons = [each["reason"] for each in of(found, "operation", state="failed")]
+    assert reasons == ["it is of glass", "cancelled"]
 
 
 def test_recorded_values_are_limited(tmp_path: Path) -> None:
@@ -133,10 +110,7 @@ def test_recorded_values_are_limited(tmp_path: Path) -> None:
     assert all(len(each["operation"]) <= 200 for each in of(found, "operation"))
 
 
-DRIVE = """
-    !start.
-    +!start <- makeArtifact(wheels, "ArtCmdVel", [], W); moveForward(1); .wait(1000).
-"""
+DRIVE = '!start. +!start <- makeArtifact(wheels, "ArtCmdVel", [], W); moveForward(1); .wait(1000).'
 
 
 def test_a_command_is_linked_to_the_operation_and_the_act_behind_it(tmp_path: Path) -> None:
@@ -153,13 +127,10 @@ def test_a_command_is_linked_to_the_operation_and_the_act_behind_it(tmp_path: Pa
     assert max(float(speed[1]) for speed in speeds if speed) > 0.1
     assert commands[-1]["what"] == "/cmd_vel", "the last command, zero, is recorded"
     assert len(commands) < 2 * 8 + 2, "a stream of commands is thinned"
-    [wheels] = of(found, "artifact", artifact="/main/wheels")
+    [wheels] = of(found, "artifact", artifact="/main/wheels", state="made")
     assert wheels["robot"] == "turtlebot"
-
-
-def test_messages_without_effect_are_not_recorded(tmp_path: Path) -> None:
-    found = happened(tmp_path, DRIVE, 8)
-    assert not [each for each in of(found, "cause") if each["kind"] == "sample"]
+    samples = [each for each in links.values() if each["kind"] == "sample"]
+    assert not samples, "messages without effect are not recorded"
 
 
 def test_a_scan_is_recorded_only_while_an_artifact_listens(tmp_path: Path) -> None:
@@ -186,14 +157,12 @@ def test_the_path_of_embedded_navigation_is_recorded_until_the_robot_arrives() -
         def beliefs(self) -> dict[str, Any]:
             return {"rob": self.belief}
 
+    def record(record: Any) -> None:
+        told.append((record.kind, record.plain()))
+
     robots = Robots()
-    records = RobotRecords(
-        VirtualClock(),
-        lambda record: told.append((record.kind, record.plain())),
-        str,
-        lambda: robots,
-        lambda: {"rob": (0.0, 0.0, 0.0)},
-    )
+    there = {"rob": (0.0, 0.0, 0.0)}
+    records = RobotRecords(VirtualClock(), record, str, lambda: robots, lambda: there)
     records.look()
     robots.way = ((0.0, 0.0), (1.0, 2.00049))
     records.look()
@@ -234,21 +203,17 @@ def test_a_message_for_two_artifacts_counts_once_in_the_rate(tmp_path: Path) -> 
 
 
 def test_lines_of_the_log_are_recorded(tmp_path: Path) -> None:
-    logged = of(happened(tmp_path, "!s. +!s <- !lost.", 1, on_log=lambda text, level: None), "log")
+    logged = of(happened(tmp_path, "!s. +!s <- !lost.", 1), "log")
     assert any("lost" in each["text"] for each in logged)
     assert {each["level"] for each in logged} <= {"info", "warning", "error"}
 
 
-def test_nothing_is_linked_without_a_listener(tmp_path: Path) -> None:
+async def test_nothing_is_linked_without_a_listener(tmp_path: Path) -> None:
     (tmp_path / "artifacts.py").write_text(LAMPS, encoding="utf-8")
-
-    async def main() -> None:
-        async with Mas(seed=1, folder=tmp_path, on_print=lambda agent, text: None) as mas:
-            mas.add_agent("ann", '!s. +!s <- makeArtifact(lamp, "Lamp", [], L); switch(1).')
-            await mas.sleep(1)
-            environment = mas.system.environment
-            assert environment is not None
-            assert environment.tracer is None
-            assert environment.listener is None
-
-    jacaros.run(main(), clock="fast")
+    async with Mas(seed=1, folder=tmp_path, on_print=lambda agent, text: None) as mas:
+        mas.add_agent("ann", '!s. +!s <- makeArtifact(lamp, "Lamp", [], L); switch(1).')
+        await mas.sleep(1)
+        environment = mas.system.environment
+        assert environment is not None
+        assert environment.tracer is None
+        assert environment.listener is None

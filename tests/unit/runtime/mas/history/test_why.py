@@ -4,8 +4,9 @@ import json
 from typing import Any
 
 import pytest
-from guard_story import PLANS, RECORDS, cause, event, plan
+from guard_story import PLANS, RECORDS, cause, event, goal, plan, program
 
+from jacaros.look.records.records import Record
 from jacaros.look.why.explanation import Explanation
 from jacaros.look.why.why import explain
 from jacaros.runtime.errors import UsageError
@@ -19,18 +20,22 @@ def kinds(answer: Explanation) -> list[str]:
     return [fact.kind for fact in answer.because]
 
 
+def belief(t: float, text: str, **more: Any) -> Record:
+    return t, "belief", {"agent": "guard", "op": "+", "belief": text, **more}
+
+
 @pytest.mark.parametrize("question", ["stopped", "why did the robot stop?", "Why does robot1 stand still?"])
 def test_a_stop_is_traced_back_to_the_message(question: str) -> None:
     answer = ask(question)
     assert answer.t == 9.1
     assert kinds(answer) == ["command", "operation", "act", "event", "property", "sample"]
-    act, handled = answer.because[2], answer.because[3]
-    assert (
-        act.written()
-        == "guard: step `+battery(B) : limit(L) & B < L <- .drop_intention(patrol(_)); stop` of @low (guard.asl:8)"
-    )
-    assert handled.written() == "guard: +battery(12), handled by @low (guard.asl:7)"
+    step = "`+battery(B) : limit(L) & B < L <- .drop_intention(patrol(_)); stop` of @low"
+    assert answer.because[2].written() == f"guard: step {step} (guard.asl:8)"
+    assert answer.because[3].written() == "guard: +battery(12), handled by @low (guard.asl:7)"
     assert "!patrol(kitchen) dropped at 9.000 s" in answer.text()
+    data = json.loads(json.dumps(answer.data()))
+    assert data["because"][0]["kind"] == "command"
+    assert data["t"] == 9.1
 
 
 def test_a_moving_robot_has_not_stopped() -> None:
@@ -41,32 +46,31 @@ def test_a_moving_robot_has_not_stopped() -> None:
     assert kinds(answer) == ["command", "operation", "act", "event"]
 
 
-def test_robots_are_distinguished() -> None:
+def test_robots_are_distinguished_also_after_their_artifact_was_disposed() -> None:
     assert ask("stopped", robot="robot1").t == 9.1
     assert ask("stopped", robot="robot2").t is None
-
-
-def test_an_artifact_that_was_disposed_drove_its_robot() -> None:
     gone = {"artifact": "/main/wheels", "type": "Wheels", "state": "disposed", "robot": None}
     assert explain([*RECORDS, (20.0, "artifact", gone)], "stopped", robot="robot1").t == 9.1
 
 
-def test_an_unknown_agent_lists_the_agents() -> None:
+def test_unknown_names_and_words_have_near_ones() -> None:
     with pytest.raises(UsageError, match=r"unknown agent: `guart`\n  = help: agents until .* s: guard"):
         ask("waiting", agent="guart")
+    with pytest.raises(UsageError, match="unknown plan: `@lo`\n  = help: known plans: @dock, @low, @patrol"):
+        ask("plan @lo")
+    with pytest.raises(UsageError, match=r"did you mean `stopped`\?"):
+        ask("stoped")
 
 
-def test_a_command_by_its_topic() -> None:
+def test_a_command_and_an_operation_are_named() -> None:
     assert ask("command /cmd_vel").t == 9.2
     assert (
         ask("command /led").answer == "no command on `/led` that an agent caused was recorded until 12.000 s"
     )
-
-
-def test_an_operation_that_is_still_running() -> None:
     answer = ask("operation go")
     assert answer.answer == "go(kitchen) of /main/wheels began at 0.100 s, still running"
     assert kinds(answer) == ["operation", "act", "event"]
+    assert ask("go").answer.startswith("go(kitchen) of /main/wheels began")
 
 
 @pytest.mark.parametrize(
@@ -84,31 +88,18 @@ def test_an_earlier_event() -> None:
     assert "`+battery(B) : limit(L) & B < L`: stops at `B < L` with B=40, L=20 (guard.asl:7)" in answer.text()
 
 
-def test_an_event_without_applicable_plan() -> None:
+def test_an_event_without_a_plan_has_a_reason() -> None:
     answer = ask("why did +alarm(_) not trigger")
     assert answer.answer == "guard has no applicable plan for `+alarm(fire)` at 10.000 s"
     assert [fact.text for fact in answer.facts] == [
         "`+alarm(T) : zones(T)`: no belief `zones`; did you mean `zone`?"
     ]
-
-
-def test_an_event_of_a_rule_never_happens() -> None:
     answer = ask("+low")
     assert answer.t is None
     assert "`low` is the conclusion of a rule; rules cause no events" in answer.text()
-
-
-def test_a_belief_without_relevant_plan() -> None:
-    records = [
-        *RECORDS,
-        (13.0, "belief", {"agent": "guard", "op": "+", "belief": "alarm(a,b)[source(self)]"}),
-    ]
-    answer = explain(records, "+alarm(_,_)")
+    answer = explain([*RECORDS, belief(13.0, "alarm(a,b)[source(self)]")], "+alarm(_,_)")
     assert answer.answer == "guard has no relevant plan for `+alarm(a,b)[source(self)]` at 13.000 s"
     assert "does not match: another trigger" in answer.text()
-
-
-def test_an_event_that_never_happened_has_a_near_name() -> None:
     assert "did you mean `alarm`?" in ask("+alarn(_)").text()
 
 
@@ -125,48 +116,36 @@ def test_a_plan_that_was_chosen(question: str) -> None:
     assert "until then chosen once, refused once, not tried 0 times" in answer.text()
 
 
-def test_a_plan_that_was_refused() -> None:
+def test_a_plan_that_was_refused_or_never_considered() -> None:
     answer = ask("plan @low", at=6.0)
     assert answer.answer == "@low of guard (guard.asl:7) did not apply for `+battery(40)` at 5.000 s"
     assert "stops at `B < L` with B=40, L=20" in answer.text()
     assert "`+battery(B)` was chosen (guard.asl:9)" in answer.text()
-
-
-def test_a_plan_that_was_never_considered() -> None:
     answer = ask("plan guard.asl:12")
     assert answer.answer == "@dock of guard (guard.asl:11) was never considered"
     assert "no goal `+!dock` happened in guard until 12.000 s" in answer.text()
+    records = [
+        *RECORDS,
+        event(13.0, 40, 0, "+!dock", 6, options=[{"plan": 5, "why": "stops at `B > 50` with B=12"}]),
+    ]
+    answer = explain(records, "plan +!dock")
+    assert "`+!dock : battery(B) & B > 50`: stops at `B > 50` with B=12 (guard.asl:11)" in answer.text()
+    assert "`+!dock`: chosen (guard.asl:13)" in answer.text()
 
 
-def test_an_unknown_plan_lists_the_plans() -> None:
-    with pytest.raises(UsageError, match="unknown plan: `@lo`\n  = help: known plans: @dock, @low, @patrol"):
-        ask("plan @lo")
-
-
-def test_waiting() -> None:
+def test_what_it_waits_for_and_why_nothing_happens() -> None:
     answer = ask("what is it waiting for?")
     assert answer.answer == "1 of 1 intentions of all agents wait at 12.000 s"
     assert answer.facts[0].written() == (
         "guard: intention 3, !watch, waits for 500 ms since 11.500 s, in `.wait(500)` (guard.asl:12)"
     )
-
-
-def test_nothing_happens_because_everything_waits() -> None:
     answer = ask("why does nothing happen")
     assert answer.answer == "every open intention of all agents waits at 12.000 s"
     assert "the last event `+alarm(fire)` had no applicable plan" in answer.text()
-
-
-def test_nothing_happens_because_no_agent_has_anything() -> None:
-    assert ask("nothing", at=10.5).answer == (
-        "no agent has a goal or an event at 10.000 s; the last event was `+alarm(fire)` at 10.000 s"
-    )
-    assert ask("idle", agent="guard", at=10.5).answer.startswith(
-        "guard has neither a goal nor an event at 10.000 s"
-    )
-
-
-def test_nothing_happens_because_the_run_is_over_or_paused() -> None:
+    idle = "no agent has a goal or an event at 10.000 s; the last event was `+alarm(fire)` at 10.000 s"
+    assert ask("nothing", at=10.5).answer == idle
+    answer = ask("idle", agent="guard", at=10.5).answer
+    assert answer.startswith("guard has neither a goal nor an event at 10.000 s")
     ended = [*RECORDS, (13.0, "ended", {"code": 0})]
     assert explain(ended, "idle").answer == "the run ended at 13.000 s with exit code 0"
     paused = [*RECORDS, (13.0, "debug", {"state": "paused", "why": "breakpoint guard.asl:8"})]
@@ -181,27 +160,14 @@ def test_a_belief_and_what_changed_it(question: str) -> None:
     assert "before: -battery(40)[source(percept)] at 9.000 s" in answer.text()
 
 
-def test_a_belief_of_the_program() -> None:
+def test_where_a_belief_comes_from() -> None:
     answer = ask("belief battery(_)", at=1.0)
     assert answer.facts[0].text == "it is an initial belief, or was added from outside of the plans"
-
-
-def test_a_belief_that_a_step_changed() -> None:
-    change = {
-        "agent": "guard",
-        "op": "+",
-        "belief": "seen(a)[source(self)]",
-        "intention": 2,
-        "file": "guard.asl",
-        "line": 10,
-    }
-    answer = explain([*RECORDS, (13.0, "belief", change)], "belief seen(_)")
+    change = belief(13.0, "seen(a)[source(self)]", intention=2, file="guard.asl", line=10)
+    answer = explain([*RECORDS, change], "belief seen(_)")
     assert answer.facts[0].written() == (
         "the step `+alarm(T) : zones(T) <- .print(T)` of intention 2 did it (guard.asl:10)"
     )
-
-
-def test_a_belief_that_never_existed() -> None:
     answer = ask("belief batery(_)")
     assert answer.t is None
     assert answer.answer == "no agent ever believed `batery(_)` until 12.000 s"
@@ -209,23 +175,9 @@ def test_a_belief_that_never_existed() -> None:
     assert "it is the conclusion of a rule: low :-" in ask("belief low").text()
 
 
-def test_several_plans_for_one_goal() -> None:
-    records = [
-        *RECORDS,
-        event(13.0, 40, 0, "+!dock", 6, options=[{"plan": 5, "why": "stops at `B > 50` with B=12"}]),
-    ]
-    answer = explain(records, "plan +!dock")
-    assert "`+!dock : battery(B) & B > 50`: stops at `B > 50` with B=12 (guard.asl:11)" in answer.text()
-    assert "`+!dock`: chosen (guard.asl:13)" in answer.text()
-
-
 def test_a_question_of_another_agent() -> None:
     records = [
-        (
-            0.0,
-            "program",
-            {"agent": "guard", "plans": [plan(1, "p__1", "+?time(T)", "clock(T)", 1)], "rules": []},
-        ),
+        program(0.0, [plan(1, "p__1", "+?time(T)", "clock(T)", 1)]),
         event(1.0, 1, 0, "+?time(_)", None, options=[{"plan": 1, "why": "no belief `clock`"}]),
     ]
     for question in ("?time(_)", "+?time(_)", "why was ?time(T) not answered"):
@@ -239,18 +191,7 @@ def test_an_unknown_question_lists_the_forms(question: str) -> None:
     assert "plan @LABEL, plan FILE:LINE" in str(refused.value) or "not an event" in str(refused.value)
 
 
-def test_an_unknown_word_has_a_near_one() -> None:
-    with pytest.raises(UsageError, match=r"did you mean `stopped`\?"):
-        ask("stoped")
-
-
-def test_an_answer_is_plain_data() -> None:
-    data = json.loads(json.dumps(ask("stopped").data()))
-    assert data["because"][0]["kind"] == "command"
-    assert data["t"] == 9.1
-
-
-def test_records_without_a_field_are_skipped() -> None:
+def test_broken_records_and_cyclic_chains_end() -> None:
     broken = [
         (1.0, "cause", {}),
         (1.0, "program", {"agent": "a"}),
@@ -258,9 +199,6 @@ def test_records_without_a_field_are_skipped() -> None:
         (2.0, "new", {}),
     ]
     assert explain([*broken, *RECORDS], "stopped").t == 9.1
-
-
-def test_a_cyclic_chain_ends() -> None:
     records = [
         (1.0, "cause", {"id": 1, "parent": 2, "kind": "command", "what": "/a", "at": 1.0}),
         (1.0, "cause", {"id": 2, "parent": 1, "kind": "operation", "what": "go", "at": 1.0}),
@@ -269,33 +207,22 @@ def test_a_cyclic_chain_ends() -> None:
 
 
 def test_a_stop_by_a_suspended_goal_names_the_step_and_the_event() -> None:
-    pause = plan(9, "p__9", "+near(_7)", "", 8)
-    cancelled = [each for each in RECORDS if each[0] < 5.0]
     records = [
-        *cancelled,
-        (5.0, "program", {"agent": "guard", "plans": [*PLANS, pause], "rules": []}),
+        *(each for each in RECORDS if each[0] < 5.0),
+        program(5.0, [*PLANS, plan(9, "p__9", "+near(_7)", "", 8)]),
         cause(5.0, 50, 0, "sample", "/scan", topic="/scan"),
         cause(5.0, 51, 50, "property", "near(2)"),
         event(5.0, 52, 51, "+near(2)", 9, intention=5),
-        (
-            5.0,
-            "goal",
-            {"agent": "guard", "goal": "!patrol(kitchen)", "state": "suspended", "id": 1, "intention": 1},
-        ),
-        (
-            5.0,
-            "goal",
-            {"agent": "guard", "goal": "!visit(_3)", "state": "suspended", "id": 2, "intention": 1},
-        ),
+        goal(5.0, "!patrol(kitchen)", "suspended"),
+        goal(5.0, "!visit(_3)", "suspended", id=2),
         cause(5.0, 53, 50, "command", "/cmd_vel", topic="/cmd_vel"),
-        (9.0, "belief", {"agent": "guard", "op": "+", "belief": "late[source(self)]"}),
+        belief(9.0, "late[source(self)]"),
     ]
     answer = explain(records, "stopped")
     assert kinds(answer) == ["command", "goal", "act", "event", "property", "sample"]
     assert answer.because[1].text == "!patrol(kitchen) with 1 goal above it suspended at 5.000 s"
-    assert (
-        answer.because[2].written() == "guard: step `.drop_intention(patrol(_))` of `+near(_)` (guard.asl:8)"
-    )
+    step = "guard: step `.drop_intention(patrol(_))` of `+near(_)` (guard.asl:8)"
+    assert answer.because[2].written() == step
 
 
 def test_a_stop_at_the_end_of_the_run_is_not_a_decision() -> None:
@@ -310,33 +237,19 @@ def test_a_stop_at_the_end_of_the_run_is_not_a_decision() -> None:
 
 
 def test_unnamed_variables_and_annotations_of_percepts_are_not_shown() -> None:
-    belief = (
-        'battery(7)[artifact_id(cobj_5),percept_type(obs_prop),source(percept),workspace("/main",cobj_1)]'
-    )
-    records = [(1.0, "belief", {"agent": "guard", "op": "+", "belief": belief})]
-    assert (
-        explain(records, "battery").answer == "guard came to believe `battery(7)[source(percept)]` at 1.000 s"
-    )
-    records = [event(1.0, 1, 0, "+!find(_17,a)", None)]
-    assert explain(records, "!find(_,a)").answer == "guard has no relevant plan for `+!find(_,a)` at 1.000 s"
-
-
-def test_a_lone_word_may_be_an_operation() -> None:
-    assert ask("go").answer.startswith("go(kitchen) of /main/wheels began")
+    text = 'battery(7)[artifact_id(cobj_5),percept_type(obs_prop),source(percept),workspace("/main",cobj_1)]'
+    answer = explain([belief(1.0, text)], "battery")
+    assert answer.answer == "guard came to believe `battery(7)[source(percept)]` at 1.000 s"
+    answer = explain([event(1.0, 1, 0, "+!find(_17,a)", None)], "!find(_,a)")
+    assert answer.answer == "guard has no relevant plan for `+!find(_,a)` at 1.000 s"
 
 
 def test_plans_that_a_busy_agent_did_not_examine_are_listed() -> None:
     answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(fire)", None)], "+alarm(_)")
     assert answer.answer == "guard has no applicable plan for `+alarm(fire)` at 13.000 s"
-    assert (
-        answer.facts[0].text
-        == "`+alarm(T) : zones(T)`: did not apply; not examined, because the agent was busy"
-    )
-    other = (
-        13.0,
-        "program",
-        {"agent": "guard", "plans": [plan(1, "p__1", "+a(X)[source(percept)]", "", 1)], "rules": []},
-    )
+    busy = "`+alarm(T) : zones(T)`: did not apply; not examined, because the agent was busy"
+    assert answer.facts[0].text == busy
+    other = program(13.0, [plan(1, "p__1", "+a(X)[source(percept)]", "", 1)])
     answer = explain([other, event(13.0, 60, 0, "+a(1)", None)], "+a(_)")
     assert answer.facts[0].text == "`+a(X)[source(percept)]`: its annotations do not match"
     answer = explain([*RECORDS, event(13.0, 60, 0, "+alarm(a,b)", None)], "+alarm(_,_)")

@@ -1,7 +1,7 @@
 """Features of real `.jcm` and `.mas2j` projects, in files of our own."""
 
+from collections.abc import Callable
 from pathlib import Path
-from textwrap import dedent
 
 import pytest
 
@@ -21,116 +21,93 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def write(folder: Path, name: str, text: str) -> Path:
-    path = folder / name
-    path.write_text(dedent(text), encoding="utf-8")
-    return path
+Load = Callable[[str], Deployment]
+Write = Callable[..., Path]
+Diagnostics = Callable[[str], list[Diagnostic]]
+Errors = Callable[[str], list[tuple[int, str]]]
 
 
-def load(folder: Path, text: str, name: str = "p.jcm") -> Deployment:
-    return load_deployment(write(folder, name, text))
-
-
-def diagnostics(folder: Path, text: str, name: str = "p.jcm") -> list[Diagnostic]:
-    return read_project(write(folder, name, text)).diagnostics
-
-
-def errors(folder: Path, text: str, name: str = "p.jcm") -> list[tuple[int, str]]:
-    found = diagnostics(folder, text, name)
-    return [(d.span.line if d.span else 0, d.message) for d in found if d.severity == "error"]
+@pytest.fixture
+def errors(diagnostics: Diagnostics) -> Errors:
+    return lambda text: [
+        (d.span.line if d.span else 0, d.message) for d in diagnostics(text) if d.severity == "error"
+    ]
 
 
 def by_name(deployment: Deployment) -> dict[str, Path]:
     return {agent.name: agent.source_path for agent in deployment.agents}
 
 
-# where programs are
-
-
-def test_programs_are_found_in_jacamos_folders(folder: Path) -> None:
-    (folder / "src" / "agt" / "inc" / "dora.asl").write_text("", encoding="utf-8")
-    (folder / "emil.asl").write_text("", encoding="utf-8")
-    (folder / "src" / "agt" / "team").mkdir()
-    (folder / "src" / "agt" / "team" / "fritz-1.asl").write_text("", encoding="utf-8")
-    deployment = load(
-        folder,
-        """\
+def test_programs_are_found_in_jacamos_folders(folder: Path, load: Load) -> None:
+    agt = folder / "src" / "agt"
+    (agt / "team").mkdir()
+    for path in (agt / "inc" / "dora.asl", folder / "emil.asl", agt / "team" / "fritz-1.asl"):
+        path.write_text("", encoding="utf-8")
+    deployment = load("""\
         mas m {
-          agent bob
-          agent dora agent emil : file:emil.asl
-          agent fritz : team/fritz-1
-          agent gerd : "src/agt/bob.asl"
+          agent bob agent dora agent emil : file:emil.asl
+          agent fritz : team/fritz-1 agent gerd : "src/agt/bob.asl"
         }
-        """,
-    )
+    """)
     assert by_name(deployment) == {
-        "bob": folder / "src" / "agt" / "bob.asl",
-        "dora": folder / "src" / "agt" / "inc" / "dora.asl",
+        "bob": agt / "bob.asl",
+        "dora": agt / "inc" / "dora.asl",
         "emil": folder / "emil.asl",
-        "fritz": folder / "src" / "agt" / "team" / "fritz-1.asl",
-        "gerd": folder / "src" / "agt" / "bob.asl",
+        "fritz": agt / "team" / "fritz-1.asl",
+        "gerd": agt / "bob.asl",
     }
 
 
-def test_an_asl_path_comes_before_the_default_folders(folder: Path) -> None:
+def test_an_asl_path_comes_before_the_default_folders(folder: Path, diagnostics: Diagnostics) -> None:
     (folder / "own").mkdir()
     (folder / "own" / "dora.asl").write_text("", encoding="utf-8")
     text = 'mas m {\n agent dora\n agent zoe\n asl-path: own, "more"\n "$jacamoJar/test/jacamo/inc"\n}'
-    (found,) = diagnostics(folder, text)
+    (found,) = diagnostics(text)
     assert found.message == "program of agent `zoe` not found: zoe.asl"
     assert found.help is not None
     assert found.help.startswith(f"expected in {folder / 'own'}, {folder / 'more'}, {folder}")
 
 
-def test_programs_are_not_read_over_the_network(folder: Path) -> None:
-    (found,) = diagnostics(folder, 'mas m {\n agent bob : "http://far.example/bob.asl"\n}')
+def test_programs_are_not_read_over_the_network(diagnostics: Diagnostics) -> None:
+    (found,) = diagnostics('mas m {\n agent bob : "http://far.example/bob.asl"\n}')
     assert found.help == "download the program: only files are supported"
 
 
-def test_used_projects_have_folders_of_their_own(folder: Path) -> None:
+def test_used_projects_have_folders_of_their_own(folder: Path, load: Load, write: Write) -> None:
     lib = folder / "lib"
     lib.mkdir()
-    (lib / "dora.asl").write_text("", encoding="utf-8")
-    (lib / "house.yaml").write_text("", encoding="utf-8")
-    write(lib, "base.jcm", 'mas base {\n agent dora\n workspace w\n world: "house.yaml"\n}')
-    write(folder, "mine.jcm", "mas mine uses lib/base {\n agent bob\n}")
-    deployment = load(folder, 'mas m uses mine, "lib/base.jcm" {\n agent alice { join: w }\n}')
+    for name in ("dora.asl", "house.yaml"):
+        write("", f"lib/{name}")
+    write('mas base {\n agent dora\n workspace w\n world: "house.yaml"\n}', "lib/base.jcm")
+    write("mas mine uses lib/base {\n agent bob\n}", "mine.jcm")
+    deployment = load('mas m uses mine, "lib/base.jcm" {\n agent alice { join: w }\n}')
+    agt = folder / "src" / "agt"
     assert by_name(deployment) == {
         "dora": lib / "dora.asl",
-        "bob": folder / "src" / "agt" / "bob.asl",
-        "alice": folder / "src" / "agt" / "alice.asl",
+        "bob": agt / "bob.asl",
+        "alice": agt / "alice.asl",
     }
     assert [workspace.name for workspace in deployment.workspaces] == ["w"]
     assert deployment.world == str(lib / "house.yaml")
     assert deployment.ignored == ()
 
 
-def test_projects_that_use_each_other_are_refused(folder: Path) -> None:
-    write(folder, "one.jcm", "mas one uses two {\n agent bob\n}")
-    write(folder, "two.jcm", "mas two uses one {\n agent alice\n}")
-    found = errors(folder, "mas m\n uses one, three {\n}")
-    assert found == [
-        (2, "project not found: `three`"),
-        (1, "project `one` uses itself"),
-    ]
+def test_projects_that_use_each_other_are_refused(errors: Errors, write: Write) -> None:
+    write("mas one uses two {\n agent bob\n}", "one.jcm")
+    write("mas two uses one {\n agent alice\n}", "two.jcm")
+    found = errors("mas m\n uses one, three {\n}")
+    assert found == [(2, "project not found: `three`"), (1, "project `one` uses itself")]
 
 
-def test_a_used_project_is_checked_with_the_one_that_uses_it(folder: Path) -> None:
-    write(folder, "agents.jcm", "mas agents {\n agent bob { join: w }\n}")
-    write(folder, "whole.jcm", "mas whole uses agents {\n workspace w\n}")
+def test_a_used_project_is_checked_with_the_one_that_uses_it(folder: Path, write: Write) -> None:
+    agents = write("mas agents {\n agent bob { join: w }\n}", "agents.jcm")
+    write("mas whole uses agents {\n workspace w\n}", "whole.jcm")
     assert check_files([folder]).diagnostics == []
-    assert [each.message for each in check_files([folder / "agents.jcm"]).diagnostics] == [
-        "unknown workspace `w`"
-    ]
+    assert [each.message for each in check_files([agents]).diagnostics] == ["unknown workspace `w`"]
 
 
-# values
-
-
-def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
-    deployment = load(
-        folder,
-        """\
+def test_values_are_separated_by_line_ends_or_commas(load: Load) -> None:
+    deployment = load("""\
         mas m{
           agent bob{
             beliefs: calc("4+2*2")[id(0)], calc("1, 2")[id(1)]//, left_out(1)
@@ -138,23 +115,20 @@ def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
                      ~agent(x)    // not a section
             goals :  start("a1","t(paris, athens)")
                      start(
-                       "a2",
-                       [1,
+                       "a2", [1,
                         2])
             focus: w.one
             focus: ns::w.two, one
             ag-arch: x.First("a, b") x.Second
                      x.Third
-            mine: 3
-            text: "one, two"
+            mine: 3 text: "one, two"
           }
           workspace w {
             artifact one: A(02, -1, 2.5e3, 'a b')   /* blanks */
             artifact two: b.B
           }
         }
-        """,
-    )
+        """)
     (bob,) = deployment.agents
     assert bob.beliefs == 'calc("4+2*2")[id(0)], calc("1, 2")[id(1)], names(["a", b], x), ~agent(x)'
     assert " ".join(bob.goals.split()) == 'start("a1","t(paris, athens)"), start( "a2", [1, 2])'
@@ -162,7 +136,7 @@ def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
     assert [each.message for each in deployment.ignored] == [
         (
             "the architecture `x.First`, the architecture `x.Second` and the architecture `x.Third` have no effect: "
-            "JaCaROS runs no architectures of projects (lines 13, 14)"
+            "JaCaROS runs no architectures of projects (lines 12, 13)"
         )
     ]
     assert bob.options == {"mine": "3", "text": "one, two"}
@@ -171,17 +145,14 @@ def test_values_are_separated_by_line_ends_or_commas(folder: Path) -> None:
     assert type(arguments[3]) is Atom
 
 
-def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
-    deployment = load(
-        folder,
-        """\
+def test_agents_may_have_names_of_sections_and_keys(load: Load) -> None:
+    deployment = load("""\
         mas m {
           agent agent : bob.asl
           agent node : bob.asl { focus: w.group  beliefs: workspace(w), goals }
           workspace w { artifact group : A  agents: agent, node }
         }
-        """,
-    )
+        """)
     assert list(by_name(deployment)) == ["agent", "node"]
     assert deployment.agents[1].beliefs == "workspace(w), goals"
     assert [agent.join for agent in deployment.agents] == [("w",), ("w",)]
@@ -223,48 +194,31 @@ def test_agents_may_have_names_of_sections_and_keys(folder: Path) -> None:
         ("agent bob { goals: start } }", "unexpected `}` after the end of the system"),
     ],
 )
-def test_each_mistake_has_a_message(folder: Path, text: str, told: str) -> None:
-    assert told in [message for _, message in errors(folder, f"mas m {{\n {text}\n}}")]
+def test_each_mistake_has_a_message(text: str, told: str, errors: Errors) -> None:
+    assert told in [message for _, message in errors(f"mas m {{\n {text}\n}}")]
 
 
-def test_after_an_error_the_rest_of_the_block_is_read(folder: Path) -> None:
-    found = errors(
-        folder,
-        """\
-        mas m {
-          agent bob {
-            roles: cook at home
+def test_after_an_error_the_rest_of_the_block_is_read(errors: Errors) -> None:
+    found = errors("""\
+        mas m { agent bob { roles: cook at home
             join: nowhere
-            instances: Three
-          }
-          organisation o : o.xml {
-            group g : t {
-              players: bob
+            instances: Three }
+          organisation o : o.xml { group g : t { players: bob
               owner bob
-              group h
-            }
+              group h }
             scheme s
           }
-          workspace w {
-            artifact a = A
+          workspace w { artifact a = A
             artifact b : B(1, ]
-            parent: nowhere
-          }
+            parent: nowhere }
           agent alice { join: w }
         }
-        """,
-    )
-    assert [line for line, _ in found] == [3, 4, 5, 10, 12, 14, 16, 17, 18]
+        """)
+    assert [line for line, _ in found] == [1, 2, 3, 5, 6, 8, 9, 10, 11]
 
 
-# what has no effect
-
-
-def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(folder: Path) -> None:
-    path = write(
-        folder,
-        "p.jcm",
-        """\
+def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(write: Write) -> None:
+    path = write("""\
         mas m {
           agent bob { roles: cook in o.kitchen @ n1, waiter in o.hall
                       join: o
@@ -293,8 +247,7 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(folde
           node n1 running @ 10.1.1.17:30
           node n2
         }
-        """,
-    )
+        """)
     reading = read_project(path)
     assert {each.severity for each in reading.diagnostics} == {"warning", "note"}
     assert {each.code for each in reading.diagnostics} == {"no-effect"}
@@ -311,11 +264,8 @@ def test_a_run_warns_once_for_each_kind_and_the_checker_reports_everything(folde
     assert load_deployment(path).agents[0].focus == ()
 
 
-def test_a_mas2j_file_reports_what_has_no_effect(folder: Path) -> None:
-    path = write(
-        folder,
-        "p.mas2j",
-        """\
+def test_a_mas2j_file_reports_what_has_no_effect(folder: Path, write: Write) -> None:
+    path = write("""\
         MAS m {
           infrastructure: Jade(main_container_host("localhost"))
               /* a comment */
@@ -338,8 +288,7 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path) -> None:
           directives: ld = x.Directive; le = x.Other;
           aslSourcePath: "one"; "two";
         }
-        """,
-    )
+        """)
     deployment = load_deployment(path)
     alice = deployment.agents[2]
     assert (alice.beliefs, alice.goals) == ("at(home)", 'start("a","b")')
@@ -354,18 +303,18 @@ def test_a_mas2j_file_reports_what_has_no_effect(folder: Path) -> None:
     ]
 
 
-def test_misspelt_keys_of_a_mas2j_file_are_reported(folder: Path) -> None:
+def test_misspelt_keys_of_a_mas2j_file_are_reported(load: Load) -> None:
     text = "MAS m {\n agents:\n bob agentarchclass x.Y;\n alice agentclas x.Y;\n}"
     with pytest.raises(ProjectError) as refused:
-        load(folder, text, "p.mas2j")
+        load(text)
     assert [(each.message, each.help) for each in refused.value.diagnostics] == [
         ("unexpected `agentarchclass`", "did you mean `agentArchClass`?"),
         ("unexpected `agentclas`", "did you mean `agentClass`?"),
     ]
 
 
-def test_keys_similar_to_known_ones_are_reported(folder: Path) -> None:
-    found = diagnostics(folder, "mas m {\n agent bob { goal: start verbose: 1 verbose: 2 }\n asl-pth: x\n}")
+def test_keys_similar_to_known_ones_are_reported(diagnostics: Diagnostics) -> None:
+    found = diagnostics("mas m {\n agent bob { goal: start verbose: 1 verbose: 2 }\n asl-pth: x\n}")
     assert [(each.severity, each.message, each.help) for each in found] == [
         ("warning", "unknown key `goal`, kept as a parameter of the agent", "did you mean `goals`?"),
         ("warning", "duplicate key `verbose`: only the last value has an effect", None),

@@ -1,7 +1,7 @@
 """Project files."""
 
+from collections.abc import Callable
 from pathlib import Path
-from textwrap import dedent
 
 import pytest
 
@@ -20,16 +20,8 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def load(folder: Path, name: str, text: str) -> Deployment:
-    path = folder / name
-    path.write_text(dedent(text), encoding="utf-8")
-    return load_deployment(path)
-
-
-def report(folder: Path, name: str, text: str) -> str:
-    with pytest.raises(ProjectError) as refused:
-        load(folder, name, text)
-    return str(refused.value).replace(f"{folder}/", "")
+Load = Callable[[str], Deployment]
+Report = Callable[[str], str]
 
 
 def located(text: str) -> list[tuple[str, str]]:
@@ -46,26 +38,20 @@ def names(deployment: Deployment) -> list[str]:
     return [agent.name for agent in deployment.agents]
 
 
-# .asl
-
-
-def test_a_lone_program_is_a_system_of_one_agent(folder: Path):
+def test_a_lone_program_is_a_system_of_one_agent(folder: Path) -> None:
     deployment = load_deployment(folder / "bob.asl")
     assert names(deployment) == ["bob"]
     assert deployment.agents[0].source_path == folder / "bob.asl"
     assert deployment.artifact_environment
 
 
-def test_missing_and_unknown_files_are_refused(folder: Path):
+def test_missing_and_unknown_files_are_refused(folder: Path) -> None:
     for name in ("no.asl", "no.jcm", "no.mas2j", "notes.txt"):
         with pytest.raises(ProjectError):
             load_deployment(folder / name)
 
 
-# .mas2j
-
-
-def test_all_mas2j_files_of_the_conformance_cases_are_read():
+def test_all_mas2j_files_of_the_conformance_cases_are_read() -> None:
     files = sorted(TESTS.glob("conformance*/**/*.mas2j"))
     assert len(files) > 50
     for path in files:
@@ -75,15 +61,11 @@ def test_all_mas2j_files_of_the_conformance_cases_are_read():
         assert deployment.artifact_environment == ("conformance_environment" in path.parts)
 
 
-def test_all_of_an_agent_in_mas2j(folder: Path):
-    deployment = load(
-        folder,
-        "p.mas2j",
-        """
+def test_all_of_an_agent_in_mas2j(folder: Path, load: Load) -> None:
+    deployment = load("""
         /* a system */
         MAS rescue {
-            infrastructure: Local(pool,4)
-            environment: jaca.CartagoEnvironment
+            infrastructure: Local(pool,4) environment: jaca.CartagoEnvironment
             agents:
                 bob carl.asl [verbose=2, beliefs="p(1), q(\\"x\\")", goals="go", events=requeue]
                     agentArchClass jaca.CAgentArch, jason.x.Arch(1)
@@ -92,8 +74,7 @@ def test_all_of_an_agent_in_mas2j(folder: Path):
                 carl [ mindinspector="gui(cycle,html,history)" ];  // a comment
             aslSourcePath: "src"; "more";
         }
-        """,
-    )
+        """)
     bob = agent(deployment, "bob")
     assert bob.source_path == folder / "carl.asl"
     assert bob.options == {"verbose": "2", "events": "requeue"}
@@ -109,30 +90,24 @@ def test_all_of_an_agent_in_mas2j(folder: Path):
     assert deployment.source_paths[:2] == (folder / "src", folder / "more")
 
 
-def test_programs_are_found_in_the_source_paths(folder: Path):
-    (folder / "src" / "asl").mkdir(parents=True)
-    (folder / "lib").mkdir()
-    (folder / "lib" / "dora.asl").write_text("", encoding="utf-8")
-    (folder / "src" / "asl" / "emil.asl").write_text("", encoding="utf-8")
-    deployment = load(folder, "p.mas2j", 'MAS m { agents: dora; emil; aslSourcePath: "lib"; }')
+def test_programs_are_found_in_the_source_paths(folder: Path, load: Load) -> None:
+    for path in (folder / "lib" / "dora.asl", folder / "src" / "asl" / "emil.asl"):
+        path.parent.mkdir(parents=True)
+        path.write_text("", encoding="utf-8")
+    deployment = load('MAS m { agents: dora; emil; aslSourcePath: "lib"; }')
     assert agent(deployment, "dora").source_path == folder / "lib" / "dora.asl"
     assert agent(deployment, "emil").source_path == folder / "src" / "asl" / "emil.asl"
 
 
-def test_a_world_can_be_named_in_both_formats(folder: Path):
+def test_a_world_can_be_named_in_both_formats(folder: Path, load: Load) -> None:
     (folder / "lab.yaml").write_text("", encoding="utf-8")
-    assert load(folder, "p.mas2j", 'MAS m { agents: bob; world: "lab.yaml" }').world == str(
-        folder / "lab.yaml"
-    )
-    assert load(folder, "q.mas2j", "MAS m { world: house agents: bob; }").world == "house"
-    assert load(folder, "p.jcm", 'mas m { agent bob world: "lab.yaml" }').world == str(folder / "lab.yaml")
+    assert load('MAS m { agents: bob; world: "lab.yaml" }').world == str(folder / "lab.yaml")
+    assert load("MAS m { world: house agents: bob; }").world == "house"
+    assert load('mas m { agent bob world: "lab.yaml" }').world == str(folder / "lab.yaml")
 
 
-def test_java_parts_are_skipped_with_a_warning(folder: Path):
-    deployment = load(
-        folder,
-        "p.mas2j",
-        """
+def test_java_parts_are_skipped_with_a_warning(load: Load) -> None:
+    deployment = load("""
         MAS m {
             environment: mars.MarsEnv(gui, 3)
             executionControl: jason.control.ExecutionControl
@@ -140,8 +115,7 @@ def test_java_parts_are_skipped_with_a_warning(folder: Path):
             directives: id=my.Directive;
             classpath: "lib/*.jar"; "b.jar";
         }
-        """,
-    )
+        """)
     assert [warning.message for warning in deployment.ignored] == [
         "the environment `mars.MarsEnv` has no effect: Java environments are not supported",
         "`executionControl`, `directives` and `classpath` have no effect: JaCaROS runs no Java code (lines 4, 6, 7)",
@@ -150,7 +124,7 @@ def test_java_parts_are_skipped_with_a_warning(folder: Path):
     assert not deployment.artifact_environment
 
 
-def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
+def test_errors_of_a_mas2j_file_are_reported_together(report: Report) -> None:
     text = """\
         MAS m {
             agents: bob
@@ -161,7 +135,7 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
             agentz: x;
         }
         """
-    assert located(report(folder, "p.mas2j", text)) == [
+    assert located(report(text)) == [
         ("3:13", "missing `;` after agent `bob`"),
         ("4:13", "the name of an agent must begin with a lower-case letter"),
         ("4:13", "program of agent `Carl` not found: Carl.asl"),
@@ -171,7 +145,7 @@ def test_errors_of_a_mas2j_file_are_reported_together(folder: Path):
     ]
 
 
-def test_wrong_options_are_reported_at_their_line(folder: Path):
+def test_wrong_options_are_reported_at_their_line(report: Report) -> None:
     text = """\
         MAS m {
             agents: bob [events=discord, intBels=here,
@@ -180,7 +154,7 @@ def test_wrong_options_are_reported_at_their_line(folder: Path):
                     bob2 bob.asl [urgency="bump 10"];
         }
         """
-    assert located(report(folder, "p.mas2j", text)) == [
+    assert located(report(text)) == [
         ("2:25", "expected one of discard, requeue, retrieve as `events`, found `discord`"),
         ("2:42", "expected one of sameFocus, newFocus as `intBels`, found `here`"),
         ("3:26", "expected one of 0, 1, 2 as `verbose`, found `9`"),
@@ -190,37 +164,24 @@ def test_wrong_options_are_reported_at_their_line(folder: Path):
     ]
 
 
-def test_options_without_effect_cause_a_warning(folder: Path):
-    deployment = load(
-        folder,
-        "p.mas2j",
-        'MAS m { agents: bob [mindinspector="web(ms,100)", cycles_act=2, synchronised=true, own=x]; }',
-    )
-    assert [warning.message for warning in deployment.ignored] == [
+def test_options_without_effect_cause_a_warning(load: Load) -> None:
+    options = 'mindinspector="web(ms,100)", cycles_act=2, synchronised=true, own=x'
+    assert [warning.message for warning in load(f"MAS m {{ agents: bob [{options}]; }}").ignored] == [
         "the option `mindinspector` has no effect: use --view or --record instead",
         "the option `cycles_act` has no effect: every cycle has each stage once",
         "the option `synchronised` has no effect: agents always take turns",
     ]
 
 
-def test_an_error_shows_the_line_and_a_fix(folder: Path):
-    assert report(folder, "p.mas2j", "MAS m {\n    agents: bob\n            alice;\n}\n") == dedent(
-        """\
-        p.mas2j:3:13: error: missing `;` after agent `bob`
-          3 |             alice;
-            |             ^^^^^
-          = help: end each agent with `;`"""
+def test_an_error_shows_the_line_and_a_fix(report: Report) -> None:
+    assert report("MAS m {\n    agents: bob\n            alice;\n}\n") == (
+        "p.mas2j:3:13: error: missing `;` after agent `bob`\n  3 |             alice;\n"
+        "    |             ^^^^^\n  = help: end each agent with `;`"
     )
 
 
-# .jcm
-
-
-def test_all_of_an_agent_in_jcm(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
+def test_all_of_an_agent_in_jcm(folder: Path, load: Load) -> None:
+    deployment = load("""
         mas rescue {
           agent bob : carl.asl {
             beliefs: friend(alice), price("a, b",10)[source(self)]
@@ -234,8 +195,7 @@ def test_all_of_an_agent_in_jcm(folder: Path):
           }
           agent alice
         }
-        """,
-    )
+        """)
     bob = agent(deployment, "bob")
     assert bob.source_path == folder / "carl.asl"
     assert bob.beliefs == 'friend(alice), price("a, b",10)[source(self)], money(5)'
@@ -246,27 +206,16 @@ def test_all_of_an_agent_in_jcm(folder: Path):
     assert deployment.artifact_environment
 
 
-def test_instances_are_numbered_or_named(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
-        mas m {
-          agent bob { instances: 3 }
-          agent alice { instances: ann amy }
-          agent carl { instances: 1 }
-        }
-        """,
-    )
+def test_instances_are_numbered_or_named(folder: Path, load: Load) -> None:
+    deployment = load("""
+        mas m { agent bob { instances: 3 } agent alice { instances: ann amy } agent carl { instances: 1 } }
+    """)
     assert names(deployment) == ["bob1", "bob2", "bob3", "ann", "amy", "carl"]
     assert agent(deployment, "amy").source_path == folder / "alice.asl"
 
 
-def test_workspaces_and_artifacts_are_kept_in_order(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
+def test_workspaces_and_artifacts_are_kept_in_order(load: Load) -> None:
+    deployment = load("""
         mas m {
           agent bob
           workspace lab {
@@ -277,49 +226,29 @@ def test_workspaces_and_artifacts_are_kept_in_order(folder: Path):
           }
           workspace house { artifact bell : Bell }
         }
-        """,
-    )
+        """)
     assert [workspace.name for workspace in deployment.workspaces] == ["house", "lab"]
     lab = deployment.workspaces[1]
     assert lab.parent == "house"
-    assert [(artifact.name, artifact.type_name) for artifact in lab.artifacts] == [
-        ("counter", "tools.Counter"),
-        ("clock", "Clock"),
-        ("arm", "my.Arm"),
-    ]
+    declared = {artifact.name: artifact.type_name for artifact in lab.artifacts}
+    assert declared == {"counter": "tools.Counter", "clock": "Clock", "arm": "my.Arm"}
+    assert list(declared) == ["counter", "clock", "arm"]
     arguments = lab.artifacts[0].arguments
-    assert arguments == (
-        -3,
-        2.5,
-        True,
-        "12",
-        Atom("kitchen"),
-        [1, [Atom("a")]],
-        Structure("p", (Atom("q"), "r")),
-    )
+    nested = ([1, [Atom("a")]], Structure("p", (Atom("q"), "r")))
+    assert arguments == (-3, 2.5, True, "12", Atom("kitchen"), *nested)
     assert [type(argument) for argument in arguments[:5]] == [int, float, bool, str, Atom]
     assert lab.artifacts[1].focused_by == ("bob",)
 
 
-def test_agents_join_and_focus_from_both_sides(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
+def test_agents_join_and_focus_from_both_sides(load: Load) -> None:
+    deployment = load("""
         mas m {
           agent bob { instances: 2 join: house  focus: lab.clock, ns::bell }
-          agent alice
-          agent carl
-          workspace lab {
-            artifact clock : Clock { focused-by: alice, other::bob2 }
-            agents: carl
-          }
-          workspace house {
-            artifact bell : Bell { focused-by: * }
-          }
+          agent alice agent carl
+          workspace lab { artifact clock : Clock { focused-by: alice, other::bob2 } agents: carl }
+          workspace house { artifact bell : Bell { focused-by: * } }
         }
-        """,
-    )
+        """)
     clock, bell = FocusSpec("clock", "lab"), FocusSpec("bell", "house")
     assert agent(deployment, "bob1").join == ("house", "lab")
     assert agent(deployment, "bob1").focus == (clock, FocusSpec("bell", "house", "ns"), bell)
@@ -330,38 +259,32 @@ def test_agents_join_and_focus_from_both_sides(folder: Path):
     assert deployment.ignored == ()
 
 
-def test_blocks_may_stand_on_one_line(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        "mas m { agent bob { goals: start, go } agent alice { beliefs: p goals: q } workspace w }",
-    )
+def test_blocks_may_stand_on_one_line(load: Load) -> None:
+    text = "mas m { agent bob { goals: start, go } agent alice { beliefs: p goals: q } workspace w }"
+    deployment = load(text)
     assert names(deployment) == ["bob", "alice"]
     assert agent(deployment, "bob").goals == "start, go"
     assert (agent(deployment, "alice").beliefs, agent(deployment, "alice").goals) == ("p", "q")
     assert deployment.workspaces[0].name == "w"
 
 
-def test_asl_paths_are_searched(folder: Path):
+def test_asl_paths_are_searched(folder: Path, load: Load) -> None:
     (folder / "deep" / "er").mkdir(parents=True)
     (folder / "deep" / "er" / "dora.asl").write_text("", encoding="utf-8")
-    deployment = load(folder, "p.jcm", 'mas m { agent dora  agent bob\n asl-path: deep, "deep/er" }')
+    deployment = load('mas m { agent dora  agent bob\n asl-path: deep, "deep/er" }')
     assert agent(deployment, "dora").source_path == folder / "deep" / "er" / "dora.asl"
 
 
-def test_used_projects_come_first(folder: Path):
+def test_used_projects_come_first(folder: Path, load: Load, report: Report) -> None:
     (folder / "base.jcm").write_text("mas base { agent alice workspace w }", encoding="utf-8")
-    deployment = load(folder, "p.jcm", 'mas m uses "base.jcm" { agent bob }')
+    deployment = load('mas m uses "base.jcm" { agent bob }')
     assert names(deployment) == ["alice", "bob"]
     assert [workspace.name for workspace in deployment.workspaces] == ["w"]
-    assert "uses itself" in report(folder, "loop.jcm", 'mas m uses "loop.jcm" { agent bob }')
+    assert "uses itself" in report('mas m uses "p.jcm" { agent bob }')
 
 
-def test_unsupported_declarations_are_skipped_with_a_warning(folder: Path):
-    deployment = load(
-        folder,
-        "p.jcm",
-        """
+def test_unsupported_declarations_are_skipped_with_a_warning(load: Load) -> None:
+    deployment = load("""
         mas m {
           agent bob { roles: worker in o.g1 }
           workspace w { artifact a : A  host: n1  debug }
@@ -374,8 +297,7 @@ def test_unsupported_declarations_are_skipped_with_a_warning(folder: Path):
           uses package: lib "a:b:1"
           node n1 running @ "h:1"
         }
-        """,
-    )
+        """)
     roles = "the role `worker` in `o.g1` and the role `worker` of `bob` in `g1`"
     assert [warning.message for warning in deployment.ignored] == [
         f"{roles} have no effect: roles in organisations are not supported (lines 3, 7)",
@@ -389,29 +311,25 @@ def test_unsupported_declarations_are_skipped_with_a_warning(folder: Path):
     assert deployment.infrastructure == ("local(pool,4)",)
 
 
-def test_misspelt_names_are_reported_with_a_suggestion(folder: Path):
+def test_misspelt_names_are_reported_with_a_suggestion(report: Report) -> None:
     text = """\
         mas m {
           agent bob { instances: 2  join: lap  focus: clok, lab.bell }
           workspace lab { artifact clock : Clock { focused-by: bop } }
         }
         """
-    found = report(folder, "p.jcm", text)
-    assert located(found) == [
-        ("2:35", "unknown workspace `lap`"),
-        ("2:47", "unknown artifact `clok`"),
-        ("3:56", "unknown agent `bop`"),
-    ]
-    hints = [line for line in found.splitlines() if line.startswith("  = help")]
-    assert hints == [
-        "  = help: did you mean `lab`?",
-        "  = help: did you mean `clock`?",
-        "  = help: the agent focuses it as soon as it is created",
-        "  = help: did you mean `bob`?",
+    found = report(text)
+    unknown = [("2:35", "workspace `lap`"), ("2:47", "artifact `clok`"), ("3:56", "agent `bop`")]
+    assert located(found) == [(place, f"unknown {what}") for place, what in unknown]
+    assert [line.removeprefix("  = help: ") for line in found.splitlines() if "= help: " in line] == [
+        "did you mean `lab`?",
+        "did you mean `clock`?",
+        "the agent focuses it as soon as it is created",
+        "did you mean `bob`?",
     ]
 
 
-def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
+def test_errors_of_a_jcm_file_are_reported_together(report: Report) -> None:
     text = """\
         mas m {
           agent dora
@@ -427,7 +345,7 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
           agent carl
         }
         """
-    assert located(report(folder, "p.jcm", text)) == [
+    assert located(report(text)) == [
         ("2:9", "program of agent `dora` not found: dora.asl"),
         ("3:24", "invalid belief `p(`: expected a term, found the end of the file"),
         ("4:17", "missing `:` after `goals`"),
@@ -439,23 +357,22 @@ def test_errors_of_a_jcm_file_are_reported_together(folder: Path):
     ]
 
 
-def test_wrong_beliefs_are_reported_at_their_line(folder: Path):
-    found = report(folder, "p.jcm", "mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
-    assert "p.jcm:3:" in found
-    found = report(folder, "p.mas2j", 'MAS m {\n agents:\n bob [goals="go(else)"];\n}')
-    assert found.startswith(
+def test_wrong_beliefs_are_reported_at_their_line(report: Report) -> None:
+    assert "p.jcm:3:" in report("mas m {\n agent bob {\n beliefs: p(1), q(2]\n }\n}")
+    assert report('MAS m {\n agents:\n bob [goals="go(else)"];\n}').startswith(
         "p.mas2j:3:13: error: invalid goal `go(else)`: reserved word `else` used as a name"
     )
 
 
-@pytest.mark.parametrize("name", ["p.jcm", "p.mas2j"])
-def test_every_beginning_of_a_file_gives_diagnostics(folder: Path, name: str):
-    whole = {
-        "p.jcm": 'mas m uses "x.jcm" { agent bob : bob.asl { beliefs: p(1), "s" focus: n::w.a } workspace w { '
-        'artifact a : A(1,[x],"y") { focused-by: * } } organisation o : f { g } platform: l(1) }',
-        "p.mas2j": 'MAS m { environment: a.B(c) agents: bob x.asl [a=b, beliefs="p(1)"] agentClass q.r #3; '
-        'aslSourcePath: "."; classpath: "x"; }',
-    }[name]
+JCM = """mas m uses "x.jcm" { agent bob : bob.asl { beliefs: p(1), "s" focus: n::w.a } workspace w {
+artifact a : A(1,[x],"y") { focused-by: * } } organisation o : f { g } platform: l(1) }"""
+MAS2J = """MAS m { environment: a.B(c) agents: bob x.asl [a=b, beliefs="p(1)"] agentClass q.r #3;
+aslSourcePath: "."; classpath: "x"; }"""
+
+
+@pytest.mark.parametrize(("name", "whole"), [("p.jcm", JCM), ("p.mas2j", MAS2J)])
+def test_every_beginning_of_a_file_gives_diagnostics(write: Callable[..., Path], name: str, whole: str):
     for end in range(len(whole)):
+        path = write(whole[:end], name)
         with pytest.raises(ProjectError):
-            load(folder, name, whole[:end])
+            load_deployment(path)

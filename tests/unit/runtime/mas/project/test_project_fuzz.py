@@ -45,9 +45,8 @@ def read(suffix: str, text: str) -> list[Diagnostic]:
 @given(data=st.data())
 def test_words_in_any_order_are_read(suffix: str, data: st.DataObject) -> None:
     words, head = LANGUAGES[suffix]
-    drawn = data.draw(
-        st.lists(st.tuples(st.sampled_from(words), st.sampled_from((" ", "\n", ""))), max_size=40)
-    )
+    word_and_gap = st.tuples(st.sampled_from(words), st.sampled_from((" ", "\n", "")))
+    drawn = data.draw(st.lists(word_and_gap, max_size=40))
     read(suffix, head + " " + "".join(word + gap for word, gap in drawn))
 
 
@@ -62,12 +61,8 @@ def test_any_text_is_read(suffix: str, text: str) -> None:
 @pytest.mark.parametrize("suffix", LANGUAGES)
 @pytest.mark.parametrize("sign", ["(", "[", "{", "a(", "group g : t {", "artifact a : A([", "agents: x ["])
 def test_endless_brackets_are_refused(suffix: str, sign: str) -> None:
-    for head in (
-        "",
-        "mas m { workspace w { artifact a : A(",
-        "mas m { organisation o {",
-        "MAS m { agents: a [",
-    ):
+    heads = ("mas m { workspace w { artifact a : A(", "mas m { organisation o {", "MAS m { agents: a [")
+    for head in ("", *heads):
         assert read(suffix, head + sign * 5000)
 
 
@@ -87,30 +82,7 @@ def test_a_project_with_some_characters_changed_is_resolved(
         each.render()
 
 
-SIGNS = [
-    "",
-    " ",
-    "\n",
-    "{",
-    "}",
-    "(",
-    ")",
-    "[",
-    "]",
-    ",",
-    ":",
-    "::",
-    ".",
-    "/",
-    '"',
-    "@",
-    "*",
-    "a",
-    "A",
-    "1",
-    "-",
-    "é",
-]
+SIGNS = ["", *" \n{}()[],:./@*aA1-é", '"', "::"]
 WHOLE = """\
 mas m uses other {
   agent bob : src/bob.asl {
@@ -129,8 +101,7 @@ mas m uses other {
     agents: bob
     debug
   }
-  workspace kitchen { parent: house host: h1 }
-  workspace house
+  workspace kitchen { parent: house host: h1 } workspace house
   institution i : i.sai { workspaces: w }
   organisation o : o.xml {
     group g : t { players: bob cook, bob2 boss owner: bob group h : u }
