@@ -98,7 +98,7 @@ def test_an_event_that_lacks_what_its_readers_need_is_skipped_with_a_warning(tmp
 
 
 def test_the_page_has_words_only_for_what_an_event_of_the_world_has() -> None:
-    script = Path(jacaros.__file__).parent / "inspector" / "static" / "happenings.js"
+    script = Path(jacaros.__file__).parent / "look" / "page" / "static" / "happenings.js"
     words = script.read_text(encoding="utf-8").partition("const WORDS = {")[2].partition("\n};")[0]
     parts = re.split(r"(?:^|,)\s+(\w+): \((?:d?)\) =>", words)
     uses = {
