@@ -48,13 +48,7 @@ def elsewhere(message: Any) -> None:
 def test_a_robot_stops_while_its_pose_is_unknown(change: Callable[[Any], None], what: str) -> None:
     lab = in_lab("driving.asl", odometry_is(change, 2, 9))
     bad = f'bad /odom not_finite("{what}")'
-    assert lab.lines == [
-        "connected /odom",
-        *[bad] * 3,
-        "action_failed no_odometry(5)",
-        "at 2 0",
-        "at 0 0",
-    ]
+    assert lab.lines == ["connected /odom", *[bad] * 3, "action_failed no_odometry(5)", "at 2 0", "at 0 0"]
     assert lab.when(bad) <= 2.1
     assert lab.drives(1.9, 2.1)
     assert lab.stands(3.2, 9.0)
@@ -76,12 +70,7 @@ def test_a_few_bad_numbers_are_logged_once_and_the_robot_arrives() -> None:
 
 def test_a_pose_in_another_frame_is_not_used_for_driving() -> None:
     lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 5))
-    assert lab.lines == [
-        "connected /odom",
-        *['bad /odom wrong_frame("map")'] * 2,
-        "at 2 0",
-        "at 0 0",
-    ]
+    assert lab.lines == ["connected /odom", *['bad /odom wrong_frame("map")'] * 2, "at 2 0", "at 0 0"]
     assert lab.stands(3.5, 5.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 

@@ -75,11 +75,7 @@ def lost(topic: str, begin: float, end: float) -> Callable[[Lab], None]:
 def test_without_odometry_the_robot_stops_and_the_motion_fails() -> None:
     lab = in_lab("driving.asl", lost("/odom", 2, 10))
     assert lab.lines == [
-        "connected /odom",
-        "lost /odom",
-        "action_failed no_odometry(5)",
-        "connected /odom",
-        "at 2 0",
+        *("connected /odom", "lost /odom", "action_failed no_odometry(5)", "connected /odom", "at 2 0"),
         "at 0 0",
     ]
     assert 2.9 <= lab.when("lost") <= 3.5

@@ -158,12 +158,8 @@ async def test_services_of_both_are_found(two) -> None:
 @played(
     joined,
     prints=[
-        "[bob] focused 1",
-        "[bob] by(1)counter/main/far",
-        "[bob] after inc 2",
-        '[bob] 3["a",p(1,[2])]',
-        "[bob] by(10)counter/main/far",
-        "[bob] too many: too_many(12)",
+        *("[bob] focused 1", "[bob] by(1)counter/main/far", "[bob] after inc 2", '[bob] 3["a",p(1,[2])]'),
+        *("[bob] by(10)counter/main/far", "[bob] too many: too_many(12)"),
     ],
 )
 async def test_an_agent_uses_an_artifact_of_the_other_system(two) -> None:

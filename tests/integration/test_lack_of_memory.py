@@ -96,9 +96,5 @@ def limited_to(size: int, folder: Path, program: str) -> "subprocess.Popen[str]"
         f"{limit}from jacaros.runtime.cli.main import main; import sys; sys.exit(main(['run', '{program}']))"
     )
     return subprocess.Popen(
-        [sys.executable, "-c", command],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

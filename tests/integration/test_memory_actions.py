@@ -158,11 +158,7 @@ def test_a_suspended_goal_is_sent_again_though_another_goal_came_in_between(run,
         """)
     assert result.of("counter") == ["counted"]
     assert server.deeds == [
-        "begin 5 at 0",
-        "cancelled 5 at 2.5",
-        "begin 1 at 2.5",
-        "done 1 at 2.6",
-        "begin 5 at 2.6",
+        *("begin 5 at 0", "cancelled 5 at 2.5", "begin 1 at 2.5", "done 1 at 2.6", "begin 5 at 2.6"),
         "done 5 at 7.6",
     ]
 

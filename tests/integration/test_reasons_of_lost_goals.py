@@ -109,9 +109,7 @@ def test_servers_that_are_not_there(tmp_path: Path) -> None:
         f"no server offered action /count ({COUNT}) within 5 s", "count(5)", "server_unavailable"
     )
     assert told(tmp_path, "hold", server=False) == expected(
-        "no node offered service /hold (std_srvs/srv/SetBool) within 2 s",
-        "hold",
-        "service_unavailable(hold)",
+        "no node offered service /hold (std_srvs/srv/SetBool) within 2 s", "hold", "service_unavailable(hold)"
     )
 
 

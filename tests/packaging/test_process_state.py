@@ -23,12 +23,7 @@ from jacaros import Mas, PythonAgent
 from jacaros.agents.terms.values import Held
 
 PACKAGES = (
-    "agents",
-    "mas",
-    "artifacts.env",
-    "artifacts.kernel",
-    "artifacts.presence",
-    "artifacts.streams",
+    *("agents", "mas", "artifacts.env", "artifacts.kernel", "artifacts.presence", "artifacts.streams"),
 )
 WEAK = {
     "agents.terms.values._functors": "names that are in use",

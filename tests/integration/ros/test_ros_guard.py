@@ -159,9 +159,7 @@ def children(process: int) -> list[int]:
 
 
 def test_a_guard_on_the_robot_stops_it_when_the_agents_computer_is_gone(
-    guarded: Callable[..., Guarded],
-    on_the_robot: Callable[[str], Program],
-    monkeypatch: pytest.MonkeyPatch,
+    guarded: Callable[..., Guarded], on_the_robot: Callable[[str], Program], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JACAROS_GUARD_TIMEOUT", "30")  # the guard beside the agents has no false alarms
     guard = on_the_robot("velocity")

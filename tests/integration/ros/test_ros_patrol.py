@@ -33,10 +33,7 @@ def since_the_last_charge(truth: GroundTruth) -> GroundTruth:
 
 @pytest.mark.only("ros1")
 def test_a_patrol_outlives_the_ros_master(
-    world: WorldProcess,
-    run_agents: Callable[..., Agents],
-    master: Master,
-    peer: Callable[[str], ProcessPeer],
+    world: WorldProcess, run_agents: Callable[..., Agents], master: Master, peer: Callable[[str], ProcessPeer]
 ) -> None:
     agents = run_agents("patrol.asl")
     world.until_truth(lambda truth: len(visits(truth, CORNERS)) >= 2, "the first corner")

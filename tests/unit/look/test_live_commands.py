@@ -154,12 +154,8 @@ async def test_the_console_reports_errors_in_one_line(page, line: str, why: str)
 @pytest.mark.parametrize(
     "line",
     [
-        "?.add_plan({+!y <- .print(y)})",
-        "?ready & .abolish(battery(_))",
-        "?F = .add_plan({+!y}) & F",
-        "?.random(X)",
-        "?not .create_agent(eve)",
-        "?cleared",
+        *("?.add_plan({+!y <- .print(y)})", "?ready & .abolish(battery(_))", "?F = .add_plan({+!y}) & F"),
+        *("?.random(X)", "?not .create_agent(eve)", "?cleared"),
     ],
 )
 @played(commanding)

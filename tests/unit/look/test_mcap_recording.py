@@ -51,13 +51,8 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[flo
 
 def test_each_kind_of_record_has_a_channel(driven: dict[str, Any]) -> None:
     assert {
-        "/jacaros/world",
-        "/jacaros/frame",
-        "/jacaros/text",
-        "/jacaros/goal",
-        "/jacaros/artifact",
-        "/jacaros/operation",
-        "/jacaros/cause",
+        *("/jacaros/world", "/jacaros/frame", "/jacaros/text", "/jacaros/goal", "/jacaros/artifact"),
+        *("/jacaros/operation", "/jacaros/cause"),
     } <= set(driven)
     t, schema, content = driven["/jacaros/goal"][0]
     assert (t, schema, content["goal"]) == (0.0, "jacaros.goal", "!start")

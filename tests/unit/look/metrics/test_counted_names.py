@@ -71,9 +71,7 @@ def test_beliefs_rules_labels_and_variables_count_as_names(folder: Path) -> None
 
 def test_the_names_of_an_included_file_belong_to_it(folder: Path) -> None:
     program = measured(
-        folder,
-        a__asl='{ include("b.asl") }\n!go.\n+!go <- !help.\n',
-        b__asl="+!help <- ring.\n",
+        folder, a__asl='{ include("b.asl") }\n!go.\n+!go <- !help.\n', b__asl="+!help <- ring.\n"
     )
     assert [(file.path.name, file.identifiers) for file in program.files[Group.AGENTS]] == [
         ("a.asl", {"go", "help"}),
