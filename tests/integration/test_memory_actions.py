@@ -129,9 +129,7 @@ def test_a_dropped_intention_cancels_its_goal(run, server: Server) -> None:
     assert server.deeds == ["begin 50 at 0", "cancelled 50 at 3.5"]
 
 
-def test_a_goal_continues_while_its_intention_is_suspended_and_its_result_is_held_back(
-    run, server: Server
-) -> None:
+def test_a_goal_continues_while_its_intention_is_suspended_and_its_result_is_held_back(run, server) -> None:
     result = run("""
         +!go <- !!count; .wait(1500); .suspend(count); .wait(10000); .print(resuming);
                 .resume(count); .wait({+counted}).

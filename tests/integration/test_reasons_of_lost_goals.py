@@ -83,9 +83,7 @@ def expected(message: str, step: str, reason: str) -> list[str]:
         ("hold", "service /hold refused: the brake is worn", 'service_refused(hold,"the brake is worn")'),
     ],
 )
-def test_a_failure_is_logged_with_its_reason_step_and_goals(
-    tmp_path: Path, step: str, message: str, reason: str
-) -> None:
+def test_a_failure_is_logged_with_its_reason_step_and_goals(tmp_path, step: str, message, reason) -> None:
     assert told(tmp_path, step) == expected(message, step, reason)
 
 

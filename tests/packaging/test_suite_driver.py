@@ -120,9 +120,7 @@ def test_a_part_may_take_long_while_it_makes_progress(run: Any) -> None:
     assert verdicts == {"a": "ok"}
 
 
-def test_the_closing_table_shows_parts_that_have_become_slow(
-    driver: ModuleType, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_closing_table_shows_parts_that_have_become_slow(driver: ModuleType, capsys) -> None:
     slow, fast = driver.Part("slow", ("true",), budget=20), driver.Part("fast", ("true",), budget=30)
     results = [driver.Result(part, "ok", 60.0, 35.0, "3 passed") for part in (slow, fast)]
     assert driver.report(results, 60.0) == 0

@@ -95,9 +95,7 @@ def test_the_robot_stands_after_its_agents_are_killed(guarded: Callable[..., Gua
     wait_until(lambda: not is_running(run.guard), "the guard ends with the agents")
 
 
-def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(
-    guarded: Callable[..., Guarded],
-) -> None:
+def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(guarded) -> None:
     run = guarded("velocity", "velocity")
     run.world.until_truth(lambda truth: truth.odometer() > 0.0, "the robot moves")
     took = run.stood_after(run.agents.signal(signal.SIGKILL))

@@ -384,9 +384,7 @@ async def test_a_changed_program_is_reloaded(tmp_path: Path) -> None:
 
 
 @played(commanding)
-async def test_the_run_continues_while_a_question_about_it_is_answered(
-    page, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_the_run_continues_while_a_question_about_it_is_answered(page, monkeypatch) -> None:
     asked, may_answer = threading.Event(), threading.Event()
 
     def explained(records: Iterable[Record], question: str, at: float | None) -> Explanation:

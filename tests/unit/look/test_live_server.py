@@ -121,9 +121,7 @@ TUNNELS = ["localhost:8080", "127.0.0.1", "[::1]:1"]
     ("host", "status"), [*((each, 403) for each in FOREIGN), *((each, 200) for each in TUNNELS)]
 )
 @played(serving)
-async def test_another_host_is_refused_and_a_tunnel_may_have_another_port(
-    lab, host: str, status: int
-) -> None:
+async def test_another_host_is_refused_and_a_tunnel_may_have_another_port(lab, host: str, status) -> None:
     assert (await get(lab.address, Host=host))[0] == status
 
 
@@ -233,9 +231,7 @@ async def test_idle_connections_do_not_keep_out_a_page(lab, monkeypatch: pytest.
 
 
 @played(serving)
-async def test_requests_without_the_token_do_not_keep_out_a_page(
-    lab, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_requests_without_the_token_do_not_keep_out_a_page(lab, monkeypatch) -> None:
     monkeypatch.setattr(server, "ADMITTED", 20)
     stranger = lab.address.replace(TOKEN, "another-token-of-a-stranger")
     with monkeypatch.context() as patch:

@@ -106,9 +106,7 @@ def test_a_missing_library_suggests_what_to_install(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize("name", ["run.mcap", "run.jsonl.gz"])
-def test_a_missing_folder_is_reported_before_the_run(
-    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_folder_is_reported_before_the_run(tmp_path: Path, name: str, capsys) -> None:
     (tmp_path / "a.asl").write_text('!s. +!s <- .print("begun").', encoding="utf-8")
     with pytest.raises(SystemExit) as ended:
         command(["run", str(tmp_path / "a.asl"), "--record", str(tmp_path / "none" / name)])

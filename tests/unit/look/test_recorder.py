@@ -66,9 +66,7 @@ def test_a_recorder_keeps_the_run_in_memory_without_a_path_alone(tmp_path: Path)
     ],
     ids=["a rest costs two frames", "the last rest is kept when the run ends", "frames stay in order"],
 )
-def test_a_robot_rests_and_then_starts_sharply(
-    given: list[tuple[float, float]], kept: list[tuple[float, float]]
-) -> None:
+def test_a_robot_rests_and_then_starts_sharply(given, kept: list[tuple[float, float]]) -> None:
     recorder = Recorder()
     for t, x in given:
         recorder.frame(t, at(x))
@@ -104,9 +102,7 @@ def test_records_are_in_the_file_during_the_run(tmp_path: Path, name: str) -> No
     ("name", "limit", "count", "least"),
     [("run.jsonl", 20_000, 1000, 100), ("run.jsonl.gz", 40_000, 3000, 300)],
 )
-def test_a_long_recording_keeps_its_newest_half(
-    tmp_path: Path, name: str, limit: int, count: int, least: int
-) -> None:
+def test_a_long_recording_keeps_its_newest_half(tmp_path, name: str, limit, count: int, least: int) -> None:
     path, generator = tmp_path / name, Random(1)
     recorder = Recorder(path, limit=limit)
     recorder.world({"name": "nowhere"})
@@ -287,9 +283,7 @@ def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_an_invalid_line_is_reported_with_its_location_and_help(
-    tmp_path: Path, line: str, reason: str
-) -> None:
+def test_an_invalid_line_is_reported_with_its_location_and_help(tmp_path, line: str, reason: str) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text(f"{line}\n\n", encoding="utf-8")
     with pytest.raises(JacarosError) as refused:
@@ -331,9 +325,7 @@ def test_damage_in_front_of_whole_members_is_reported(tmp_path: Path) -> None:
     assert content.count(b'"text": "x"') == 2
 
 
-def test_a_compressed_recording_that_contains_too_much_is_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_compressed_recording_that_contains_too_much_is_an_error(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(reading, "LARGEST", 100_000)
     record(tmp_path / "run.jsonl")
     line = b'{"kind": "text", "t": 1, "agent": "ann", "text": "' + b"a" * 1000 + b'"}\n'
@@ -348,9 +340,7 @@ def test_a_compressed_recording_that_contains_too_much_is_an_error(
     assert len(Recording.read(tmp_path / "run.jsonl").texts) == 2001
 
 
-def test_a_large_compressed_recording_of_a_run_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_large_compressed_recording_of_a_run_is_read(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(reading, "LARGEST", 1000)
     path, generator = tmp_path / "run.jsonl.gz", Random(1)
     recorder = Recorder(path)
