@@ -60,12 +60,8 @@ def test_odometry_is_created_found_and_perceived() -> None:
 def test_each_robot_has_odometry_of_its_own() -> None:
     result = run("odometry_of_robots", 60.0)
     assert result.lines == [
-        "[watcher] making Odom",
-        "[watcher] looking up Odom",
-        "[watcher] making Odomrobot_1",
-        "[watcher] looking up Odomrobot_1",
-        "[watcher] robot_1 is at 1 1",
-        "[watcher] found what it made",
+        *("[watcher] making Odom", "[watcher] looking up Odom", "[watcher] making Odomrobot_1"),
+        *("[watcher] looking up Odomrobot_1", "[watcher] robot_1 is at 1 1", "[watcher] found what it made"),
     ]
 
 
@@ -125,33 +121,27 @@ def patrols(result: RunResult) -> None:
 
 @SEEDS
 @pytest.mark.slow
-def test_patrol_and_recharge(seed: int) -> None:
-    patrols(run("patrol", 300.0, seed=seed))
-
-
-@SEEDS
-@pytest.mark.slow
-def test_patrol_and_recharge_in_the_map_where_wheels_slip(seed: int, tmp_path: Path) -> None:
-    result = run_project(in_the_map("patrol", tmp_path), seconds=300.0, seed=seed, noise=1.0)
+@pytest.mark.parametrize("slips", [False, True], ids=["", "in the map where wheels slip"])
+@pytest.mark.parametrize("name", ["patrol", "house"])
+def test_a_patrol_and_a_household_recharge(name: str, slips: bool, seed: int, tmp_path: Path) -> None:
+    seconds, judge = {"patrol": (300.0, patrols), "house": (200.0, keeps_house)}[name]
+    if not slips:
+        judge(run(name, seconds, seed=seed))
+        return
+    result = run_project(in_the_map(name, tmp_path), seconds=seconds, seed=seed, noise=1.0)
     assert result.errors == []
-    patrols(result)
+    judge(result)
 
 
 class Odometer:
     """A console that notes how far the robot has driven at each line."""
 
-    def __init__(self) -> None:
-        self.driven: dict[str, float] = {}
-        self.mas: System | None = None
-
     def begin(self, mas: System) -> None:
         """Take the run."""
-        self.mas = mas
+        self.mas, self.driven = mas, dict[str, float]()
 
     def print(self, agent: str, text: str) -> None:
         """Note the metres of the newest line of this text."""
-        assert self.mas is not None
-        assert self.mas.ros.world is not None
         self.driven[text] = self.mas.ros.world.ground_truth.odometer()
 
     def log(self, text: str, level: str = "info") -> None:
@@ -163,13 +153,8 @@ class Odometer:
 def test_the_patrol_stands_still_while_it_is_suspended() -> None:
     # All that the robot drives between "Low Battery" and "returned" are the four metres of the way to the dock.
     console = Odometer()
-    launch(
-        HERE / "patrol.mas2j",
-        RunOptions(fast=True, seed=0, seconds=140.0),
-        console,
-        console.begin,
-        own_process=False,
-    )
+    options = RunOptions(fast=True, seed=0, seconds=140.0)
+    launch(HERE / "patrol.mas2j", options, console, console.begin, own_process=False)
     driven = console.driven["returned"] - console.driven["Current Diagnostic: Low Battery"]
     assert driven == pytest.approx(4.0, abs=0.3)
 
@@ -177,14 +162,9 @@ def test_the_patrol_stands_still_while_it_is_suspended() -> None:
 def keeps_house(result: RunResult) -> None:
     """The robot does the tasks of each room in the room, and resumes them after it has recharged."""
     tasks = [event.data["task"] for event in result.ground_truth.events_of("task")]
-    of_a_round = [
-        "vacuum carpet living_room",
-        "mop floor kitchen",
-        "scrub tub bathroom",
-        "mop floor bathroom",
-    ]
+    round_ = ["vacuum carpet living_room", "mop floor kitchen", "scrub tub bathroom", "mop floor bathroom"]
     assert len(tasks) >= 8
-    assert tasks == [of_a_round[number % 4] for number in range(len(tasks))]
+    assert tasks == [round_[number % 4] for number in range(len(tasks))]
     places = [(2, 0), (2, 2), (0, 2), (0, 2)]
     for event, place in zip(result.ground_truth.events_of("task")[:4], places, strict=True):
         assert distance(event, *place) <= 0.05
@@ -192,20 +172,6 @@ def keeps_house(result: RunResult) -> None:
     assert "[robot] returned" in result.lines
     after = result.lines[result.lines.index("[robot] returned") :]
     assert any("Vacuum" in line or "Mop" in line for line in after)
-
-
-@SEEDS
-@pytest.mark.slow
-def test_the_household(seed: int) -> None:
-    keeps_house(run("house", 200.0, seed=seed))
-
-
-@SEEDS
-@pytest.mark.slow
-def test_the_household_in_the_map_where_wheels_slip(seed: int, tmp_path: Path) -> None:
-    result = run_project(in_the_map("house", tmp_path), seconds=200.0, seed=seed, noise=1.0)
-    assert result.errors == []
-    keeps_house(result)
 
 
 def test_the_range_of_view_and_the_way_to_the_goal() -> None:

@@ -13,18 +13,9 @@ from jacaros.runtime.cli.main import call
 PAGE = ROOT / "docs" / "reference" / "diagnostics.md"
 EXAMPLES = [block for block in blocks(PAGE) if block.purpose.startswith(("wrong ", "right "))]
 OF_FILES = {
-    "not-imported",
-    "too-many",
-    "no-effect",
-    "plan-too-large",
-    "unknown-artifact-type",
-    "unknown-message-type",
-    "unknown-operation",
-    "unknown-resource",
-    "unreadable-file",
-    "wrong-mapping",
-    "wrong-world",
-    "wrong-project",
+    *("not-imported", "too-many", "no-effect", "plan-too-large", "unknown-artifact-type"),
+    *("unknown-message-type", "unknown-operation", "unknown-resource", "unreadable-file", "wrong-mapping"),
+    *("wrong-world", "wrong-project"),
 }
 TOO_LONG = {"nested-too-deeply"}
 LEVELS = {"Errors": "error", "Warnings": "warning", "Notes": "note"}
@@ -49,9 +40,7 @@ def test_every_code_has_examples() -> None:
 
 
 @pytest.mark.parametrize("block", EXAMPLES, ids=lambda block: block.purpose)
-def test_an_example_gives_its_code_and_nothing_else(
-    block: Block, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_example_gives_its_code_and_nothing_else(block: Block, tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     Path("other.asl").write_text("sum(X, Y, X + Y).\n", encoding="utf-8")
     Path("example.asl").write_text(block.text, encoding="utf-8")
@@ -59,9 +48,7 @@ def test_an_example_gives_its_code_and_nothing_else(
     assert told(capsys) == ([(code, LEVEL_OF[code])] if kind == "wrong" else [])
 
 
-def test_nesting_has_a_limit(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_nesting_has_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     (limit,) = re.findall(r"At most (\d+) levels", PAGE.read_text(encoding="utf-8"))
     for depth, expected in ((int(limit), ["nested-too-deeply"]), (int(limit) - 2, [])):

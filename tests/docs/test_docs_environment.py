@@ -28,27 +28,11 @@ REFUSED = {"crash", "createWorkspaceWithTopology", "linkRemoteWorkspace", "mount
 """Actions that can only fail."""
 
 NOT_FOR_AUTHORS = {
-    "interface",
-    "has_untaken",
-    "observe_property",
-    "clock",
-    "id",
-    "name",
-    "workspace",
-    "resources",
+    *("interface", "has_untaken", "observe_property", "clock", "id", "name", "workspace", "resources")
 }
 """Attributes of artifacts that no author calls, that only the policies of sensors ask for, or that are plain values."""
 
-TYPES = (
-    Barrier,
-    Blackboard,
-    Clock,
-    Console,
-    Latch,
-    ManualRepository,
-    SystemArtifact,
-    WorkspaceArtifact,
-)
+TYPES = (Barrier, Blackboard, Clock, Console, Latch, ManualRepository, SystemArtifact, WorkspaceArtifact)
 
 
 def examples(page: str, language: str) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
+from jacaros.robots.ros.drivers.memory.graph import Disturbance, MemoryGraph
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.robots.world.data.ground_truth import GroundTruth
@@ -235,6 +235,16 @@ def with_no_wait(coroutine: Any) -> None:
     except StopIteration:
         return
     raise AssertionError("it waits")
+
+
+def between(begin: float, end: float, fault: Callable[[Lab], Callable[[], None]]) -> Callable[[Lab], None]:
+    """Faults of a run: one that begins at a moment, and that what it returns ends at another."""
+    return lambda lab: lab.at(begin, lambda: lab.at(end, fault(lab)))
+
+
+def disturbed(topic: str, disturbance: Disturbance, begin: float, end: float) -> Callable[[Lab], None]:
+    """Faults of a run: messages of a topic are late, repeated or lost from one moment to another."""
+    return between(begin, end, lambda lab: lab.graph.disturb(topic, disturbance))
 
 
 def in_lab(

@@ -5,18 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from faults_lab import Lab, in_lab
+from faults_lab import Lab, between, in_lab
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 
 def odometry_is(change: Callable[[Any], None], begin: float, end: float) -> Callable[[Lab], None]:
     """Change odometry on its way from one moment to another."""
-
-    def faults(lab: Lab) -> None:
-        lab.at(begin, lambda: lab.at(end, lab.change("/odom", ODOMETRY, change)))
-
-    return faults
+    return between(begin, end, lambda lab: lab.change("/odom", ODOMETRY, change))
 
 
 def without_position(number: float) -> Callable[[Any], None]:
@@ -48,13 +44,7 @@ def elsewhere(message: Any) -> None:
 def test_a_robot_stops_while_its_pose_is_unknown(change: Callable[[Any], None], what: str) -> None:
     lab = in_lab("driving.asl", odometry_is(change, 2, 9))
     bad = f'bad /odom not_finite("{what}")'
-    assert lab.lines == [
-        "connected /odom",
-        *[bad] * 3,
-        "action_failed no_odometry(5)",
-        "at 2 0",
-        "at 0 0",
-    ]
+    assert lab.lines == ["connected /odom", *[bad] * 3, "action_failed no_odometry(5)", "at 2 0", "at 0 0"]
     assert lab.when(bad) <= 2.1
     assert lab.drives(1.9, 2.1)
     assert lab.stands(3.2, 9.0)
@@ -76,12 +66,7 @@ def test_a_few_bad_numbers_are_logged_once_and_the_robot_arrives() -> None:
 
 def test_a_pose_in_another_frame_is_not_used_for_driving() -> None:
     lab = in_lab("driving.asl", odometry_is(elsewhere, 2, 5))
-    assert lab.lines == [
-        "connected /odom",
-        *['bad /odom wrong_frame("map")'] * 2,
-        "at 2 0",
-        "at 0 0",
-    ]
+    assert lab.lines == ["connected /odom", *['bad /odom wrong_frame("map")'] * 2, "at 2 0", "at 0 0"]
     assert lab.stands(3.5, 5.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
@@ -95,42 +80,25 @@ def test_a_motion_does_not_outlive_a_change_of_frames() -> None:
     assert lab.safe
 
 
-def test_a_mapped_property_ignores_other_frames() -> None:
-    lab = in_lab("blind.asl", odometry_is(elsewhere, 1, 3), mapping="framed.yaml")
-    bad = 'bad /odom wrong_frame("map")'
+@pytest.mark.parametrize(
+    ("change", "mapping", "bad", "told"),
+    [
+        (elsewhere, "framed.yaml", 'wrong_frame("map")', "expected frame odom, found map"),
+        (
+            without_position(math.nan),
+            *("robot.yaml", 'not_finite("pose.pose.position.x")', "`pose.pose.position.x` is nan"),
+        ),
+    ],
+    ids=["another frame", "nan"],
+)
+def test_a_mapped_property_expires_and_returns_and_a_timed_motion_ends(change, mapping, bad, told) -> None:
+    lab = in_lab("blind.asl", odometry_is(change, 1, 3), mapping=mapping)
+    bad = f"bad /odom {bad}"
     assert [line for line in lab.lines if not line.startswith("odom 1")] == [
-        "odom 0 odom",
-        "odom 0.1 odom",
-        bad,
-        "odom 0.2 odom",
-        bad,
-        "odom unknown",
-        "driven",
-        "odom 0.9 odom",
-        "driven",
-        "driven",
-    ]
-    assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
-    [told] = lab.errors
-    assert "`odom` is not shown: expected frame odom, found map" in told
-
-
-def test_a_mapped_property_expires_and_returns_and_a_timed_motion_ends() -> None:
-    lab = in_lab("blind.asl", odometry_is(without_position(math.nan), 1, 3), mapping="robot.yaml")
-    bad = 'bad /odom not_finite("pose.pose.position.x")'
-    assert [line for line in lab.lines if not line.startswith("odom 1")] == [
-        "odom 0 odom",
-        "odom 0.1 odom",
-        bad,
-        "odom 0.2 odom",
-        bad,
-        "odom unknown",
-        "driven",
-        "odom 0.9 odom",
-        "driven",
-        "driven",
+        *("odom 0 odom", "odom 0.1 odom", bad, "odom 0.2 odom", bad, "odom unknown", "driven"),
+        *("odom 0.9 odom", "driven", "driven"),
     ]
     assert lab.stands(6.8, 8.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (1.8, 0), True)
-    [told] = lab.errors
-    assert "`odom` is not shown: `pose.pose.position.x` is nan" in told
+    [error] = lab.errors
+    assert f"`odom` is not shown: {told}" in error

@@ -1,9 +1,7 @@
 """Odometry and commands that arrive late, twice, out of order, or not at all."""
 
-from collections.abc import Callable
-
 import pytest
-from faults_lab import Lab, in_lab
+from faults_lab import disturbed, in_lab
 
 from jacaros.robots.ros.drivers.memory.graph import Disturbance, both, delayed, dropped, duplicated
 
@@ -33,15 +31,8 @@ def test_a_robot_arrives_despite_a_bad_connection(topic: str, disturbance: Distu
     assert abs(lab.place[0]) <= 0.05
 
 
-def late(seconds: float, begin: float, end: float) -> Callable[[Lab], None]:
-    def faults(lab: Lab) -> None:
-        lab.at(begin, lambda: lab.at(end, lab.graph.disturb("/odom", delayed(seconds))))
-
-    return faults
-
-
 def test_a_robot_stops_when_odometry_becomes_late() -> None:
-    lab = in_lab("driving.asl", late(1.0, 1, 12))
+    lab = in_lab("driving.asl", disturbed("/odom", delayed(1.0), 1, 12))
     told = [line.split("(")[0] for line in lab.lines if not line.startswith("bad /odom out_of_order")]
     assert told == [
         "connected /odom",
@@ -59,27 +50,16 @@ def test_a_robot_stops_when_odometry_becomes_late() -> None:
 
 
 def test_odometry_that_is_a_little_late_makes_a_robot_overshoot_a_little() -> None:
-    lab = in_lab("driving.asl", late(0.3, 1, 60))
+    lab = in_lab("driving.asl", disturbed("/odom", delayed(0.3), 1, 60))
     assert max(moment.x for moment in lab.moments) < 2.0 + 0.3 * 0.65
     assert lab.safe
     assert lab.errors == []
 
 
-def lost(topic: str, begin: float, end: float) -> Callable[[Lab], None]:
-    def faults(lab: Lab) -> None:
-        lab.at(begin, lambda: lab.at(end, lab.graph.disturb(topic, dropped())))
-
-    return faults
-
-
 def test_without_odometry_the_robot_stops_and_the_motion_fails() -> None:
-    lab = in_lab("driving.asl", lost("/odom", 2, 10))
+    lab = in_lab("driving.asl", disturbed("/odom", dropped(), 2, 10))
     assert lab.lines == [
-        "connected /odom",
-        "lost /odom",
-        "action_failed no_odometry(5)",
-        "connected /odom",
-        "at 2 0",
+        *("connected /odom", "lost /odom", "action_failed no_odometry(5)", "connected /odom", "at 2 0"),
         "at 0 0",
     ]
     assert 2.9 <= lab.when("lost") <= 3.5
@@ -88,14 +68,14 @@ def test_without_odometry_the_robot_stops_and_the_motion_fails() -> None:
 
 
 def test_odometry_that_pauses_makes_the_robot_pause() -> None:
-    lab = in_lab("driving.asl", lost("/odom", 2, 5))
+    lab = in_lab("driving.asl", disturbed("/odom", dropped(), 2, 5))
     assert lab.lines == ["connected /odom", "lost /odom", "connected /odom", "at 2 0", "at 0 0"]
     assert lab.stands(3.6, 5.0)
     assert (lab.exit_code, lab.place, lab.safe) == (0, (0, 0), True)
 
 
 def test_a_robot_without_commands_stops_and_the_motion_is_blocked() -> None:
-    lab = in_lab("driving.asl", lost("/cmd_vel", 2, 8))
+    lab = in_lab("driving.asl", disturbed("/cmd_vel", dropped(), 2, 8))
     first, *others = [line for line in lab.lines if line.startswith("action_failed")]
     assert first.startswith("action_failed blocked(")
     assert all(each.startswith("action_failed blocked(") for each in others)

@@ -3,13 +3,8 @@
 from faults_lab import Lab, in_lab
 
 LOST = [
-    "connected /odom",
-    "lost /odom",
-    "my pose is unknown",
-    "action_failed server_lost",
-    "connected /odom",
-    "at 2 0",
-    "at 0 0",
+    *("connected /odom", "lost /odom", "my pose is unknown", "action_failed server_lost", "connected /odom"),
+    *("at 2 0", "at 0 0"),
 ]
 
 MISSING = [
@@ -66,11 +61,7 @@ def test_navigation_continues_after_a_restart_of_the_robot() -> None:
 def test_driving_continues_after_a_restart_of_the_robot() -> None:
     lab = in_lab("driving.asl", robot_dies)
     assert lab.lines == [
-        "connected /odom",
-        "lost /odom",
-        "action_failed no_odometry(5)",
-        "connected /odom",
-        "at 2 0",
+        *("connected /odom", "lost /odom", "action_failed no_odometry(5)", "connected /odom", "at 2 0"),
         "at 0 0",
     ]
     assert lab.stands(3.5, 10.0)

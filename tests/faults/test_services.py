@@ -35,9 +35,7 @@ def succeed(request: Any) -> Any:
     ],
     ids=["refuses", "fails", "never answers", "is not there"],
 )
-def test_a_failing_service_blocks_nothing_and_is_used_again_when_it_works(
-    handler: Any, reason: str, times: int
-) -> None:
+def test_a_failing_service_blocks_nothing_and_is_used_again_when_it_works(handler, reason, times) -> None:
     def faults(lab: Lab) -> None:
         node = lab.node("gripper")
         bad = node.service("/open_gripper", TRIGGER, handler) if handler else None

@@ -7,6 +7,7 @@ the other one as its own.  Every line is JSON, and arrives some turns of the loo
 import asyncio
 import json
 from collections.abc import Callable, Collection, Sequence
+from functools import partial
 from typing import Any
 
 from jacaros.agents.language.loader import parse_term
@@ -66,19 +67,16 @@ class Ids:
         self._numbers[artifact] = number
         self._by_number[number] = artifact
 
-    def find(self, number: Sequence[Any]) -> ArtifactId | None:
+    def find(self, number: Sequence[Any]) -> ArtifactId:
         """The announced artifact."""
-        return self._by_number.get((number[0], number[1]))
+        return self._by_number[number[0], number[1]]
 
     def encode(self, value: object, outs: list[Out] | None = None) -> Any:
         """A plain value as JSON has it."""
         if isinstance(value, Atom):
             return {"atom": str.__str__(value)}
         if isinstance(value, Structure):
-            return {
-                "functor": value.functor,
-                "arguments": [self.encode(each, outs) for each in value.arguments],
-            }
+            return {"functor": value.functor, "arguments": self.encode(list(value.arguments), outs)}
         if isinstance(value, list):
             return [self.encode(each, outs) for each in value]
         if isinstance(value, dict):
@@ -180,16 +178,11 @@ class WorkspaceServer:
         reason = self._ids.encode(outcome.reason)
         self._send("ended", call, outcome.ok, outcome.message, reason, *more)
 
-    def _artifact(self, number: list[Any]) -> ArtifactId:
-        found = self._ids.find(number)
-        assert found is not None
-        return found
-
     def _on_execute(
         self, call: int, number: list[Any], operation: str, arguments: Any, agent: str | None, timeout: Any
     ) -> None:
         outs: list[Out] = []
-        artifact = self._artifact(number)
+        artifact = self._ids.find(number)
 
         def done(outcome: OperationOutcome) -> None:
             if artifact in self._told and artifact in self._workspace.artifacts():
@@ -225,18 +218,18 @@ class WorkspaceServer:
                 self._calls.pop(call, None)
 
     def _on_dispose(self, call: int, number: list[Any]) -> None:
-        self._workspace.dispose_artifact(self._artifact(number), lambda outcome: self._end(call, outcome))
+        self._workspace.dispose_artifact(self._ids.find(number), lambda outcome: self._end(call, outcome))
 
     def _on_focus(self, call: int, number: list[Any], observer: int, agent: str) -> None:
         reporting = self._observers.setdefault(observer, _Reporting(self, observer, agent))
-        self._workspace.focus(self._artifact(number), reporting, lambda outcome: self._end(call, outcome))
+        self._workspace.focus(self._ids.find(number), reporting, lambda outcome: self._end(call, outcome))
 
     def _on_stop_focus(self, number: list[Any], observer: int) -> None:
-        self._workspace.stop_focus(self._artifact(number), self._observers[observer])
+        self._workspace.stop_focus(self._ids.find(number), self._observers[observer])
 
     def _on_link(self, call: int, source: list[Any], port: str, target: list[Any]) -> None:
         link = self._workspace.link
-        link(self._artifact(source), port, self._artifact(target), lambda outcome: self._end(call, outcome))
+        link(self._ids.find(source), port, self._ids.find(target), lambda outcome: self._end(call, outcome))
 
 
 class _Call:
@@ -245,14 +238,8 @@ class _Call:
     def __init__(self, client: "RemoteWorkspace", number: int) -> None:
         self._client, self._number = client, number
 
-    def cancel(self) -> None:
-        self._client.handle(self._number, "cancel")
-
-    def pause(self) -> None:
-        self._client.handle(self._number, "pause")
-
-    def resume(self) -> None:
-        self._client.handle(self._number, "resume")
+    def __getattr__(self, what: str) -> Callable[[], None]:
+        return partial(self._client.handle, self._number, what)
 
 
 class RemoteWorkspace(ports.Workspace):
@@ -376,7 +363,6 @@ class RemoteWorkspace(ports.Workspace):
 
     def _on_gone(self, number: list[Any]) -> None:
         artifact = self._ids.find(number)
-        assert artifact is not None
         del self._offers[artifact]
         self._tell(artifact, False)
 
@@ -385,9 +371,7 @@ class RemoteWorkspace(ports.Workspace):
             watcher(artifact, present)
 
     def _on_offers(self, number: list[Any], offers: list[str]) -> None:
-        artifact = self._ids.find(number)
-        assert artifact is not None
-        self._offers[artifact] = offers
+        self._offers[self._ids.find(number)] = offers
 
     def _on_ended(self, call: int, ok: bool, message: str | None, reason: Any, *more: Any) -> None:
         done = self._ends.pop(call, None)
@@ -397,14 +381,12 @@ class RemoteWorkspace(ports.Workspace):
     def _on_observed(
         self, observer: int, number: list[Any], signals: Any, changed: Any, added: Any, removed: Any
     ) -> None:
-        artifact = self._ids.find(number)
-        assert artifact is not None
         told = [
             [(self._property(before), self._property(after)) for before, after in part]
             for part in (changed, added, removed)
         ]
         seen = Observation(
-            artifact,
+            self._ids.find(number),
             tuple(Signal(name, tuple(self._ids.decode(arguments))) for name, arguments in signals),
             tuple(told[0]),
             tuple(after for _, after in told[1]),
@@ -470,14 +452,9 @@ class RemoteServices:
         self._cable = cable
         self._providers: dict[str, list[str]] = {}
 
-    def register(self, name: str, service: str) -> None:
-        self._cable.send("service", "register", name, service)
-
-    def deregister(self, name: str, service: str) -> None:
-        self._cable.send("service", "deregister", name, service)
-
-    def subscribe(self, name: str, service: str) -> None:
-        self._cable.send("service", "subscribe", name, service)
+    def __getattr__(self, what: str) -> Callable[[str, str], None]:
+        """What is asked of the other one: ``register``, ``deregister``, ``subscribe``."""
+        return partial(self._cable.send, "service", what)
 
     def providers(self, service: str) -> Sequence[str]:
         return self._providers.get(service, [])

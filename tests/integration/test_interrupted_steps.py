@@ -5,9 +5,11 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from subprocess import PIPE
 
 import pytest
 
+LONG = "warning: a step has been running for more than 2 seconds"
 ENDLESS = {
     "body": "!g. +!g <- .print(begun); ?(.range(I, 1, 1e15) & I < 0).",
     "context": "!g. +!g <- .print(begun); !find(3).\n+!find(X) : .range(I, X, 1e15) & I < 0 <- .print(found).",
@@ -80,6 +82,11 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def command(folder: Path, program: str, *options: str) -> list[str]:
+    (folder / "bob.asl").write_text(program, encoding="utf-8")
+    return [sys.executable, "-m", "jacaros", "run", "bob.asl", *options]
+
+
 def interrupted(
     folder: Path,
     program: str,
@@ -91,17 +98,14 @@ def interrupted(
 
     The step begins a moment later. With *in_the_step*, the signal arrives after the warning about the step.
     """
-    (folder / "bob.asl").write_text(program, encoding="utf-8")
-    command = [sys.executable, "-m", "jacaros", "run", "bob.asl", *options]
-    pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, cwd=folder) as process:
+    with subprocess.Popen(
+        command(folder, program, *options), stdout=PIPE, stderr=PIPE, text=True, cwd=folder
+    ) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "[bob] begun\n"
         if in_the_step:
             assert process.stderr is not None
-            assert process.stderr.readline().startswith(
-                "warning: a step has been running for more than 2 seconds"
-            )
+            assert process.stderr.readline().startswith(LONG)
         process.send_signal(number)
         try:
             output, errors = process.communicate(timeout=120)
@@ -151,9 +155,8 @@ def test_a_thread_that_does_not_return_does_not_hold_the_end_up(folder: Path, cl
         +!g <- makeArtifact("a", "artifacts.Endless", [], A); focus(A); +ready; thread.
         +!end : ready <- .stopMAS(0, 3).
         +!end <- !end."""
-    (folder / "bob.asl").write_text(program, encoding="utf-8")
-    command = [sys.executable, "-m", "jacaros", "run", "bob.asl", "--clock", clock]
-    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    call = command(folder, program, "--clock", clock)
+    ended = subprocess.run(call, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
     assert ended.returncode == 3
     assert ended.stderr == ""
 
@@ -194,13 +197,9 @@ def test_a_recording_is_finished(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_a_step_that_blocks_all_agents_is_logged(folder: Path) -> None:
-    (folder / "bob.asl").write_text(ENDLESS["context"], encoding="utf-8")
-    command = [sys.executable, "-m", "jacaros", "run", "bob.asl"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=folder) as process:
+    call = command(folder, ENDLESS["context"])
+    with subprocess.Popen(call, stderr=PIPE, text=True, cwd=folder) as process:
         assert process.stderr is not None
         told = process.stderr.readline()
         process.kill()
-    assert told == (
-        "warning: a step has been running for more than 2 seconds and blocks all agents: "
-        "agent bob, plan +!find(X) (bob.asl:2)\n"
-    )
+    assert told == f"{LONG} and blocks all agents: agent bob, plan +!find(X) (bob.asl:2)\n"

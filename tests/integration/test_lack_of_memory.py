@@ -27,9 +27,7 @@ def explode(ctx: object) -> None:
     raise MemoryError
 
 
-def test_the_first_lack_of_memory_stops_the_robot_and_ends_the_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_first_lack_of_memory_stops_the_robot_and_ends_the_run(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setitem(internal_action._declared, ".explode", InternalAction(".explode", explode))
     program = tmp_path / "driver.asl"
     program.write_text(
@@ -96,9 +94,5 @@ def limited_to(size: int, folder: Path, program: str) -> "subprocess.Popen[str]"
         f"{limit}from jacaros.runtime.cli.main import main; import sys; sys.exit(main(['run', '{program}']))"
     )
     return subprocess.Popen(
-        [sys.executable, "-c", command],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

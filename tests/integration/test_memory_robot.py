@@ -1,6 +1,8 @@
 """Agents drive a robot of the embedded world, over the ROS graph inside the process."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,17 +14,26 @@ DRIVE = """
 """
 
 
-def run(folder: Path, program: str, **options: object) -> RunResult:
-    file = folder / "driver.asl"
-    file.write_text(program, encoding="utf-8")
-    return run_project(file, seconds=120, **options)  # type: ignore[arg-type]
+@pytest.fixture
+def run(tmp_path: Path) -> Callable[..., RunResult]:
+    """Runs a program."""
+    file = tmp_path / "driver.asl"
+
+    def run(program: str, **options: Any) -> RunResult:
+        file.write_text(program, encoding="utf-8")
+        return run_project(file, seconds=120, **options)
+
+    return run
 
 
-def test_a_robot_drives_a_square_and_comes_back(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        DRIVE + "+!drive <- for (.range(I,1,4)) { moveForward(1); rotate(90); .print(I) }.",
-    )
+@pytest.fixture
+def drive(run) -> Callable[..., RunResult]:
+    """Runs a program whose goal is ``!drive`` when it has the wheels."""
+    return lambda program, **options: run(DRIVE + program, **options)
+
+
+def test_a_robot_drives_a_square_and_comes_back(drive) -> None:
+    result = drive("+!drive <- for (.range(I,1,4)) { moveForward(1); rotate(90); .print(I) }.")
     assert result.of("driver") == ["1", "2", "3", "4"]
     assert result.errors == []
     pose = result.ground_truth.latest()
@@ -31,29 +42,21 @@ def test_a_robot_drives_a_square_and_comes_back(tmp_path: Path) -> None:
     assert pose.odometer == pytest.approx(4, abs=0.1)
 
 
-def test_a_dropped_motion_stops_the_robot_immediately(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        DRIVE
-        + """
+def test_a_dropped_motion_stops_the_robot_immediately(drive) -> None:
+    result = drive("""
         +!drive <- !!forward; .wait(2000); .drop_intention(forward); .wait(3000).
         +!forward <- moveForward(2); .print(late).
-        """,
-    )
+        """)
     assert result.lines == []
     assert 0.3 < result.ground_truth.latest().x < 1.3
 
 
-def test_a_suspended_motion_stops_and_continues_with_the_rest(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        DRIVE
-        + """
+def test_a_suspended_motion_stops_and_continues_with_the_rest(drive) -> None:
+    result = drive("""
         +!drive <- !!forward; .wait(2000); .suspend(forward); .wait(20000); .print(paused);
                    .resume(forward); .wait({+arrived}).
         +!forward <- moveForward(2); .print(arrived); +arrived.
-        """,
-    )
+        """)
     assert result.of("driver") == ["paused", "arrived"]
     assert result.ground_truth.latest().x == pytest.approx(2, abs=0.05)
     standing = [s.x for s in result.ground_truth.path() if 5 < s.time < 20]
@@ -61,49 +64,37 @@ def test_a_suspended_motion_stops_and_continues_with_the_rest(tmp_path: Path) ->
     assert 0.3 < standing[0] < 1.5
 
 
-def test_an_aborted_motion_fails_with_the_distance_covered(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        DRIVE
-        + """
+def test_an_aborted_motion_fails_with_the_distance_covered(drive) -> None:
+    result = drive("""
         +!drive <- !!forward; .wait(2000); abortMoving; .wait(1000).
         +!forward <- moveForward(2); .print(late).
         -!forward[env_failure_reason(aborted(D))] : D > 0.3 & D < 1.3 <- .print(aborted).
-        """,
-    )
+        """)
     assert result.of("driver") == ["aborted"]
 
 
-def test_the_same_seed_gives_the_same_path(tmp_path: Path) -> None:
-    program = DRIVE + '+!drive <- moveForward(1); rotate(90); ?odom_cmd_vel(X,Y,_); .print(X," ",Y).'
-    first, second = run(tmp_path, program, seed=7), run(tmp_path, program, seed=7)
+def test_the_same_seed_gives_the_same_path(drive) -> None:
+    program = '+!drive <- moveForward(1); rotate(90); ?odom_cmd_vel(X,Y,_); .print(X," ",Y).'
+    first, second = drive(program, seed=7), drive(program, seed=7)
     assert first.lines == second.lines
     assert first.seconds == second.seconds
     assert first.ground_truth.path() == second.ground_truth.path()
 
 
 def test_two_robots_are_driven_by_two_agents(tmp_path: Path) -> None:
-    (tmp_path / "pilot.asl").write_text(
-        """
+    (tmp_path / "pilot.asl").write_text("""
         +!go(Robot) <- makeArtifact(Robot, "ArtCmdVelAndOdometry", [namespace(Robot)], M);
                        moveForward(0.5)[artifact_id(M)]; .print(there); .broadcast(tell, there); !finish.
         +!finish : there[source(_)] <- .stopMAS.
         +!finish <- .wait({+there}); .stopMAS.
-        """,
-        encoding="utf-8",
-    )
+        """)
     project = tmp_path / "two.mas2j"
-    project.write_text(
-        """
+    project.write_text("""
         MAS two {
             environment: jaca.CartagoEnvironment
-            agents:
-                a pilot.asl [goals="go(robot_0)"];
-                b pilot.asl [goals="go(robot_1)"];
+            agents: a pilot.asl [goals="go(robot_0)"]; b pilot.asl [goals="go(robot_1)"];
         }
-        """,
-        encoding="utf-8",
-    )
+        """)
     result = run_project(project, world="two_robots", seconds=60)
     assert result.of("a") == result.of("b") == ["there"]
     truth = result.ground_truth
@@ -111,5 +102,5 @@ def test_two_robots_are_driven_by_two_agents(tmp_path: Path) -> None:
         assert truth.latest(robot).odometer == pytest.approx(0.5, abs=0.05)
 
 
-def test_a_program_without_robot_starts_no_world(tmp_path: Path) -> None:
-    assert run(tmp_path, "!go. +!go <- .stopMAS.").ground_truth is None
+def test_a_program_without_robot_starts_no_world(run) -> None:
+    assert run("!go. +!go <- .stopMAS.").ground_truth is None

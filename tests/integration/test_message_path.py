@@ -7,8 +7,6 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
 
-import pytest
-
 import jacaros
 from jacaros.robots.ros.drivers.memory.graph import MemoryPublisher
 from jacaros.testing import run_project
@@ -71,9 +69,7 @@ class Walk:
             self.passed.add((code.co_filename.removeprefix(SOURCES), code.co_qualname))
 
 
-def test_the_way_of_a_message_is_no_longer_than_the_page_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_way_of_a_message_is_no_longer_than_the_page_says(tmp_path: Path, monkeypatch) -> None:
     page = JOURNEY.read_text(encoding="utf-8")
     told = COUNT.search(page.replace("\n", " "))
     program = re.search(r"```agentspeak line.asl\n(.*?)```", page, re.DOTALL)

@@ -22,6 +22,7 @@ error: --ros ros2 needs the package rclpy (No module named 'rclpy')
 On a robot with its own ROS 2, source its setup file first
 """
 
+DONE = "!start. +!start <- .print(done)."
 COUNTER = """\
 from jacaros.artifacts import Artifact, operation
 
@@ -37,11 +38,23 @@ class Counter(Artifact):
 """
 
 
+HOUSE = """\
+mas house {
+    agent robot : robot.asl
+    workspace kitchen {
+        artifact ARTIFACT
+    }
+}
+"""
+
+
 class Project:
-    """A folder with the files of a mistaken user."""
+    """A folder with the files of a mistaken user: a program, an artifact, and what a test adds."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self.write("robot.asl", DONE)
+        self.write("artifacts.py", COUNTER)
 
     def write(self, name: str, text: str) -> None:
         (self._folder / name).write_text(dedent(text), encoding="utf-8")
@@ -61,7 +74,7 @@ class Project:
         return done.returncode, done.stdout, done.stderr.replace(f"{self._folder}/", "")
 
     def run_file(self, name: str) -> tuple[int, str, str]:
-        """Run a project file until all agents are idle."""
+        """Run a file until all agents are idle."""
         return self.run("run", name, "--clock", "fast", "--until-idle")
 
 
@@ -75,8 +88,8 @@ def project(tmp_path: Path) -> Project:
     return Project(tmp_path)
 
 
-def test_a_syntax_error_in_a_program(project: Project) -> None:
-    project.write(
+FILES = {
+    "a syntax error in a program": (
         "robot.asl",
         """\
         !start.
@@ -86,9 +99,6 @@ def test_a_syntax_error_in_a_program(project: Project) -> None:
              .print("b"
              .print("c").
         """,
-    )
-    assert project.run_file("robot.asl") == told(
-        1,
         """\
         robot.asl:6:6: error: unclosed `(`: expected `)`, found `.print`
           5 |      .print("b"
@@ -97,168 +107,111 @@ def test_a_syntax_error_in_a_program(project: Project) -> None:
             |      ^^^^^^
           = help: close it with `)`; it was opened at line 5, column 12
         """,
-    )
-
-
-def test_a_syntax_error_in_a_jcm_file(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    project.write(
+    ),
+    "a syntax error in a jcm file": (
         "house.jcm",
-        """\
-        mas house {
-            agent robot : robot.asl
-            workspace kitchen {
-                artifact clock Clock(1)
-            }
-        }
-        """,
-    )
-    assert project.run_file("house.jcm") == told(
-        1,
+        HOUSE.replace("ARTIFACT", "clock Clock(1)"),
         """\
         house.jcm:4:24: error: expected `:`, found `Clock`
           4 |         artifact clock Clock(1)
             |                        ^^^^^
           = help: write `artifact name : Class(arguments)`
         """,
-    )
-
-
-def test_a_syntax_error_in_a_mas2j_file(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    project.write("house.mas2j", "MAS house {\n    agents: robot\n}\n")
-    assert project.run_file("house.mas2j") == told(
-        1,
+    ),
+    "a syntax error in a mas2j file": (
+        "house.mas2j",
+        "MAS house {\n    agents: robot\n}\n",
         """\
         house.mas2j:3:1: error: expected `;` after agent `robot`, found `}`
           3 | }
             | ^
           = help: end each agent with `;`
         """,
-    )
-
-
-def test_an_unknown_artifact_class_in_a_program(project: Project) -> None:
-    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("odom", "ArtOdometri").\n')
-    assert project.run_file("robot.asl") == told(
-        0,
-        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "unknown artifact type `ArtOdometri`; "
-        "did you mean `ArtOdometry` or `ArtOdometryOnDemand`? (robot.asl:3)\n"
-        '  step: makeArtifact("odom","ArtOdometri")\n'
-        '  reason: env_failure_reason(makeArtifactFailure("unknown_artifact_template","ArtOdometri"))\n',
-    )
-
-
-def test_an_unknown_artifact_class_in_a_jcm_file(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    project.write("artifacts.py", COUNTER)
-    project.write(
+    ),
+    "an unknown artifact class": (
         "house.jcm",
-        """\
-        mas house {
-            agent robot : robot.asl
-            workspace kitchen {
-                artifact visitors : Countr(1)
-            }
-        }
-        """,
-    )
-    assert project.run_file("house.jcm") == told(
-        1,
+        HOUSE.replace("ARTIFACT", "visitors : Countr(1)"),
         """\
         house.jcm:4:29: error: unknown artifact type `Countr`; did you mean `Counter`?
           4 |         artifact visitors : Countr(1)
             |                             ^^^^^^
         """,
-    )
-
-
-def test_an_unknown_operation(project: Project) -> None:
-    project.write("artifacts.py", COUNTER)
-    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("visitors", "Counter");\n     chek(3).\n')
-    assert project.run_file("robot.asl") == told(
-        0,
-        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "no artifact of workspace /main has an operation chek/1; did you mean `check/1` of 'visitors'? "
-        "(robot.asl:4)\n"
-        '  step: chek(3)\n  reason: env_failure_detail(unknown_operation("chek/1"))\n',
-    )
-
-
-def test_an_unknown_internal_action(project: Project) -> None:
-    project.write("robot.asl", "!start.\n+!start\n  <- .nosuchaction(3).\n")
-    assert project.run_file("robot.asl")[2].endswith(
-        "action_failed, no artifact of workspace /main has an operation .nosuchaction/1; unknown internal action "
-        "`.nosuchaction` (robot.asl:3)\n"
-        "  step: .nosuchaction(3)\n"
-        '  reason: env_failure_detail(unknown_operation(".nosuchaction/1"))\n'
-    )
-
-
-def test_an_argument_of_the_wrong_type(project: Project) -> None:
-    project.write("artifacts.py", COUNTER)
-    project.write("robot.asl", '!start.\n+!start\n  <- makeArtifact("c", "Counter");\n     check("many").\n')
-    assert project.run_file("robot.asl") == told(
-        0,
-        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        'operation check/1 of artifact c: argument 1 (limit): expected an integer, found "many" '
-        "(robot.asl:4)\n"
-        '  step: check("many")\n  reason: env_failure_reason(wrong_op_arguments(cobj_3,"check/1"))\n',
-    )
-
-
-def test_an_argument_of_the_wrong_type_for_a_declared_artifact(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    project.write("artifacts.py", COUNTER)
-    project.write(
+    ),
+    "an argument of the wrong type": (
         "house.jcm",
-        """\
-        mas house {
-            agent robot : robot.asl
-            workspace kitchen {
-                artifact visitors : Counter("none")
-            }
-        }
-        """,
-    )
-    assert project.run_file("house.jcm") == told(
-        1,
+        HOUSE.replace("ARTIFACT", 'visitors : Counter("none")'),
         """\
         house.jcm:4:18: error: cannot create artifact visitors (Counter): operation init/1 of artifact visitors: \
 argument 1 (start): expected an integer, found "none"
           4 |         artifact visitors : Counter("none")
             |                  ^^^^^^^^
         """,
-    )
+    ),
+    "an artifact of the project": (
+        "artifacts.py",
+        COUNTER.replace("(Artifact):", "(Artifact)"),
+        "error: artifacts.py:4: expected ':'\n",
+    ),
+}
 
 
-def test_an_unknown_option_of_an_artifact(project: Project) -> None:
-    project.write(
-        "robot.asl", '!start.\n+!start\n  <- makeArtifact("battery", "ArtSimBattery", [drian(2)], _).\n'
-    )
-    assert project.run_file("robot.asl") == told(
-        0,
-        "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
-        "cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option `drian`; "
-        "its options: dock_timeout, drain, expire, level, low, medium, namespace, source, topic, watch_connection "
-        "(robot.asl:3)\n"
-        '  step: makeArtifact("battery","ArtSimBattery",[drian(2)],_)\n'
-        '  reason: env_failure_reason(makeArtifactFailure("init_failed","battery"))\n',
-    )
+@pytest.mark.parametrize("mistake", FILES)
+def test_a_mistake_in_a_file(project: Project, mistake: str) -> None:
+    name, text, errors = FILES[mistake]
+    project.write(name, text)
+    assert project.run_file(name.replace("artifacts.py", "robot.asl")) == told(1, errors)
 
 
-def test_a_mistake_in_the_projects_own_artifacts(project: Project) -> None:
-    project.write("artifacts.py", COUNTER.replace("(Artifact):", "(Artifact)"))
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run_file("robot.asl") == told(1, "error: artifacts.py:4: expected ':'\n")
+NO_OPERATION = "no artifact of workspace /main has an operation"
+BATTERY = "dock_timeout, drain, expire, level, low, medium, namespace, source, topic, watch_connection"
+STEPS = {
+    "an unknown artifact class": (
+        'makeArtifact("odom","ArtOdometri")',
+        "unknown artifact type `ArtOdometri`; did you mean `ArtOdometry` or `ArtOdometryOnDemand`?",
+        'env_failure_reason(makeArtifactFailure("unknown_artifact_template","ArtOdometri"))',
+    ),
+    "an unknown operation": (
+        "chek(3)",
+        f"{NO_OPERATION} chek/1; did you mean `check/1` of 'visitors'?",
+        'env_failure_detail(unknown_operation("chek/1"))',
+    ),
+    "an unknown internal action": (
+        ".nosuchaction(3)",
+        f"{NO_OPERATION} .nosuchaction/1; unknown internal action `.nosuchaction`",
+        'env_failure_detail(unknown_operation(".nosuchaction/1"))',
+    ),
+    "an argument of the wrong type": (
+        'check("many")',
+        'operation check/1 of artifact visitors: argument 1 (limit): expected an integer, found "many"',
+        'env_failure_reason(wrong_op_arguments(cobj_3,"check/1"))',
+    ),
+    "an unknown option of an artifact": (
+        'makeArtifact("battery","ArtSimBattery",[drian(2)],_)',
+        f"cannot create artifact battery (ArtSimBattery): ArtSimBattery has no option `drian`; its options: {BATTERY}",
+        'env_failure_reason(makeArtifactFailure("init_failed","battery"))',
+    ),
+}
+"""Wrong steps, and what is read about their goals: the message and the reason."""
+UNKNOWN_ACTION = """\
+robot.asl:4:6: warning: unknown internal action `.nosuchaction`
+  4 |      .nosuchaction(3).
+    |      ^^^^^^^^^^^^^^^^
+"""
+
+
+@pytest.mark.parametrize("mistake", STEPS)
+def test_a_mistake_in_a_step(project: Project, mistake: str) -> None:
+    step, message, reason = STEPS[mistake]
+    program = f'!start.\n+!start\n  <- makeArtifact("visitors", "Counter");\n     {step}.\n'
+    lost = "[robot] warning: the goal !start failed and has no plan for its failure: action_failed, "
+    errors = f"{lost}{message} (robot.asl:4)\n  step: {step}\n  reason: {reason}\n"
+    before = UNKNOWN_ACTION if step.startswith(".") else ""
+    project.write("robot.asl", program)
+    assert project.run_file("robot.asl") == told(0, before + errors)
 
 
 def test_an_operation_that_fails_reaches_the_plan_with_its_reason(project: Project) -> None:
-    project.write("artifacts.py", COUNTER)
-    project.write(
-        "robot.asl",
-        """\
+    program = """\
         !start.
 
         +!start
@@ -271,19 +224,15 @@ def test_an_operation_that_fails_reaches_the_plan_with_its_reason(project: Proje
 
         -!check(Limit)[error(Error), error_msg(Text), env_failure_reason(Reason), code(Code), code_line(Line)]
           <- .print(Error, "; ", Text, "; ", Reason, "; ", Code, "; ", Line).
-        """,
-    )
-    assert project.run_file("robot.asl") == (
-        0,
-        "[robot] action_failed; too many; too_many(7); check(3); 9\n[robot] and on\n",
-        "",
-    )
+        """
+    output = "[robot] action_failed; too many; too_many(7); check(3); 9\n[robot] and on\n"
+    project.write("robot.asl", program)
+    assert project.run_file("robot.asl") == (0, output, "")
 
 
 @pytest.mark.parametrize(("kind", "message"), [("ros1", NO_ROSPY), ("ros2", NO_RCLPY)])
 @pytest.mark.parametrize("command", [("run", "robot.asl"), ("sim", "empty")])
 def test_a_missing_ros(project: Project, kind: str, message: str, command: tuple[str, str]) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
     # Where the libraries are installed, these stand before them and are missing all the same.
     for library in ("rospy", "rclpy"):
         text = f"raise ModuleNotFoundError(\"No module named '{library}'\", name='{library}')\n"
@@ -292,44 +241,42 @@ def test_a_missing_ros(project: Project, kind: str, message: str, command: tuple
     assert project.run(*command, "--ros", kind, PYTHONPATH=path) == told(1, message)
 
 
-def test_the_fast_clock_with_a_real_graph(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run("run", "robot.asl", "--ros", "ros1", "--clock", "fast") == told(
+COMMANDS = {
+    "the fast clock with a real graph": (
+        ("robot.asl", "--ros", "ros1", "--clock", "fast"),
         2,
-        "error: --clock fast excludes a real ROS graph (--ros ros1), whose nodes run in real time; "
-        "use --clock real\n",
-    )
-
-
-def test_a_file_that_is_not_there(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run("run", "robott.asl") == told(
+        """\
+        error: --clock fast excludes a real ROS graph (--ros ros1), whose nodes run in real time; use --clock real
+        """,
+    ),
+    "a file that is not there": (
+        ("robott.asl",),
         2,
-        "error: file not found: `robott.asl`\n  = help: did you mean `robot.asl`?\n",
-    )
-
-
-def test_a_world_that_is_not_there(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    assert project.run("run", "robot.asl", "--world", "nowhere") == told(
+        """\
+        error: file not found: `robott.asl`
+          = help: did you mean `robot.asl`?
+        """,
+    ),
+    "a world that is not there": (
+        ("robot.asl", "--world", "nowhere"),
         1,
-        "error: world not found: `nowhere`\n"
-        "  = help: give the path of a world file, or one of the shipped worlds: "
-        "empty, flat, house, maze, office, patrol, three_robots, two_robots, warehouse\n",
-    )
+        """\
+        error: world not found: `nowhere`
+          = help: give the path of a world file, or one of the shipped worlds: \
+empty, flat, house, maze, office, patrol, three_robots, two_robots, warehouse
+        """,
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", COMMANDS)
+def test_a_mistake_in_a_command(project: Project, mistake: str) -> None:
+    arguments, code, errors = COMMANDS[mistake]
+    assert project.run("run", *arguments) == told(code, errors)
 
 
 def test_a_project_that_names_no_world(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
-    project.write(
-        "practice.jcm",
-        """\
-        mas practice {
-          agent robot
-          world: "patrl"
-        }
-        """,
-    )
+    project.write("practice.jcm", 'mas practice {\n  agent robot\n  world: "patrl"\n}\n')
     wrong = (
         "practice.jcm:3:10: error: world not found: `patrl`{}\n"
         '  3 |   world: "patrl"\n'
@@ -342,7 +289,6 @@ def test_a_project_that_names_no_world(project: Project) -> None:
 
 
 def test_a_mistake_in_a_world_file(project: Project) -> None:
-    project.write("robot.asl", "!start. +!start <- .print(done).")
     project.write("yard.yaml", "robots:\n  - name: a\n    pos: {x: 1}\n")
     assert project.run("run", "robot.asl", "--world", "yard.yaml") == told(
         1,
@@ -354,9 +300,7 @@ def test_a_mistake_in_a_world_file(project: Project) -> None:
 
 
 def test_commands_without_a_subscriber_are_logged_once(project: Project) -> None:
-    project.write(
-        "robot.yaml",
-        """\
+    mapping = """\
         operations:
           drive:
             publish: cmd_velo
@@ -364,8 +308,8 @@ def test_commands_without_a_subscriber_are_logged_once(project: Project) -> None
             fields: {linear.x: 0.1}
             rate: 5
             duration: 1
-        """,
-    )
+        """
+    project.write("robot.yaml", mapping)
     project.write("hasty.asl", "!go. +!go <- drive; drive; .print(done); .stopMAS.")
     code, output, errors = project.run(
         "run", "hasty.asl", "--mapping", "robot.yaml", "--world", "house", "--clock", "fast"

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -34,11 +35,23 @@ def run(folder: Path, program: str, *arguments: str, **how: object) -> "subproce
     return subprocess.run(command, stderr=subprocess.PIPE, timeout=60, check=False, **how)  # type: ignore[call-overload, no-any-return]
 
 
-def test_agents_continue_when_their_output_is_not_read(tmp_path: Path) -> None:
+@pytest.fixture
+def unread() -> Iterator[int]:
+    """A pipe without a reader."""
     reader, writer = os.pipe()
-    ended = run(tmp_path, FLOOD, stdout=writer)
+    yield writer
     os.close(reader)
     os.close(writer)
+
+
+def in_shell(folder: Path, redirections: str) -> "subprocess.CompletedProcess[bytes]":
+    """Run the program of a folder with redirected outputs."""
+    command = f'"{sys.executable}" -m jacaros run "{folder}/agent.asl" {redirections}'
+    return subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=60, check=False)
+
+
+def test_agents_continue_when_their_output_is_not_read(tmp_path: Path, unread: int) -> None:
+    ended = run(tmp_path, FLOOD, stdout=unread)
     assert ended.returncode == 7
     assert b"lines could not be written to standard output" in ended.stderr
 
@@ -46,8 +59,7 @@ def test_agents_continue_when_their_output_is_not_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("target", ["/dev/full", "&-"])
 def test_output_that_cannot_be_written_fails_no_step(tmp_path: Path, target: str) -> None:
     (tmp_path / "agent.asl").write_text(THREE, encoding="utf-8")
-    command = f'"{sys.executable}" -m jacaros run "{tmp_path}/agent.asl" --clock fast >{target}'
-    ended = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=60, check=False)
+    ended = in_shell(tmp_path, f"--clock fast >{target}")
     assert ended.returncode == 0
     assert ended.stderr.count(b"warning: cannot write to standard output: ") == 1
 
@@ -96,11 +108,8 @@ def test_what_artifacts_print_stands_between_the_lines_of_agents(tmp_path: Path)
     assert ended.stderr.endswith(b"a crack\nand rust\n")
 
 
-def test_an_artifact_can_print_without_a_reader(tmp_path: Path) -> None:
-    reader, writer = os.pipe()
-    ended = ring(tmp_path, 90_000, stdout=writer)
-    os.close(reader)
-    os.close(writer)
+def test_an_artifact_can_print_without_a_reader(tmp_path: Path, unread: int) -> None:
+    ended = ring(tmp_path, 90_000, stdout=unread)
     assert ended.returncode == 7
     assert b"lines could not be written to standard output" in ended.stderr
 
@@ -109,8 +118,7 @@ def test_an_artifact_can_print_without_a_reader(tmp_path: Path) -> None:
 def test_what_an_artifact_prints_on_a_full_disk_fails_no_operation(tmp_path: Path, target: str) -> None:
     (tmp_path / "artifacts.py").write_text(BELL, encoding="utf-8")
     (tmp_path / "agent.asl").write_text(RING.replace("TIMES", "2"), encoding="utf-8")
-    command = f'"{sys.executable}" -m jacaros run "{tmp_path}/agent.asl" {target}'
-    ended = subprocess.run(command, shell=True, stderr=subprocess.PIPE, timeout=60, check=False)
+    ended = in_shell(tmp_path, target)
     assert ended.returncode == 7
     assert ended.stderr.count(b"warning: cannot write to standard output: ") == ("2>" not in target)
 
@@ -123,20 +131,15 @@ def test_a_run_on_the_virtual_clock_ends_with_its_reader(tmp_path: Path) -> None
     assert (ended.returncode, ended.stderr) == (141, b"")
 
 
-TALK = """
-!talk.
-+!talk <- .print("alive"); .wait(20); !talk.
-"""
+TALK = '!talk. +!talk <- .print("alive"); .wait(20); !talk.'
 
 
 @pytest.mark.parametrize("name", ["SIGKILL", "SIGHUP", "SIGTERM"])
 def test_a_recording_survives_signals(tmp_path: Path, name: str) -> None:
     (tmp_path / "agent.asl").write_text(TALK, encoding="utf-8")
     record, page = tmp_path / "run.jsonl", tmp_path / "run.html"
-    outputs = ["--record", str(record), "--replay", str(page)]
-    with subprocess.Popen(
-        [*JACAROS, "run", str(tmp_path / "agent.asl"), *outputs], stdout=subprocess.PIPE
-    ) as run:
+    call = [*JACAROS, "run", str(tmp_path / "agent.asl"), "--record", str(record), "--replay", str(page)]
+    with subprocess.Popen(call, stdout=subprocess.PIPE) as run:
         assert run.stdout is not None
         while b"alive" not in (record.read_bytes() if record.exists() else b""):
             run.stdout.readline()

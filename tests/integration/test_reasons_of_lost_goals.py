@@ -83,9 +83,7 @@ def expected(message: str, step: str, reason: str) -> list[str]:
         ("hold", "service /hold refused: the brake is worn", 'service_refused(hold,"the brake is worn")'),
     ],
 )
-def test_a_failure_is_logged_with_its_reason_step_and_goals(
-    tmp_path: Path, step: str, message: str, reason: str
-) -> None:
+def test_a_failure_is_logged_with_its_reason_step_and_goals(tmp_path, step: str, message, reason) -> None:
     assert told(tmp_path, step) == expected(message, step, reason)
 
 
@@ -109,9 +107,7 @@ def test_servers_that_are_not_there(tmp_path: Path) -> None:
         f"no server offered action /count ({COUNT}) within 5 s", "count(5)", "server_unavailable"
     )
     assert told(tmp_path, "hold", server=False) == expected(
-        "no node offered service /hold (std_srvs/srv/SetBool) within 2 s",
-        "hold",
-        "service_unavailable(hold)",
+        "no node offered service /hold (std_srvs/srv/SetBool) within 2 s", "hold", "service_unavailable(hold)"
     )
 
 

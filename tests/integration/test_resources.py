@@ -1,6 +1,8 @@
 """Plans that share a robot: the more urgent one drives, and what it has interrupted goes on afterwards."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,34 +17,44 @@ robots: [{name: turtlebot, pose: {x: 0, y: 0}}]
 WHEELS = '!start. +!start <- makeArtifact("wheels","ArtCmdVel",[],W); focus(W); !go. '
 
 
-def run(folder: Path, program: str, **options: object) -> RunResult:
-    (folder / "big.yaml").write_text(WORLD, encoding="utf-8")
-    file = folder / "robot.asl"
-    file.write_text(program, encoding="utf-8")
-    given: dict[str, object] = {"seconds": 300, "world": folder / "big.yaml", **options}
-    return run_project(file, **given)  # type: ignore[arg-type]
+Run = Callable[..., RunResult]
 
 
-def test_an_urgent_plan_has_the_wheels_and_the_tour_is_finished_afterwards(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        WHEELS
-        + """
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    """Runs a program with a robot on a wide floor."""
+    (tmp_path / "big.yaml").write_text(WORLD, encoding="utf-8")
+
+    def run(program: str, **options: Any) -> RunResult:
+        (tmp_path / "robot.asl").write_text(program, encoding="utf-8")
+        return run_project(
+            tmp_path / "robot.asl", **{"seconds": 300, "world": tmp_path / "big.yaml", **options}
+        )
+
+    return run
+
+
+@pytest.fixture
+def drive(run: Run) -> Run:
+    """Runs a program whose goal is ``!go`` when it has the wheels."""
+    return lambda program: run(WHEELS + program)
+
+
+def test_an_urgent_plan_has_the_wheels_and_the_tour_is_finished_afterwards(drive: Run) -> None:
+    result = drive("""
         +!go <- !!tour; .wait(2000); !!flee.
         +!tour <- driveTo(20,0); .print("tour done"); .stopMAS.
         @flee[urgency(100)]
         +!flee <- moveReverse(0.5); getCurrentPose(X,_,_); .print("fled").
-        """,
-    )
+        """)
     assert result.of("robot") == ["fled", "tour done"]
     assert result.ground_truth.latest().x == pytest.approx(20, abs=0.05)
     fled = [s.time for s in result.ground_truth.path() if s.x < 0.8 and s.time > 3]
     assert fled[0] < 7, "it need not wait for the twenty metres"
 
 
-def test_a_repeated_velocity_gives_way_too(tmp_path: Path) -> None:
-    (tmp_path / "drive.yaml").write_text(
-        """
+def test_a_repeated_velocity_gives_way_too(run: Run, drive: Run, tmp_path: Path) -> None:
+    (tmp_path / "drive.yaml").write_text("""
 operations:
   drive:
     parameters: [speed, seconds]
@@ -51,24 +63,18 @@ operations:
     fields: {linear.x: $speed}
     rate: 10
     duration: $seconds
-""",
-        encoding="utf-8",
-    )
-    result = run(
-        tmp_path,
-        """
+""")
+    result = run("""
         !start.
         +!start <- makeArtifact("base", "drive.yaml", [], B); focus(B); !!forth; .wait(1000); !!back.
         +!forth <- drive(0.5,5); .print("forth done"); .stopMAS.
         @b[urgency(100)] +!back <- drive(-0.5,2); .print("back done").
-        """,
-    )
+        """)
     assert result.of("robot") == ["back done", "forth done"]
 
 
-def test_an_urgent_navigation_is_not_preempted_by_a_later_one(tmp_path: Path) -> None:
+def test_an_urgent_navigation_is_not_preempted_by_a_later_one(run: Run) -> None:
     result = run(
-        tmp_path,
         """
         !start.
         +!start <- makeArtifact("nav", "nav2.yaml", [], N); focus(N); .wait(pose(_,_,_));
@@ -83,11 +89,8 @@ def test_an_urgent_navigation_is_not_preempted_by_a_later_one(tmp_path: Path) ->
     assert result.of("robot") == ["evacuated", "dusted"]
 
 
-def test_a_preempted_plan_is_suspended_and_resume_does_not_let_it_drive(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        WHEELS
-        + """
+def test_a_preempted_plan_is_suspended_and_resume_does_not_let_it_drive(drive: Run) -> None:
+    result = drive("""
         +!go <- !!tour; .wait(2000); !!flee; .wait(200); .suspended(tour,R); .print(R);
                 .resume(tour); .wait(500); .suspended(tour,S); .print(S).
         ^!tour[state(suspended)[reason(R)]] <- .print("suspended: ", R).
@@ -95,37 +98,26 @@ def test_a_preempted_plan_is_suspended_and_resume_does_not_let_it_drive(tmp_path
         +!tour <- driveTo(3,0); .print("tour done"); .stopMAS.
         @flee[urgency(100)]
         +!flee <- moveReverse(0.5); .print("fled").
-        """,
-    )
+        """)
     assert result.of("robot") == [
-        "suspended: preempted(wheels)",
-        "preempted(wheels)",
-        "preempted(wheels)",
-        "fled",
-        "resumed: preempted(wheels)",
-        "tour done",
+        *("suspended: preempted(wheels)", "preempted(wheels)", "preempted(wheels)", "fled"),
+        *("resumed: preempted(wheels)", "tour done"),
     ]
 
 
-def test_a_plan_that_needs_the_wheels_keeps_them_between_its_motions(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        WHEELS
-        + """
+def test_a_plan_that_needs_the_wheels_keeps_them_between_its_motions(drive: Run) -> None:
+    result = drive("""
         +!go <- !!square; .wait(500); !!other; .wait({+finished}); .wait(20000); .stopMAS.
         @square[needs(wheels)]
         +!square <- moveForward(0.3); .wait(1000); !side; .print("square done"); +finished.
         +!side <- moveForward(0.3); .wait(1000).
         +!other <- moveForward(0.3); .print("other done").
-        """,
-    )
+        """)
     assert result.of("robot") == ["square done", "other done"]
 
 
-def test_needs_of_a_goal_are_given_back_however_it_ends(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_needs_of_a_goal_are_given_back_however_it_ends(run: Run) -> None:
+    result = run("""
         !start.
         +!start <- !!one; .wait(100); !!two; .wait(1000); .suspended(two, R); .print(R); .drop_intention(one);
                    .wait(500); !!three; .wait(500); .fail_goal(two); .wait(500); .stopMAS.
@@ -135,26 +127,21 @@ def test_needs_of_a_goal_are_given_back_however_it_ends(tmp_path: Path) -> None:
         +!work(N) <- .print(N); .wait(100000).
         -!two <- .print("two failed").
         @three[needs(arm)] +!three <- .print(three).
-        """,
-    )
+        """)
     assert result.of("robot") == ["one", "needs(arm)", "2", "two failed", "three"]
 
 
 @pytest.mark.parametrize("needs", ["", ", needs(wheels)"], ids=["uses", "needs"])
-def test_an_atomic_plan_has_the_wheels_that_another_plan_of_its_agent_holds(
-    tmp_path: Path, needs: str
-) -> None:
-    result = run(
-        tmp_path,
-        WHEELS
-        + """
+def test_an_atomic_plan_has_the_wheels_that_another_plan_of_its_agent_holds(drive: Run, needs: str) -> None:
+    result = drive(
+        """
         +!go <- !!square; .wait(5000); !dock; .wait({+finished}); .stopMAS.
         @square[needs(wheels), urgency(5)]
         +!square <- moveForward(0.2); .wait(9000); .print("square done"); +finished.
         @dock[atomic NEEDS]
         +!dock <- .print("docks"); moveForward(0.2); .print("docked").
         ^!square[state(S)[reason(preempted(R))]] <- .print("square ", S, ": ", R).
-        """.replace(" NEEDS", needs),
+        """.replace(" NEEDS", needs)
     )
     assert sorted(result.of("robot")) == [
         *("docked", "docks", "square done", "square resumed: wheels", "square suspended: wheels")
@@ -163,25 +150,20 @@ def test_an_atomic_plan_has_the_wheels_that_another_plan_of_its_agent_holds(
     assert result.errors == []
 
 
-def test_policies_decide_what_happens_when_a_resource_is_taken(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_policies_decide_what_happens_when_a_resource_is_taken(run: Run) -> None:
+    result = run("""
         !start.
         +!start <- !!one; .wait(100); !two; !!three; .wait(3000); .stopMAS.
         @one[needs(arm)] +!one <- .print(one); .wait(1000); .print("one done").
         @two[needs(arm), policy(refuse)] +!two <- .print(never).
         -!two[env_failure_reason(R)] <- .print(R).
         @three[needs(arm), urgency(1)] +!three <- .print(three); .wait(500); .print("three done").
-        """,
-    )
+        """)
     assert result.of("robot") == ["one", "resource_busy(arm)", "three", "three done", "one done"]
 
 
-def test_the_full_name_refers_to_the_robot_without_a_namespace(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_the_full_name_refers_to_the_robot_without_a_namespace(run: Run) -> None:
+    result = run("""
         !start.
         +!start
           <- makeArtifact("guest", "turtlebot4.yaml", ["robot_7"], G); focus(G);
@@ -189,15 +171,12 @@ def test_the_full_name_refers_to_the_robot_without_a_namespace(tmp_path: Path) -
              !go[needs(wheels)];
              .stopMAS.
         +!go <- moveForward(1); .print("there").
-        """,
-    )
+        """)
     assert result.of("robot") == ["there"]
 
 
-def test_the_wheels_of_one_of_two_named_robots_are_ambiguous(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_the_wheels_of_one_of_two_named_robots_are_ambiguous(run: Run) -> None:
+    result = run("""
         !start.
         +!start
           <- makeArtifact("left", "turtlebot4.yaml", ["robot_1"], L); focus(L);
@@ -205,62 +184,47 @@ def test_the_wheels_of_one_of_two_named_robots_are_ambiguous(tmp_path: Path) -> 
              !go[needs(wheels)].
         -!start[env_failure_reason(Why)] <- .print(Why); .stopMAS.
         +!go <- .print("no").
-        """,
-    )
+        """)
     assert result.of("robot") == ["ambiguous_resource(wheels)"]
 
 
-def test_two_plans_that_wait_for_each_other_are_reported(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_two_plans_that_wait_for_each_other_are_reported(run: Run) -> None:
+    result = run("""
         !start.
         +!start <- !!one; !!two; .wait(5000); .stopMAS.
         @one[needs(base)] +!one <- .wait(500); !inner[needs(arm)]; .print("one done").
         @two[needs(arm)] +!two <- .wait(500); !inner[needs(base)]; .print("two done").
         -!two[env_failure_reason(R)] <- .print(R).
         +!inner <- .wait(10).
-        """,
-    )
+        """)
     assert result.of("robot") == ["deadlock(base)", "one done"]
     assert any("deadlock: [robot] !inner waits for base" in line for line in result.errors)
 
 
-def test_a_suspended_plan_lets_others_have_what_it_needs(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        """
+def test_a_suspended_plan_lets_others_have_what_it_needs(run: Run) -> None:
+    result = run("""
         !start.
         +!start <- !!one; .wait(200); .suspend(one); !!two; .wait(200); .resume(one); .wait(100);
                    .suspended(one, R); .print(R); .wait(3000); .stopMAS.
         @one[needs(arm)] +!one <- .print(one); .wait(1000); .print("one done").
         @two[needs(arm)] +!two <- .print(two); .wait(1000); .print("two done").
-        """,
-    )
+        """)
     assert result.of("robot") == ["one", "two", "preempted(arm)", "two done", "one done"]
 
 
 def test_two_agents_share_a_lift_and_the_end_of_one_frees_it(tmp_path: Path) -> None:
-    (tmp_path / "rider.asl").write_text(
-        """
+    (tmp_path / "rider.asl").write_text("""
         +!ride[source(_)] <- !in.
         @in[needs(lift)] +!in <- .my_name(Me); .print("in"); .wait(1000000).
-        """,
-        encoding="utf-8",
-    )
-    (tmp_path / "boss.asl").write_text(
-        """
+        """)
+    (tmp_path / "boss.asl").write_text("""
         !start.
         +!start <- .send(one, achieve, ride); .wait(100); .send(two, achieve, ride); .wait(1000);
                    .print("one ends"); .kill_agent(one); .wait(1000); .stopMAS.
-        """,
-        encoding="utf-8",
-    )
+        """)
     file = tmp_path / "lift.mas2j"
-    file.write_text(
-        "MAS lift { environment: jacaros.Environment agents: boss; one rider.asl; two rider.asl; }",
-        encoding="utf-8",
-    )
+    agents = "boss; one rider.asl; two rider.asl;"
+    file.write_text(f"MAS lift {{ environment: jacaros.Environment agents: {agents} }}")
     result = run_project(file, seconds=60)
     assert result.lines == ["[one] in", "[boss] one ends", "[two] in"]
 
@@ -348,9 +312,9 @@ HOUR = """
 """
 
 
-def test_three_plans_compete_for_base_and_arm_for_an_hour(tmp_path: Path) -> None:
+def test_three_plans_compete_for_base_and_arm_for_an_hour(run: Run, tmp_path: Path) -> None:
     (tmp_path / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
-    result = run(tmp_path, HOUR, seconds=3700, seed=3)
+    result = run(HOUR, seconds=3700, seed=3)
     (line,) = result.of("robot")
     asked, late, left = line.split()
     assert int(asked) == 120

@@ -94,26 +94,9 @@ TOKENS_OF_PROSE = {tokenize.STRING, tokenize.COMMENT, getattr(tokenize, "FSTRING
 
 def tracked(under: Iterable[str] = ()) -> list[Path]:
     """The files in these folders, by default in all, that git tracks or does not ignore."""
-    listing = subprocess.run(
-        [
-            *(
-                "git",
-                "-c",
-                "safe.directory=*",
-                "ls-files",
-                "--cached",
-                "--others",
-                "--exclude-standard",
-                "-z",
-                "--",
-            ),
-            *under,
-        ],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+    git = "git -c safe.directory=* ls-files --cached --others --exclude-standard -z --"
+    command = [*git.split(), *under]
+    listing = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return [ROOT / name for name in listing.split("\0") if name and (ROOT / name).is_file()]
 
 

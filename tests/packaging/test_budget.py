@@ -27,9 +27,7 @@ def test_a_budget_belongs_to_a_package(budget: Any) -> None:
     assert set(budget.limits()) == set(budget.sizes())
 
 
-def test_a_package_above_its_budget_or_without_one_is_named(
-    budget: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_package_above_its_budget_or_without_one_is_named(budget: Any, monkeypatch) -> None:
     monkeypatch.setattr(budget, "sizes", lambda: {"terms": (11, 2), "new": (1, 1)})
     monkeypatch.setattr(budget, "limits", lambda: {"terms": (10, 2)})
     assert budget.excesses() == [

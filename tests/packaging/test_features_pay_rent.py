@@ -15,17 +15,8 @@ from jacaros.testing import AgentHarness
 ROOT = Path(__file__).parents[2]
 PLACES = ("examples", "experiment", "docs/tutorial", "docs/how-to", "tests/conformance")
 ANNOTATIONS = (
-    "within",
-    "hard_deadline",
-    "retry",
-    "every",
-    "while",
-    "cleanup",
-    "needs",
-    "policy",
-    "urgency",
-    "atomic",
-    "all_unifs",
+    *("within", "hard_deadline", "retry", "every", "while", "cleanup", "needs", "policy", "urgency"),
+    *("atomic", "all_unifs"),
 )
 """What goals and plans can be annotated with."""
 USED = "\n".join(

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any
 from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 
+import pytest
+
 import jacaros
 from jacaros import Mas, PythonAgent
 from jacaros.agents.terms.values import Held
@@ -80,21 +82,20 @@ def others_than(expected: Iterable[str], is_meant: Callable[[Any], bool]) -> lis
     return [each for each in names.values() if not set(expected) & set(each)]
 
 
-def test_no_module_counts() -> None:
-    assert others_than(NUMBERS, lambda value: isinstance(value, itertools.count)) == []
+WEAK_KINDS = (WeakKeyDictionary, WeakSet, WeakValueDictionary, Held)
 
 
-def test_only_what_runs_now_is_a_context_variable() -> None:
-    assert others_than(VARIABLES, lambda value: isinstance(value, ContextVar)) == []
-
-
-def test_only_tables_of_objects_in_use_use_weak_references() -> None:
-    kinds = (WeakKeyDictionary, WeakSet, WeakValueDictionary, Held)
-    assert others_than(WEAK, lambda value: isinstance(value, kinds)) == []
+@pytest.mark.parametrize(
+    ("expected", "kinds"),
+    [(NUMBERS, itertools.count), (VARIABLES, ContextVar), (WEAK, WEAK_KINDS), (CACHES, _lru_cache_wrapper)],
+    ids=["counters", "context variables", "weak references", "caches"],
+)
+def test_modules_hold_only_what_is_listed(expected: dict[str, str], kinds: Any) -> None:
+    """Counters, what runs now, tables of objects in use, and caches."""
+    assert others_than(expected, lambda value: isinstance(value, kinds)) == []
 
 
 def test_caches_are_bounded() -> None:
-    assert others_than(CACHES, lambda value: isinstance(value, _lru_cache_wrapper)) == []
     for name, value in attributes():
         if isinstance(value, _lru_cache_wrapper):
             size = value.cache_parameters()["maxsize"]
@@ -106,9 +107,8 @@ def test_no_function_assigns_to_a_global() -> None:
     files = [file for package in PACKAGES for file in (folder / package.replace(".", "/")).rglob("*.py")]
     assert len(files) > 100
     trees = {file: ast.parse(file.read_text(encoding="utf-8")) for file in files}
-    assert [
-        file for file, tree in trees.items() if any(isinstance(node, ast.Global) for node in ast.walk(tree))
-    ] == []
+    nodes = [(file, node) for file, tree in trees.items() for node in ast.walk(tree)]
+    assert [file for file, node in nodes if isinstance(node, ast.Global)] == []
 
 
 COUNTER = """
@@ -152,43 +152,38 @@ fits(X) :- double(X, Y) & Y > my.half(3).
 
 
 class Asking(PythonAgent):
-    """An agent in Python."""
-
     async def run(self) -> None:
-        """Talk to the others, and use an artifact."""
         self.send("bob", "tell", "said(something)")
         await self.ask("bob", "name(_)")
 
 
-def system(folder: Path, number: int) -> list[str]:
+async def system(folder: Path, number: int) -> list[str]:
     """Run agents, artifacts and Python code; return what they print and log."""
     lines: list[str] = []
 
-    async def main() -> None:
-        def take(_: str, text: str) -> None:
-            lines.append(text)
+    def take(_: str, text: str) -> None:
+        lines.append(text)
 
-        async with Mas(folder=folder, on_print=take, on_log=lambda text, level: lines.append(text)) as mas:
-            mas.add_agent("bob", PROGRAM)
-            mas.add_agent("cleo", Asking)
-            await mas.add_agent("ann", PROGRAM).achieve(f"go({number})")
-            await asyncio.sleep(0.5)
-
-    asyncio.run(main())
+    async with Mas(folder=folder, on_print=take, on_log=lambda text, level: lines.append(text)) as mas:
+        mas.add_agent("bob", PROGRAM)
+        mas.add_agent("cleo", Asking)
+        await mas.add_agent("ann", PROGRAM).achieve(f"go({number})")
+        await asyncio.sleep(0.5)
     return lines
 
 
 def test_a_run_changes_no_module(tmp_path: Path) -> None:
     (tmp_path / "my.py").write_text(ACTIONS, encoding="utf-8")
     (tmp_path / "artifacts.py").write_text(COUNTER, encoding="utf-8")
-    expected = WEAK.keys()
-    held = {
-        name: value for name, value in attributes() if isinstance(value, CONTAINERS) and name not in expected
-    }
-    before = {name: list(value.items() if isinstance(value, dict) else value) for name, value in held.items()}
+    held = {name: each for name, each in attributes() if isinstance(each, CONTAINERS) and name not in WEAK}
+
+    def contents() -> dict[str, list[Any]]:
+        return {name: list(each.items() if isinstance(each, dict) else each) for name, each in held.items()}
+
+    before = contents()
     assert "agents.terms.operators.BINARY" in held
-    lines = system(tmp_path, 7)
+    lines = asyncio.run(system(tmp_path, 7))
     assert {"abab1", "7", "14", "no_relevant"} <= set(lines)
     assert not [line for line in lines if "error" in line]
-    after = {name: list(value.items() if isinstance(value, dict) else value) for name, value in held.items()}
+    after = contents()
     assert [name for name in held if before[name] != after[name]] == []

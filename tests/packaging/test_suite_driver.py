@@ -55,57 +55,49 @@ def run(
     return call
 
 
-def test_a_passing_suite_exits_with_0(run: Any) -> None:
-    code, verdicts, printed = run(("a", "echo 3 passed in 1.0s", {}), ("b", "true", {"stage": "real-time"}))
-    assert code == 0
-    assert verdicts == {"a": "ok", "b": "ok"}
-    assert "3 passed in 1.0s" in printed
-    assert "2 parts passed, 0 failed, 0 not run" in printed
+INSTALL: dict[str, Any] = {"stage": "install"}
+STAGES = ("install", "work", "waiting", "real-time")
+CANNOT = ("a", "exit 3", INSTALL), ("b", "true", {"needs": "a"})
+SLOW = "for i in 1 2 3 4 5 6; do echo $i; sleep 0.4; done"
+SUITES: dict[str, tuple[Any, ...]] = {
+    "a passing suite exits with 0": (
+        [("a", "echo 3 passed in 1.0s", {}), ("b", "true", {"stage": "real-time"})],
+        *(0, ["ok", "ok"], ["3 passed in 1.0s", "2 parts passed, 0 failed, 0 not run"]),
+    ),
+    "all parts run when one fails": (
+        [("a", "echo why; exit 1", INSTALL), ("b", "true", {}), ("c", "true", {})],
+        *(1, ["FAILED", "ok", "ok"], ["why", "FAILED: a\n"]),
+    ),
+    "parts of all stages run": ([(each, "true", {"stage": each}) for each in STAGES], 0, ["ok"] * 4, []),
+    "what cannot run here is reported prominently": (
+        *(CANNOT, 0, ["NOT RUN", "NOT RUN"], ["!!!!! NOT RUN ON THIS MACHINE: a, b !!!!!"]),
+    ),
+    "a skipped test fails a part that must not skip": (
+        [("a", "echo 2 passed, 1 skipped in 1.0s", {"skips_fail": True})],
+        *(1, ["FAILED"], []),
+    ),
+    "a part that makes no progress is stopped": (
+        [("a", "echo begun; sleep 100", {"quiet_minutes": 0.005})],
+        *(1, ["FAILED"], ["stopped: no output for 0.005 minutes"]),
+    ),
+    "a part may take long while it makes progress": (
+        *([("a", SLOW, {"quiet_minutes": 2 / 60})], 0, ["ok"], []),
+    ),
+}
 
 
-def test_all_parts_run_when_one_fails(run: Any) -> None:
-    code, verdicts, printed = run(
-        ("a", "echo why; exit 1", {"stage": "install"}), ("b", "true", {}), ("c", "true", {})
-    )
-    assert code == 1
-    assert verdicts == {"a": "FAILED", "b": "ok", "c": "ok"}
-    assert "why" in printed
-    assert printed.rstrip().endswith("FAILED: a")
-
-
-def test_parts_of_all_stages_run(run: Any) -> None:
-    stages = ("install", "work", "waiting", "real-time")
-    code, verdicts, _ = run(*((stage, "true", {"stage": stage}) for stage in stages))
-    assert code == 0
-    assert verdicts == dict.fromkeys(stages, "ok")
-
-
-def test_what_cannot_run_here_is_reported_prominently(run: Any) -> None:
-    code, verdicts, printed = run(("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}))
-    assert code == 0
-    assert verdicts == {"a": "NOT RUN", "b": "NOT RUN"}
-    assert "!!!!! NOT RUN ON THIS MACHINE: a, b !!!!!" in printed
+@pytest.mark.parametrize("suite", SUITES)
+def test_a_suite_has_an_exit_code_verdicts_and_a_report(run: Any, suite: str) -> None:
+    parts, code, verdicts, words = SUITES[suite]
+    names = [name for name, _, _ in parts]
+    found, given, printed = run(*parts)
+    assert (found, given) == (code, dict(zip(names, verdicts, strict=True)))
+    assert [each for each in words if each not in printed] == []
+    assert "FAILED: a\n" not in words or printed.rstrip().endswith("FAILED: a")
 
 
 def test_on_the_build_server_a_part_that_cannot_run_fails(run: Any) -> None:
-    code, verdicts, _ = run(
-        ("a", "exit 3", {"stage": "install"}), ("b", "true", {"needs": "a"}), must_run=True
-    )
-    assert code == 1
-    assert verdicts == {"a": "FAILED", "b": "FAILED"}
-
-
-def test_a_skipped_test_fails_a_part_that_must_not_skip(run: Any) -> None:
-    code, verdicts, _ = run(("a", "echo 2 passed, 1 skipped in 1.0s", {"skips_fail": True}))
-    assert code == 1
-    assert verdicts == {"a": "FAILED"}
-
-
-def test_a_part_that_makes_no_progress_is_stopped(run: Any) -> None:
-    code, verdicts, printed = run(("a", "echo begun; sleep 100", {"quiet_minutes": 0.005}))
-    assert code == 1
-    assert verdicts == {"a": "FAILED"}
-    assert "stopped: no output for 0.005 minutes" in printed
+    assert run(*CANNOT, must_run=True)[:2] == (1, {"a": "FAILED", "b": "FAILED"})
 
 
 def test_a_part_that_uses_too_much_processor_time_is_stopped(run: Any, tmp_path: Path) -> None:
@@ -128,9 +120,7 @@ def test_a_part_may_take_long_while_it_makes_progress(run: Any) -> None:
     assert verdicts == {"a": "ok"}
 
 
-def test_the_closing_table_shows_parts_that_have_become_slow(
-    driver: ModuleType, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_closing_table_shows_parts_that_have_become_slow(driver: ModuleType, capsys) -> None:
     slow, fast = driver.Part("slow", ("true",), budget=20), driver.Part("fast", ("true",), budget=30)
     results = [driver.Result(part, "ok", 60.0, 35.0, "3 passed") for part in (slow, fast)]
     assert driver.report(results, 60.0) == 0

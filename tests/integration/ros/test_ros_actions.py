@@ -13,9 +13,7 @@ def deeds_of(server: ProcessPeer, target: int) -> list[Any]:
     return [deed for deed in server.deeds("/count") if deed[1] == target]
 
 
-def test_every_end_of_a_goal_reaches_plan_and_server(
-    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_every_end_of_a_goal_reaches_plan_and_server(run_agents: Callable[..., Agents], peer) -> None:
     server, mortal = peer("server"), peer("mortal")
     server.serve_action("/count")
     server.serve_action("/fickle/count", "give_up")

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from graphs import ProcessPeer
 from masters import Master
 from presence import own_domain
 from processes import Agents, Program, WorldProcess
@@ -55,9 +54,7 @@ def test_a_world_is_listed_shown_mapped_and_checked_and_the_mapping_is_run(
     assert agents.lines == ["[look] at 0 0", "[look] has moved"]
 
 
-def test_problems_of_a_mapping_are_reported(
-    kind: str, peer: Callable[[str], ProcessPeer], ask: Callable[..., Program], tmp_path: Path
-) -> None:
+def test_problems_of_a_mapping_are_reported(kind: str, peer, ask, tmp_path: Path) -> None:
     robot = peer("robot")
     robot.advertise("/odom", "nav_msgs/msg/Odometry", reliability="best_effort")
     file = tmp_path / "robot.yaml"
@@ -97,9 +94,7 @@ def test_an_empty_graph_is_reported(ask: Callable[..., Program], empty_graph: tu
     assert any("no other node is in the" in line for line in asked.errors)
 
 
-def test_a_run_in_a_graph_without_anybody_says_so(
-    kind: str, run_agents: Callable[..., Agents], empty_graph: tuple[str, str], tmp_path: Path
-) -> None:
+def test_a_run_in_a_graph_without_anybody_says_so(kind: str, run_agents, empty_graph, tmp_path: Path) -> None:
     seconds = 5 if kind == "ros1" else 100  # on a busy machine others get more time to be found
     program = tmp_path / "alone.asl"
     program.write_text(f"!wait. +!wait <- .wait({1000 * seconds}); .stopMAS.", encoding="utf-8")

@@ -4,7 +4,7 @@ import json
 import signal
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -88,9 +88,7 @@ def stands_after(world: WorldProcess, moment: float) -> bool:
     return driven(world.truth, since, since + 99.0) == 0.0
 
 
-def test_a_pause_stops_the_robot_and_a_continued_run_drives_on(
-    world: WorldProcess, run_agents: Callable[..., Agents], tmp_path: Path
-) -> None:
+def test_a_pause_stops_the_robot_and_a_continued_run_drives_on(world, run_agents, tmp_path: Path) -> None:
     record = tmp_path / "run.jsonl"
     agents = run_agents("percept.asl", "--view", "--record", str(record))
     with page_of(agents) as page:

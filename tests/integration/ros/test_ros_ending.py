@@ -6,7 +6,6 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
-from graphs import ProcessPeer
 from judging import distance, stands, standstill
 from processes import Agents, WorldProcess, wait_until
 
@@ -24,9 +23,7 @@ def drive_at_full_speed(world: WorldProcess, agents: Agents) -> None:
     assert not agents.over
 
 
-def test_sigterm_stops_the_robot(
-    world: WorldProcess, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_sigterm_stops_the_robot(world: WorldProcess, run_agents: Callable[..., Agents], peer) -> None:
     watcher = peer("watcher")
     watcher.subscribe("/cmd_vel", "geometry_msgs/msg/Twist", depth=1000)
     agents = run_agents("away.asl")
@@ -48,9 +45,7 @@ def test_sigterm_stops_the_robot(
     assert stood_at <= STANDING
 
 
-def test_sigkill_stops_the_robot_and_a_new_process_continues(
-    world: WorldProcess, run_agents: Callable[..., Agents]
-) -> None:
+def test_sigkill_stops_the_robot_and_a_new_process_continues(world: WorldProcess, run_agents) -> None:
     agents = run_agents("far.asl")
     drive_at_full_speed(world, agents)
     ended = world.time_of(agents.signal(signal.SIGKILL))

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
-from graphs import ProcessPeer
 from judging import distance
 from processes import Agents, WorldProcess, wait_until
 
@@ -53,9 +52,7 @@ def test_a_killed_and_restarted_robot_can_be_navigated_again(
         second.stop()
 
 
-def test_an_agent_that_is_slower_than_its_odometry_thinks_of_what_is_now(
-    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_an_agent_that_is_slower_than_its_odometry_thinks_of_what_is_now(run_agents, peer) -> None:
     robot = peer("robot")
     robot.advertise("/fast_odom", "nav_msgs/msg/Odometry", depth=10)
     robot.subscribe("/answers", "std_msgs/msg/Float64", depth=1000)

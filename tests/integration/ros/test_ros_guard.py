@@ -95,9 +95,7 @@ def test_the_robot_stands_after_its_agents_are_killed(guarded: Callable[..., Gua
     wait_until(lambda: not is_running(run.guard), "the guard ends with the agents")
 
 
-def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(
-    guarded: Callable[..., Guarded],
-) -> None:
+def test_the_robot_stands_after_its_agents_are_killed_at_their_first_command(guarded) -> None:
     run = guarded("velocity", "velocity")
     run.world.until_truth(lambda truth: truth.odometer() > 0.0, "the robot moves")
     took = run.stood_after(run.agents.signal(signal.SIGKILL))
@@ -159,9 +157,7 @@ def children(process: int) -> list[int]:
 
 
 def test_a_guard_on_the_robot_stops_it_when_the_agents_computer_is_gone(
-    guarded: Callable[..., Guarded],
-    on_the_robot: Callable[[str], Program],
-    monkeypatch: pytest.MonkeyPatch,
+    guarded: Callable[..., Guarded], on_the_robot: Callable[[str], Program], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JACAROS_GUARD_TIMEOUT", "30")  # the guard beside the agents has no false alarms
     guard = on_the_robot("velocity")

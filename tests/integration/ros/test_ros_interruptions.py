@@ -24,14 +24,10 @@ def interrupt(kind: str, environment: dict[str, str], *options: str) -> None:
 
 
 @pytest.mark.parametrize("busy", ["0", "2"])
-def test_the_last_velocity_is_zero_at_whatever_moment_a_run_is_interrupted(
-    kind: str, environment: dict[str, str], busy: str
-) -> None:
+def test_the_last_velocity_is_zero_at_whatever_moment_a_run_is_interrupted(kind, environment, busy) -> None:
     interrupt(kind, environment, "--count", "3", "--program", "motion,rolling,pushing", "--busy", busy)
 
 
 @pytest.mark.only("ros2")
-def test_goals_are_cancelled_at_whatever_moment_a_run_is_interrupted(
-    kind: str, environment: dict[str, str]
-) -> None:
+def test_goals_are_cancelled_at_whatever_moment_a_run_is_interrupted(kind: str, environment) -> None:
     interrupt(kind, environment, "--count", "2", "--program", "goal", "--busy", "1")

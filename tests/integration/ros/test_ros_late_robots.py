@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from graphs import ProcessPeer
 from judging import distance, heading_error
-from processes import Agents, WorldProcess, wait_until
+from processes import Agents, wait_until
 
 WORLD = Path(__file__).parent / "worlds" / "behind_relay.yaml"
 TWIST, ODOMETRY = "geometry_msgs/msg/Twist", "nav_msgs/msg/Odometry"
@@ -13,11 +12,7 @@ DELAY, JITTER = 0.15, 0.05
 """Seconds each way."""
 
 
-def test_a_robot_behind_a_slow_network_arrives(
-    run_world: Callable[..., WorldProcess],
-    run_agents: Callable[..., Agents],
-    peer: Callable[[str], ProcessPeer],
-) -> None:
+def test_a_robot_behind_a_slow_network_arrives(run_world, run_agents: Callable[..., Agents], peer) -> None:
     world = run_world(WORLD)
     network = peer("network")
     network.relay("/cmd_vel", "/base/cmd_vel", TWIST, DELAY, JITTER, seed=1)

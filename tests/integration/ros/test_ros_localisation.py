@@ -1,16 +1,11 @@
 """``/amcl_pose`` of the world on real graphs: latched, and published again after a new initial pose."""
 
-from collections.abc import Callable
-
-from graphs import ProcessPeer
 from processes import WorldProcess, wait_until
 
 TYPE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 
 
-def test_the_pose_is_latched_and_follows_initial_poses(
-    world: WorldProcess, peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_the_pose_is_latched_and_follows_initial_poses(world: WorldProcess, peer) -> None:
     first = peer("first")
     first.subscribe("/amcl_pose", TYPE, durability="transient_local", depth=1)
     wait_until(lambda: first.received("/amcl_pose"), "the first pose comes")

@@ -1,16 +1,11 @@
 """The robot of another process is driven by a mapping file and a program, without Python."""
 
-from collections.abc import Callable
 from pathlib import Path
-
-from processes import Agents, WorldProcess
 
 FOLDER = Path(__file__).parent / "programs" / "mapped"
 
 
-def test_a_mapping_drives_the_robot_of_another_process(
-    kind: str, run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
-) -> None:
+def test_a_mapping_drives_the_robot_of_another_process(kind: str, run_world, run_agents) -> None:
     world = run_world("house")
     files = [str(FOLDER / name) for name in ("house.yaml", f"navigation_{kind}.yaml")]
     agents = run_agents("mapped/house.asl", "--mapping", files[0], "--mapping", files[1])

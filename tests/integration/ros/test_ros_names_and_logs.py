@@ -11,9 +11,7 @@ LOG = {"ros1": "rosgraph_msgs/msg/Log", "ros2": "rcl_interfaces/msg/Log"}
 LEVELS = {"ros1": {"info": 2, "warn": 4, "error": 8}, "ros2": {"info": 20, "warn": 30, "error": 40}}
 
 
-def test_lines_go_to_rosout_and_the_state_to_diagnostics_under_our_name(
-    kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_lines_go_to_rosout_and_the_state_to_diagnostics_under_our_name(kind: str, run_agents, peer) -> None:
     monitor = peer("monitor")
     monitor.subscribe("/rosout", LOG[kind], depth=1000)
     monitor.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
@@ -55,9 +53,7 @@ def test_names_are_remapped(run_agents: Callable[..., Agents], peer: Callable[[s
 
 
 @pytest.mark.only("ros1", "ros2")
-def test_time_is_that_of_the_simulator(
-    kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_time_is_that_of_the_simulator(kind: str, run_agents: Callable[..., Agents], peer) -> None:
     agents = run_agents("minute.asl", "--clock", "ros", "--node-name", "follower")
     agents.until_error("[ros] waiting for /clock")
     agents.until_line("[minute] waits")
@@ -89,9 +85,7 @@ def test_time_is_that_of_the_simulator(
 
 
 @pytest.mark.only("ros1", "ros2")
-def test_a_node_without_simulated_time_is_logged_once(
-    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_a_node_without_simulated_time_is_logged_once(run_agents: Callable[..., Agents], peer) -> None:
     agents = run_agents("minute.asl")
     simulator = peer("simulator")
     simulator.advertise("/clock", "rosgraph_msgs/msg/Clock")

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from graphs import ProcessPeer
 from processes import Agents, wait_until
 
 from jacaros.robots.ros.errors import ParameterRefused
@@ -13,9 +12,7 @@ MAPPING = str(Path(__file__).parent / "programs" / "tuned.yaml")
 NODE = "/r1/guard"
 
 
-def test_what_is_given_at_the_start_is_followed(
-    kind: str, run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer], tmp_path: Path
-) -> None:
+def test_what_is_given_at_the_start_is_followed(kind: str, run_agents, peer, tmp_path: Path) -> None:
     other = peer("operator")
     if kind == "ros1":
         # As roslaunch does with <param>, which reads 1 as a whole number; _places:=... is on the command line.

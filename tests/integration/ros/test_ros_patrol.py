@@ -1,13 +1,11 @@
 """A patrol over a real graph goes on while its master is restarted."""
 
-from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
-from graphs import ProcessPeer
 from judging import visits
 from masters import Master
-from processes import Agents, WorldProcess, wait_until
+from processes import WorldProcess, wait_until
 
 from jacaros.robots.world import GroundTruth
 from jacaros.testing import Verdict
@@ -32,12 +30,7 @@ def since_the_last_charge(truth: GroundTruth) -> GroundTruth:
 
 
 @pytest.mark.only("ros1")
-def test_a_patrol_outlives_the_ros_master(
-    world: WorldProcess,
-    run_agents: Callable[..., Agents],
-    master: Master,
-    peer: Callable[[str], ProcessPeer],
-) -> None:
+def test_a_patrol_outlives_the_ros_master(world: WorldProcess, run_agents, master: Master, peer) -> None:
     agents = run_agents("patrol.asl")
     world.until_truth(lambda truth: len(visits(truth, CORNERS)) >= 2, "the first corner")
     master.kill()

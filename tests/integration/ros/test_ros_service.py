@@ -2,16 +2,13 @@
 
 from collections.abc import Callable
 
-from graphs import ProcessPeer
 from processes import Agents
 
 ADDING = "service /add_two_ints (example_interfaces/srv/AddTwoInts)"
 SILENT = "service /silent_add (example_interfaces/srv/AddTwoInts)"
 
 
-def test_success_and_failure_of_a_service_reach_the_plan(
-    run_agents: Callable[..., Agents], peer: Callable[[str], ProcessPeer]
-) -> None:
+def test_success_and_failure_of_a_service_reach_the_plan(run_agents: Callable[..., Agents], peer) -> None:
     agents = run_agents("add.asl")
     agents.until_line("service_unavailable")
     agents.until_error(f"[ros] waiting for the {ADDING}")

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 from examples_lab import EXAMPLES, checker
-from processes import Agents, WorldProcess
+from processes import Agents
 
 from jacaros.robots.world import GroundTruth
 
@@ -14,9 +14,7 @@ module = checker("09_three_robots")
 pytestmark = pytest.mark.only("ros2")
 
 
-def test_one_process_for_three_robots(
-    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
-) -> None:
+def test_one_process_for_three_robots(run_world, run_agents: Callable[..., Agents]) -> None:
     """Each comes to its places and bumps into nothing."""
     world = run_world("three_robots")
     agents = run_agents(EXAMPLES / "09_three_robots/three_robots.jcm")
@@ -31,9 +29,7 @@ def test_one_process_for_three_robots(
     assert world.close().events_of("bump", "collision") == []
 
 
-def test_one_process_for_each_robot(
-    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
-) -> None:
+def test_one_process_for_each_robot(run_world, run_agents: Callable[..., Agents]) -> None:
     """The namespace of the command line stands before names and frames."""
     world = run_world("three_robots")
     runs = [

@@ -1,18 +1,15 @@
 """A run on a real graph is recorded with the map and the robot that the graph tells of."""
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 
-from processes import Agents, WorldProcess
+from processes import WorldProcess
 
 from jacaros.look import Recording
 from jacaros.runtime.errors import JacarosError
 
 
-def test_a_recording_has_the_map_and_the_robot(
-    world: WorldProcess, run_agents: Callable[..., Agents], tmp_path: Path
-) -> None:
+def test_a_recording_has_the_map_and_the_robot(world: WorldProcess, run_agents, tmp_path: Path) -> None:
     record, replay = tmp_path / "run.jsonl", tmp_path / "run.html"
     agents = run_agents("patrol.asl", "--record", str(record), "--replay", str(replay))
 

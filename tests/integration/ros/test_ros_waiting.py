@@ -29,9 +29,7 @@ def words(process: Program) -> list[str]:
 
 
 @pytest.mark.only("ros1")
-def test_a_master_that_is_late_is_awaited_in_plain_words(
-    kind: str, late_master: Master, tmp_path: Path
-) -> None:
+def test_a_master_that_is_late_is_awaited_in_plain_words(kind: str, late_master, tmp_path: Path) -> None:
     processes = (
         agents := Agents(PROGRAMS / "short.asl", kind, late_master.environment),
         world := WorldProcess(YARD, kind, late_master.environment, tmp_path),
@@ -58,9 +56,7 @@ def test_a_master_that_is_late_is_awaited_in_plain_words(
             process.stop()
 
 
-def test_a_robot_that_is_late_is_awaited_in_plain_words(
-    run_world: Callable[..., WorldProcess], run_agents: Callable[..., Agents]
-) -> None:
+def test_a_robot_that_is_late_is_awaited_in_plain_words(run_world, run_agents: Callable[..., Agents]) -> None:
     agents = run_agents("short.asl")
     agents.until_error("still listening")
     # ROS 2 also warns about an empty graph; another test covers that.

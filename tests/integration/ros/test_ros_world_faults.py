@@ -1,11 +1,9 @@
 """Faults of the world on real graphs: any node begins and ends them, and any node suffers them."""
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 
-from graphs import ProcessPeer
-from processes import WorldProcess, wait_until
+from processes import wait_until
 
 ODOMETRY, SCAN, SET = "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan", "std_srvs/srv/SetBool"
 FAULTS = """
@@ -15,9 +13,7 @@ faults:
 """
 
 
-def test_faults_have_services_and_concern_messages_to_all(
-    run_world: Callable[..., WorldProcess], peer: Callable[[str], ProcessPeer], tmp_path: Path
-) -> None:
+def test_faults_have_services_and_concern_messages_to_all(run_world, peer, tmp_path: Path) -> None:
     file = tmp_path / "faults.yaml"
     file.write_text(FAULTS, encoding="utf-8")
     world = run_world("patrol", "--faults", str(file))

@@ -24,6 +24,11 @@ from typing import Any
 import pytest
 import websockets
 
+from jacaros import Mas
+from jacaros.look import view
+from jacaros.look.page.page import write_replay
+from jacaros.look.records.recording import Recording
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 PATIENCE = 30.0
 """Seconds after which a browser that does not answer fails the test."""
@@ -54,7 +59,11 @@ class Page:
 
     Attributes:
         errors: uncaught exceptions, errors on its console, and requests that failed, in words.
+        mas, address: the system whose page this is, and where: for tests that open it.
     """
+
+    mas: Mas
+    address: str
 
     def __init__(self, socket: Any, session: str) -> None:
         self.errors: list[str] = []
@@ -166,12 +175,7 @@ class Page:
         """Press a key, such as ``Enter``, ``Tab``, ``ArrowLeft`` or ``a``."""
         code, number = _KEYS.get(key, (f"Key{key.upper()}", ord(key[0].upper())))
         text = _TEXTS.get(key, key if len(key) == 1 else "")
-        common = {
-            "key": key,
-            "code": code,
-            "windowsVirtualKeyCode": number,
-            "modifiers": 8 if shift else 0,
-        }
+        common = {"key": key, "code": code, "windowsVirtualKeyCode": number, "modifiers": 8 if shift else 0}
         kind = "keyDown" if text else "rawKeyDown"
         await self.call("Input.dispatchKeyEvent", type=kind, **({"text": text} if text else {}), **common)
         await self.call("Input.dispatchKeyEvent", type="keyUp", **common)
@@ -238,6 +242,34 @@ async def chromium(width: int = 1400, height: int = 900) -> AsyncIterator[Page]:
                     await page.close()
         finally:
             await _end(process)
+
+
+@asynccontextmanager
+async def replayed(recording: Recording, at: float = 3.0, more: str = "") -> AsyncIterator[Page]:
+    """Show the replay page of a recording at a moment, in seconds; it must not report an error."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "replay.html"
+        write_replay(recording, file)
+        async with chromium() as page:
+            await page.open(f"{file.as_uri()}#t={at:g}{more}")
+            await page.wait_for("!document.body.classList.contains('starting')")
+            await page.wait_for(f"document.querySelector('#now')?.textContent === '0:{at:04.1f}'")
+            yield page
+            assert page.errors == []
+
+
+@asynccontextmanager
+async def browsed(program: str, seen: str, **options: Any) -> AsyncIterator[Page]:
+    """Run an agent, ``bob``, and show its page once an element is seen; the page must not report an error."""
+    async with Mas(seed=1, on_print=lambda *_: None, **options) as mas:
+        mas.add_agent("bob", program)
+        assert not options or mas.world is not None  # it comes into being when it is first asked for
+        async with view(mas) as address, chromium() as page:
+            page.mas = mas
+            await page.open(address)
+            await page.wait_for(f"document.querySelector('{seen}')?.checkVisibility()")
+            yield page
+            assert page.errors == []
 
 
 async def _end(process: asyncio.subprocess.Process) -> None:

@@ -10,6 +10,9 @@ from urllib.parse import urlsplit
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 
+from jacaros import Mas
+from jacaros.look import view
+
 PATIENCE = 20.0
 """Seconds of waiting after which a test fails."""
 
@@ -21,7 +24,10 @@ class LivePage:
         hello: the first message.
         records: what came so far.
         notes: other messages, replies excepted.
+        mas: the system whose page this is, in `viewed`.
     """
+
+    mas: Mas
 
     def __init__(self, socket: ClientConnection) -> None:
         self.socket = socket
@@ -77,6 +83,23 @@ class LivePage:
         reply: dict[str, Any] = await self.until(lambda: self._replies.get(number))
         return reply
 
+    async def done(self, command: str, **fields: object) -> Any:
+        """Return the result of a command."""
+        reply = await self.do(command, **fields)
+        assert reply["ok"], reply
+        return reply["result"]
+
+    async def refused(self, command: str, **fields: object) -> str:
+        """Return the error of a command, in one line."""
+        reply = await self.do(command, **fields)
+        assert not reply["ok"]
+        assert "\n" not in reply["error"]
+        return str(reply["error"])
+
+    def of(self, kind: str) -> list[dict[str, Any]]:
+        """Return the records of a kind so far."""
+        return [each for each in self.records if each["kind"] == kind]
+
 
 @asynccontextmanager
 async def live_page(address: str) -> AsyncIterator[LivePage]:
@@ -91,6 +114,14 @@ async def live_page(address: str) -> AsyncIterator[LivePage]:
             reading.cancel()
             with suppress(asyncio.CancelledError, ConnectionClosed):
                 await reading
+
+
+@asynccontextmanager
+async def viewed(mas: Mas) -> AsyncIterator[LivePage]:
+    """Run a system and connect to its page."""
+    async with mas, view(mas) as address, live_page(address) as page:
+        page.mas = mas
+        yield page
 
 
 def socket_address(address: str) -> str:

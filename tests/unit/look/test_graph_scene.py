@@ -19,6 +19,7 @@ from jacaros.look.records.recording import Recording
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.world import SimNode, World
 from jacaros.runtime.clock import VirtualClock, run
+from played import played
 
 PICTURE = """
 ?????????
@@ -67,17 +68,17 @@ def test_an_empty_map_is_drawn() -> None:
     assert drawing["bounds"] == [1.0, -1.0, 2.0, 0.0]
 
 
-def looking(world_name: str, body: Callable[[VirtualClock, World, Any, SimNode], Awaitable[None]]) -> None:
+def looking(world_name: str, test: Callable[[Any], Awaitable[None]]) -> None:
     clock = VirtualClock()
 
     async def main() -> None:
         backend = open_backend("memory", clock, "agents")
-        await backend.start()
         beside = open_backend("memory", clock, "world", graph=backend.graph)  # type: ignore[attr-defined]
+        await backend.start()
         await beside.start()
         world = World.load(world_name)
         node = SimNode(world, beside, clock)
-        await body(clock, world, backend, node)
+        await test(SimpleNamespace(clock=clock, world=world, backend=backend, node=node))
         node.close()
         await beside.close()
         await backend.close()
@@ -85,100 +86,88 @@ def looking(world_name: str, body: Callable[[VirtualClock, World, Any, SimNode],
     run(main, clock)
 
 
-def test_robots_are_shown_at_their_estimated_poses() -> None:
-    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
-        scene = GraphScene(backend, clock, "storehouse")
-        await clock.sleep(1.0)
-        assert scene.drawing() is None
-        assert scene.robots() == []
-        node.start()
-        await clock.sleep(10.0)
-        drawing = scene.drawing()
-        assert drawing is not None
-        assert drawing is scene.drawing()
-        assert drawing["bounds"] == pytest.approx([-4, -3, 4, 3])
-        assert [robot["name"] for robot in drawing["robots"]] == ["robot_1", "robot_2", "robot_3"]
-        for seen, level in zip(scene.robots(), (100, 75, 50), strict=True):
-            true = world.robot(seen.name)
-            assert (seen.x, seen.y, seen.yaw) == pytest.approx((true.x, true.y, true.yaw), abs=1e-3)
-            assert level - 2 < seen.battery <= level
-            assert not seen.charging
-        scene.close()
-
-    looking("three_robots", body)
+@played(looking, "three_robots")
+async def test_robots_are_shown_at_their_estimated_poses(lab) -> None:
+    scene = GraphScene(lab.backend, lab.clock, "storehouse")
+    await lab.clock.sleep(1.0)
+    assert scene.drawing() is None
+    assert scene.robots() == []
+    lab.node.start()
+    await lab.clock.sleep(10.0)
+    drawing = scene.drawing()
+    assert drawing is not None
+    assert drawing is scene.drawing()
+    assert drawing["bounds"] == pytest.approx([-4, -3, 4, 3])
+    assert [robot["name"] for robot in drawing["robots"]] == ["robot_1", "robot_2", "robot_3"]
+    for seen, level in zip(scene.robots(), (100, 75, 50), strict=True):
+        true = lab.world.robot(seen.name)
+        assert (seen.x, seen.y, seen.yaw) == pytest.approx((true.x, true.y, true.yaw), abs=1e-3)
+        assert level - 2 < seen.battery <= level
+        assert not seen.charging
+    scene.close()
 
 
-def test_odometry_alone_is_enough() -> None:
+def odometry(lab: Any) -> Callable[..., None]:
+    """Publish odometry; the numbers that are left out are zero, and the rotation is none."""
+    publisher = lab.backend.publisher("/odom", "nav_msgs/msg/Odometry")
+
+    def publish(x: float, z: float = 0.0, w: float = 1.0) -> None:
+        publisher.publish({"pose": {"pose": {"position": {"x": x}, "orientation": {"z": z, "w": w}}}})
+
+    return publish
+
+
+@played(looking, "empty")
+async def test_odometry_alone_is_enough(lab) -> None:
     """No map, no tf, no battery."""
-
-    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
-        publisher = backend.publisher("/odom", "nav_msgs/msg/Odometry")
-        scene = GraphScene(backend, clock)
-        for _ in range(50):
-            publisher.publish(
-                {"pose": {"pose": {"position": {"x": 4.0}, "orientation": {"z": 1.0, "w": 0.0}}}}
-            )
-            await clock.sleep(0.1)
-        (seen,) = scene.robots()
-        assert (seen.name, seen.x, seen.y, seen.battery) == ("robot", 4.0, 0.0, UNKNOWN)
-        drawing = scene.drawing()
-        assert drawing is not None
-        assert drawing["bounds"] == [1, -3, 7, 3]
-        scene.close()
-
-    looking("empty", body)
+    publish = odometry(lab)
+    scene = GraphScene(lab.backend, lab.clock)
+    for _ in range(50):
+        publish(4.0, z=1.0, w=0.0)
+        await lab.clock.sleep(0.1)
+    (seen,) = scene.robots()
+    assert (seen.name, seen.x, seen.y, seen.battery) == ("robot", 4.0, 0.0, UNKNOWN)
+    drawing = scene.drawing()
+    assert drawing is not None
+    assert drawing["bounds"] == [1, -3, 7, 3]
+    scene.close()
 
 
-def test_nan_and_infinity_are_not_drawn() -> None:
+@played(looking, "empty")
+async def test_nan_and_infinity_are_not_drawn(lab) -> None:
     """Neither by a view, which nothing else draws, nor in a recording: JSON has no such numbers."""
-
-    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
-        publisher = backend.publisher("/odom", "nav_msgs/msg/Odometry")
-        scene = GraphScene(backend, clock)
-        await clock.sleep(5.0)
-        for x, z in ((math.nan, 0.0), (1.0, math.nan)):
-            publisher.publish({"pose": {"pose": {"position": {"x": x}, "orientation": {"z": z, "w": 1.0}}}})
-            await clock.sleep(0.1)
-        assert scene.robots() == []
-        publisher.publish({"pose": {"pose": {"position": {"x": 4.0}, "orientation": {"w": 1.0}}}})
-        await clock.sleep(0.1)
-        publisher.publish({"pose": {"pose": {"position": {"x": math.inf}, "orientation": {"w": 1.0}}}})
-        await clock.sleep(0.1)
-        assert [robot.x for robot in scene.robots()] == [4.0]
-        scene.close()
-
-    looking("empty", body)
+    publish = odometry(lab)
+    scene = GraphScene(lab.backend, lab.clock)
+    await lab.clock.sleep(5.0)
+    for x, z, seen in ((math.nan, 0.0, []), (1.0, math.nan, []), (4.0, 0.0, [4.0]), (math.inf, 0.0, [4.0])):
+        publish(x, z)
+        await lab.clock.sleep(0.1)
+        assert [robot.x for robot in scene.robots()] == seen
+    scene.close()
 
 
 @pytest.mark.parametrize(
-    "change",
-    [{"width": 4}, {"width": 0, "height": 0}, {"resolution": 0.0}, {"resolution": math.nan}],
+    "change", [{"width": 4}, {"width": 0, "height": 0}, {"resolution": 0.0}, {"resolution": math.nan}]
 )
 def test_an_invalid_map_is_not_drawn(change: dict[str, Any]) -> None:
     message = grid("##\n##")
     assert can_be_drawn(message)
     vars(message.info).update(change)
     assert not can_be_drawn(message)
+    assert not can_be_drawn(grid("##\n##", x=math.nan)), "an origin"
 
 
-def test_a_map_without_a_valid_origin_is_not_drawn() -> None:
-    assert not can_be_drawn(grid("##\n##", x=math.nan))
-
-
-def test_a_world_discovered_late_is_recorded(tmp_path: Path) -> None:
+@played(looking, "two_robots")
+async def test_a_world_discovered_late_is_recorded(lab, tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
-
-    async def body(clock: VirtualClock, world: World, backend: Any, node: SimNode) -> None:
-        recorder = Recorder(path)
-        watch = Watch(clock, [recorder], GraphScene(backend, clock, "late"))
-        watch.start()
-        await clock.sleep(1.0)
-        node.start()
-        await clock.sleep(10.0)
-        watch.stop()
-        recorder.close()
-
-    looking("two_robots", body)
+    recorder = Recorder(path)
+    watch = Watch(lab.clock, [recorder], GraphScene(lab.backend, lab.clock, "late"))
+    watch.start()
+    await lab.clock.sleep(1.0)
+    lab.node.start()
+    await lab.clock.sleep(10.0)
+    watch.stop()
+    recorder.close()
     lines = [json.loads(line) for line in path.read_text().splitlines()]
     assert lines[0] == {"kind": "world", "version": 2, "world": {}}
     recording = Recording.read(path)

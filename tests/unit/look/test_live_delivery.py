@@ -80,9 +80,7 @@ def test_frames_without_motion_are_delivered_but_not_stored() -> None:
     assert [each["t"] for each in late if each["kind"] == "frame"] == [0.0, 49.0, 50.0]
 
 
-def test_a_slow_page_receives_the_number_of_missed_records_and_restarts(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_slow_page_receives_the_number_of_missed_records_and_restarts(monkeypatch) -> None:
     monkeypatch.setattr(delivering, "AGAIN", 0.0)
     view, delivery = shown()
     view.event(0.0, "belief", {"agent": "bob", "op": "+", "belief": "first"})
@@ -159,9 +157,7 @@ def test_a_very_long_text_is_cut() -> None:
     assert json.loads(written)["text"].endswith("x …")
 
 
-def test_a_page_that_is_too_slow_again_receives_nothing_old_meanwhile(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_page_that_is_too_slow_again_receives_nothing_old_meanwhile(monkeypatch) -> None:
     now = 100.0
     monkeypatch.setattr(delivering, "real_time", lambda: now)
     view, delivery = shown()

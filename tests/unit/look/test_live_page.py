@@ -2,38 +2,28 @@
 
 from collections.abc import Awaitable, Callable
 
-from devtools import Page, chromium, needs_chromium
+from devtools import Page, browsed, chromium, needs_chromium
 
 import jacaros
 from jacaros import Mas
 from jacaros.look import view
-from jacaros.robots.world import World
+from played import played
 
 WORLD = """
 name: lab
 bounds: {from: [-3, -3], to: [3, 3]}
 border: walls
-doors:
-  - {name: gate, segment: [[1, -3], [1, -2]], open: false}
-robots:
-  - {name: turtlebot, pose: {x: -1, y: 0}}
+doors: [{name: gate, segment: [[1, -3], [1, -2]], open: false}]
+robots: [{name: turtlebot, pose: {x: -1, y: 0}}]
 """
-Test = Callable[[Mas, World, Page], Awaitable[None]]
+PROGRAM = "!live. +!live <- .print(hello); .wait(100); .print(again); .wait(nothing)."
 FORM = ".numbers:has([name=x])"
 
 
-def browsing(test: Test, width: int = 1400, height: int = 900) -> None:
-    """Run a test with an agent, a world with a robot, and a browser that shows them."""
-
+def browsing(test: Callable[[Page], Awaitable[None]]) -> None:
     async def main() -> None:
-        async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas:
-            mas.add_agent("bob", "!live. +!live <- .print(hello); .wait(100); .print(again); .wait(nothing).")
-            assert mas.world is not None
-            async with view(mas) as address, chromium(width, height) as page:
-                await page.open(address)
-                await page.wait_for("document.querySelector('.robot')?.checkVisibility()")
-                await test(mas, mas.world, page)
-                assert page.errors == []
+        async with browsed(PROGRAM, ".robot", world=WORLD) as page:
+            await test(page)
 
     jacaros.run(main())
 
@@ -48,157 +38,132 @@ def pixel(x: float, y: float) -> str:
 
 
 @needs_chromium
-def test_a_robot_is_dragged() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        begin, end = await page.evaluate(pixel(-1, 0)), await page.evaluate(pixel(1, 2))
-        await page.drag(*begin, *end)
-        await page.wait_for("document.querySelector('.robot .where').textContent.startsWith('x 1.0')")
-        robot = world.robots["turtlebot"]
-        assert abs(robot.x - 1.0) < 0.05
-        assert abs(robot.y - 2.0) < 0.05
-        await page.wait_for("document.querySelector('#log').innerText.includes('turtlebot moved')")
-
-    browsing(test)
+@played(browsing)
+async def test_a_robot_is_dragged(page) -> None:
+    begin, end = await page.evaluate(pixel(-1, 0)), await page.evaluate(pixel(1, 2))
+    await page.drag(*begin, *end)
+    await page.wait_for("document.querySelector('.robot .where').textContent.startsWith('x 1.0')")
+    robot = page.mas.world.robots["turtlebot"]
+    assert abs(robot.x - 1.0) < 0.05
+    assert abs(robot.y - 2.0) < 0.05
+    await page.wait_for("document.querySelector('#log').innerText.includes('turtlebot moved')")
 
 
 @needs_chromium
-def test_doors_obstacles_and_batteries_change_by_keyboard() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        await page.evaluate("document.querySelector('[data-tool=\"door gate\"]').focus()")
-        await page.press("Enter")
-        await page.wait_for("document.activeElement.textContent === 'Close gate'")
-        assert world.doors["gate"]
-        await page.evaluate("document.querySelector('[data-tool=obstacle]').focus()")
-        await page.press("Enter")
-        await page.wait_for(f"document.querySelector('{FORM} [name=x]')")
-        await page.evaluate(f"document.querySelector('{FORM} [name=x]').select()")
-        await page.type("2")
-        await page.press("Enter")
-        await page.wait_for("document.querySelector('#log').innerText.includes('obstacle 1 placed')")
-        ((x, y, _),) = world.obstacles.values()
-        assert (x, y) == (2.0, 0.0)
-        await page.evaluate("document.querySelector('.robot').focus()")
-        await page.press("Enter")
-        await page.wait_for("document.querySelector('[name=\"battery %\"]')")
-        await page.evaluate("document.querySelector('[name=\"battery %\"]').select()")
-        await page.type("33")
-        await page.press("Enter")
-        await page.wait_for("document.querySelector('.robot .level').textContent === '33 %'")
-
-    browsing(test)
+@played(browsing)
+async def test_doors_obstacles_and_batteries_change_by_keyboard(page) -> None:
+    await page.evaluate("document.querySelector('[data-tool=\"door gate\"]').focus()")
+    await page.press("Enter")
+    await page.wait_for("document.activeElement.textContent === 'Close gate'")
+    assert page.mas.world.doors["gate"]
+    await page.evaluate("document.querySelector('[data-tool=obstacle]').focus()")
+    await page.press("Enter")
+    await page.wait_for(f"document.querySelector('{FORM} [name=x]')")
+    await page.evaluate(f"document.querySelector('{FORM} [name=x]').select()")
+    await page.type("2")
+    await page.press("Enter")
+    await page.wait_for("document.querySelector('#log').innerText.includes('obstacle 1 placed')")
+    ((x, y, _),) = page.mas.world.obstacles.values()
+    assert (x, y) == (2.0, 0.0)
+    await page.evaluate("document.querySelector('.robot').focus()")
+    await page.press("Enter")
+    await page.wait_for("document.querySelector('[name=\"battery %\"]')")
+    await page.evaluate("document.querySelector('[name=\"battery %\"]').select()")
+    await page.type("33")
+    await page.press("Enter")
+    await page.wait_for("document.querySelector('.robot .level').textContent === '33 %'")
 
 
 @needs_chromium
-def test_a_rejected_change_gives_the_reason() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        await page.click("[data-tool=obstacle]")
-        x, y = await page.evaluate(pixel(-1, 0))
-        await page.click_at(x, y)
-        await page.wait_for("document.querySelector('#tools [role=status]').innerText.length > 10")
-        assert not world.obstacles
-
-    browsing(test)
+@played(browsing)
+async def test_a_rejected_change_gives_the_reason(page) -> None:
+    await page.click("[data-tool=obstacle]")
+    x, y = await page.evaluate(pixel(-1, 0))
+    await page.click_at(x, y)
+    await page.wait_for("document.querySelector('#tools [role=status]').innerText.length > 10")
+    assert not page.mas.world.obstacles
 
 
 @needs_chromium
-def test_the_page_goes_back_in_time_and_back_to_live() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        await page.wait_for("document.querySelector('#log').innerText.includes('again')")
-        assert await page.texts(".onair") == ["Live"]
-        await page.press("Home")
-        await page.wait_for("document.querySelector('#now').textContent === '0:00.0'")
-        await page.wait_for("!document.querySelector('#log').innerText.includes('again')")
-        assert not await page.evaluate("document.querySelector('#tools').checkVisibility()"), (
-            "the past is fixed"
-        )
-        await page.click(".live")
-        await page.wait_for("document.querySelector('#log').innerText.includes('again')")
-        assert await page.texts(".onair") == ["Live"]
-
-    browsing(test)
+@played(browsing)
+async def test_the_page_goes_back_in_time_and_back_to_live(page) -> None:
+    await page.wait_for("document.querySelector('#log').innerText.includes('again')")
+    assert await page.texts(".onair") == ["Live"]
+    await page.press("Home")
+    await page.wait_for("document.querySelector('#now').textContent === '0:00.0'")
+    await page.wait_for("!document.querySelector('#log').innerText.includes('again')")
+    assert not await page.evaluate("document.querySelector('#tools').checkVisibility()"), "the past is fixed"
+    await page.click(".live")
+    await page.wait_for("document.querySelector('#log').innerText.includes('again')")
+    assert await page.texts(".onair") == ["Live"]
 
 
 @needs_chromium
-def test_the_past_stays_available_after_the_run() -> None:
-    async def main() -> None:
-        async with chromium() as page:
-            async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas, view(mas) as address:
-                mas.add_agent("bob", "!live. +!live <- .print(hello).")
-                await page.open(address)
-                await page.wait_for("document.querySelector('#log').innerText.includes('hello')")
-            await page.wait_for("document.querySelector('#notice').checkVisibility()")
-            assert "hello" in await page.text("#log")
-
-    jacaros.run(main())
-
-
-@needs_chromium
-def test_a_page_open_for_days_drops_old_records() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        kept = await page.evaluate(
-            """Promise.all(["run", "world", "log"].map((name) => import(`./${name}.js`))).then(([r, w, l]) => {
-                const world = new w.World(), log = new l.Log(), run = new r.Run([world, log]);
-                const row = [0, 0, 0, 50, 0, 0], robots = Array(100).fill(row);
-                run.add({ kind: "world", world: { bounds: [-1, -1, 1, 1] } });
-                for (let n = 0; n < 30000; n++) run.take({ kind: "frame", t: n / 10, robots });
-                for (let n = 0; n < 150000; n++) run.take({ kind: "text", t: n, agent: "a", text: "x" });
-                const state = world.state(99, 2999.9);
-                return [world.times.length, world.columns[0].x.length, log.entries.length, log.times.length, state.battery];
-            })"""
-        )
-        frames, rows, lines, times, battery = kept
-        assert frames == rows <= 20_000
-        assert lines == times <= 100_000
-        assert battery == 50
-
-    browsing(test)
-
-
-@needs_chromium
-def test_the_page_remembers_tab_and_theme() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        await page.click("#theme")
-        await page.click("#tab-program")
-        theme = await page.evaluate("document.documentElement.dataset.theme")
-        await page.open(await page.evaluate("location.href"))
-        await page.wait_for("document.querySelector('#program').checkVisibility()")
-        assert await page.evaluate("document.documentElement.dataset.theme") == theme
-
-    browsing(test)
-
-
-@needs_chromium
-def test_a_world_of_any_size_is_drawn() -> None:
-    async def test(mas: Mas, world: World, page: Page) -> None:
-        for size in (0.01, 1e4, 1e12):
-            await page.evaluate(
-                f"""import("./world.js").then(async (w) => {{
-                    const {{ FloorDrawing }} = await import("./floor_drawing.js");
-                    const {{ Projection }} = await import("./projection.js");
-                    const world = new w.World();
-                    world.add(0, "world", {{ bounds: [-{size}, -{size}, {size}, {size}] }});
-                    world.add(0, "obstacle_placed", {{ obstacle: "rock", x: 0, y: 0, radius: {size} }});
-                    const drawing = new FloorDrawing(), projection = new Projection(world.bounds, 800, 600);
-                    drawing.draw(world.drawing(0), projection, 1, {{ width: 800, height: 600 }}, world);
-                    const {{ drawObstacles }} = await import("./thing_drawing.js");
-                    drawObstacles(drawing.pen, projection, world, 0);
-                }})"""
-            )
-
-    browsing(test)
-
-
-@needs_chromium
-def test_a_world_created_late_can_be_changed() -> None:
-    async def main() -> None:
-        async with Mas(seed=1, on_print=lambda *_: None) as mas, view(mas) as address, chromium() as page:
-            mas.add_agent("bob", "!live. +!live <- .wait(nothing).")
+async def test_the_past_stays_available_after_the_run() -> None:
+    async with chromium() as page:
+        async with Mas(seed=1, world=WORLD, on_print=lambda *_: None) as mas, view(mas) as address:
+            mas.add_agent("bob", "!live. +!live <- .print(hello).")
             await page.open(address)
-            await page.wait_for("document.querySelector('#agents').innerText.includes('!live')")
-            assert not await page.evaluate("document.querySelector('#stage').checkVisibility()")
-            assert mas.world is not None  # it comes into being when it is first asked for
-            await page.wait_for("document.querySelector('[data-tool=obstacle]')?.checkVisibility()")
-            assert await page.texts(".robot .name") == ["turtlebot"]
-            assert page.errors == []
+            await page.wait_for("document.querySelector('#log').innerText.includes('hello')")
+        await page.wait_for("document.querySelector('#notice').checkVisibility()")
+        assert "hello" in await page.text("#log")
 
-    jacaros.run(main())
+
+@needs_chromium
+@played(browsing)
+async def test_a_page_open_for_days_drops_old_records(page) -> None:
+    kept = await page.evaluate(
+        """Promise.all(["run", "world", "log"].map((name) => import(`./${name}.js`))).then(([r, w, l]) => {
+            const world = new w.World(), log = new l.Log(), run = new r.Run([world, log]);
+            const row = [0, 0, 0, 50, 0, 0], robots = Array(100).fill(row);
+            run.add({ kind: "world", world: { bounds: [-1, -1, 1, 1] } });
+            for (let n = 0; n < 30000; n++) run.take({ kind: "frame", t: n / 10, robots });
+            for (let n = 0; n < 150000; n++) run.take({ kind: "text", t: n, agent: "a", text: "x" });
+            const state = world.state(99, 2999.9);
+            return [world.times.length, world.columns[0].x.length, log.entries.length, log.times.length, state.battery];
+        })"""
+    )
+    frames, rows, lines, times, battery = kept
+    assert frames == rows <= 20_000
+    assert lines == times <= 100_000
+    assert battery == 50
+
+
+@needs_chromium
+@played(browsing)
+async def test_the_page_remembers_tab_and_theme(page) -> None:
+    await page.click("#theme")
+    await page.click("#tab-program")
+    theme = await page.evaluate("document.documentElement.dataset.theme")
+    await page.open(await page.evaluate("location.href"))
+    await page.wait_for("document.querySelector('#program').checkVisibility()")
+    assert await page.evaluate("document.documentElement.dataset.theme") == theme
+
+
+@needs_chromium
+@played(browsing)
+async def test_a_world_of_any_size_is_drawn(page) -> None:
+    for size in (0.01, 1e4, 1e12):
+        await page.evaluate(
+            f"""import("./world.js").then(async (w) => {{
+                const {{ FloorDrawing }} = await import("./floor_drawing.js");
+                const {{ Projection }} = await import("./projection.js");
+                const world = new w.World();
+                world.add(0, "world", {{ bounds: [-{size}, -{size}, {size}, {size}] }});
+                world.add(0, "obstacle_placed", {{ obstacle: "rock", x: 0, y: 0, radius: {size} }});
+                const drawing = new FloorDrawing(), projection = new Projection(world.bounds, 800, 600);
+                drawing.draw(world.drawing(0), projection, 1, {{ width: 800, height: 600 }}, world);
+                const {{ drawObstacles }} = await import("./thing_drawing.js");
+                drawObstacles(drawing.pen, projection, world, 0);
+            }})"""
+        )
+
+
+@needs_chromium
+async def test_a_world_created_late_can_be_changed() -> None:
+    async with browsed("!live. +!live <- .wait(nothing).", ".intention") as page:
+        await page.wait_for("document.querySelector('#agents').innerText.includes('!live')")
+        assert not await page.evaluate("document.querySelector('#stage').checkVisibility()")
+        assert page.mas.world is not None  # it comes into being when it is first asked for
+        await page.wait_for("document.querySelector('[data-tool=obstacle]')?.checkVisibility()")
+        assert await page.texts(".robot .name") == ["turtlebot"]

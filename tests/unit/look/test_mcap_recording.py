@@ -51,13 +51,8 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[flo
 
 def test_each_kind_of_record_has_a_channel(driven: dict[str, Any]) -> None:
     assert {
-        "/jacaros/world",
-        "/jacaros/frame",
-        "/jacaros/text",
-        "/jacaros/goal",
-        "/jacaros/artifact",
-        "/jacaros/operation",
-        "/jacaros/cause",
+        *("/jacaros/world", "/jacaros/frame", "/jacaros/text", "/jacaros/goal", "/jacaros/artifact"),
+        *("/jacaros/operation", "/jacaros/cause"),
     } <= set(driven)
     t, schema, content = driven["/jacaros/goal"][0]
     assert (t, schema, content["goal"]) == (0.0, "jacaros.goal", "!start")
@@ -111,9 +106,7 @@ def test_a_missing_library_suggests_what_to_install(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize("name", ["run.mcap", "run.jsonl.gz"])
-def test_a_missing_folder_is_reported_before_the_run(
-    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_folder_is_reported_before_the_run(tmp_path: Path, name: str, capsys) -> None:
     (tmp_path / "a.asl").write_text('!s. +!s <- .print("begun").', encoding="utf-8")
     with pytest.raises(SystemExit) as ended:
         command(["run", str(tmp_path / "a.asl"), "--record", str(tmp_path / "none" / name)])

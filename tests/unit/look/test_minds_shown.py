@@ -1,40 +1,24 @@
 """The page's views of minds, programs, artifacts, messages and causes, in a real browser."""
 
-import asyncio
 import sys
-from collections.abc import Awaitable, Callable
+from contextlib import AbstractAsyncContextManager
 from pathlib import Path
 from typing import Any
 
-from devtools import Page, chromium, needs_chromium
+from devtools import Page, needs_chromium, replayed
 
-from jacaros.look.page.page import write_replay
 from jacaros.look.page.recorder import Recorder
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "runtime" / "mas" / "history"))
 from guard_story import RECORDS, Record
 
-Test = Callable[[Page], Awaitable[None]]
 
-
-def shown(records: list[Record], path: Path, test: Test, at: float = 12.0, width: int = 1400) -> None:
-    """Test the page of some records in a browser, which must not report an error."""
+def shown(records: list[Record], at: float = 12.0) -> AbstractAsyncContextManager[Page]:
     recorder = Recorder()
-    for t, kind, data in records:
-        recorder.event(t, kind, data)
+    for each in records:
+        recorder.event(*each)
     recorder.close()
-    file = path / "replay.html"
-    write_replay(recorder.recording, file)
-
-    async def drive() -> None:
-        async with chromium(width) as page:
-            await page.open(f"{file.as_uri()}#t={at}")
-            await page.wait_for(f"document.querySelector('#now')?.textContent === '0:{at:04.1f}'")
-            await page.wait_for("!document.body.classList.contains('starting')")
-            await test(page)
-            assert page.errors == []
-
-    asyncio.run(drive())
+    return replayed(recorder.recording, at)
 
 
 def goal(t: float, number: int, text: str, state: str = "pursued", **more: Any) -> Record:
@@ -48,14 +32,14 @@ async def unfold(page: Page, title: str) -> None:
 
 
 @needs_chromium
-def test_a_card_begins_with_the_current_step_and_unfolds_its_stack(tmp_path: Path) -> None:
+async def test_a_card_begins_with_the_current_step_and_unfolds_its_stack() -> None:
     stack = [
         {"goal": "!patrol", "plan": 1, "file": "guard.asl", "line": 6, "step": "!go(kitchen)"},
         {"goal": "!go(kitchen)", "plan": 5, "file": "guard.asl", "line": 12, "step": ".wait(500)"},
     ]
     intention = {"agent": "guard", "id": 7, "state": "waits", "stack": stack, "waits": "0.5 s", "since": 11.5}
-
-    async def test(page: Page) -> None:
+    record = 12.0, "intention", {**intention, "reason": "", "urgency": 3, "cause": 22}
+    async with shown([*RECORDS, record]) as page:
         (card,) = await page.texts(".intention[aria-label^='Intention 7']")
         lines = card.splitlines()
         assert lines[0] == ".wait(500)"
@@ -69,39 +53,30 @@ def test_a_card_begins_with_the_current_step_and_unfolds_its_stack(tmp_path: Pat
         await page.wait_for("document.querySelector('.stack[open]')")
         assert "guard.asl:6" in (await page.texts(".stack[open] ol"))[0]
 
-    record = 12.0, "intention", {**intention, "reason": "", "urgency": 3, "cause": 22}
-    shown([*RECORDS, record], tmp_path, test)
-
 
 @needs_chromium
-def test_agents_that_only_report_goals_have_a_card_for_each_intention(tmp_path: Path) -> None:
+async def test_agents_that_only_report_goals_have_a_card_for_each_intention() -> None:
     goals = [
         goal(0.1 * n, n, text, intention=number)
         for n, (text, number) in enumerate((("!tour", 1), ("!watch", 2), ("!go", 1), ("!turn", 1)))
     ]
-
-    async def test(page: Page) -> None:
+    async with shown([*goals, goal(2.0, 3, "!turn", "achieved", intention=1)], 2.0) as page:
         assert await page.texts(".intention .step") == ["!go", "!watch"]
         assert await page.texts(".intention .stack summary") == ["!tour › !go"]
 
-    shown([*goals, goal(2.0, 3, "!turn", "achieved", intention=1)], tmp_path, test, 2.0)
-
 
 @needs_chromium
-def test_a_deep_stack_shows_its_ends(tmp_path: Path) -> None:
+async def test_a_deep_stack_shows_its_ends() -> None:
     goals = [goal(0.1 * n, n, f"!round({n})", intention=1) for n in range(12)]
-
-    async def test(page: Page) -> None:
+    async with shown(goals, 1.1) as page:
         assert await page.texts(".intention .stack summary") == [
             "!round(0) › 9 more › !round(10) › !round(11)"
         ]
 
-    shown(goals, tmp_path, test, 1.1)
-
 
 @needs_chromium
-def test_a_click_shows_the_causes_back_to_the_sensor(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_a_click_shows_the_causes_back_to_the_sensor() -> None:
+    async with shown(RECORDS) as page:
         await page.click("#tab-causes")
         await page.click(".link[data-kind='command']")
         await page.wait_for("document.querySelector('.asked').innerText === 'wheel command: stand still'")
@@ -119,12 +94,10 @@ def test_a_click_shows_the_causes_back_to_the_sensor(tmp_path: Path) -> None:
         assert effects[:2] == ["property battery(12)", "event +battery(12), handled by @low"]
         assert effects[-1] == "wheel command: stand still, and 1 more until 0:09.2"
 
-    shown(RECORDS, tmp_path, test)
-
 
 @needs_chromium
-def test_a_decision_explains_why_each_plan_was_selected_or_not(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_a_decision_explains_why_each_plan_was_selected_or_not() -> None:
+    async with shown(RECORDS) as page:
         await unfold(page, "Plans")
         plans = await page.texts(".plan > summary")
         assert plans[1].split("\n")[-1].split() == ["✓", "1", "✗", "1"]
@@ -139,12 +112,10 @@ def test_a_decision_explains_why_each_plan_was_selected_or_not(tmp_path: Path) -
             ["✓", "+battery(B)"],
         ]
 
-    shown(RECORDS, tmp_path, test)
-
 
 @needs_chromium
-def test_going_back_in_time_shows_earlier_beliefs_and_the_filter_works(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_going_back_in_time_shows_earlier_beliefs_and_the_filter_works() -> None:
+    async with shown(RECORDS) as page:
         assert await page.texts(".beliefs code") == ["battery(100)", "battery(12)"]
         for _ in range(4):
             await page.press("ArrowLeft")
@@ -155,26 +126,21 @@ def test_going_back_in_time_shows_earlier_beliefs_and_the_filter_works(tmp_path:
         await page.wait_for("document.querySelector('.beliefs .recent code')?.innerText === 'battery(12)'")
         assert await page.texts(".beliefs .recent .was") == ["battery(40)"]
 
-    shown(RECORDS, tmp_path, test)
-
 
 @needs_chromium
-def test_beliefs_are_filtered(tmp_path: Path) -> None:
+async def test_beliefs_are_filtered() -> None:
     many = [(0.0, "belief", {"agent": "guard", "op": "+", "belief": f"door({n})"}) for n in range(8)]
-
-    async def test(page: Page) -> None:
+    async with shown([*RECORDS, *many]) as page:
         assert len(await page.texts(".beliefs code")) == 10
         await page.click("input[aria-label='Filter beliefs']")
         await page.type("door(3")
         await page.wait_for("document.querySelectorAll('.beliefs code').length === 1")
         assert await page.texts(".beliefs code") == ["door(3)"]
 
-    shown([*RECORDS, *many], tmp_path, test)
-
 
 @needs_chromium
-def test_the_program_marks_current_lines_and_plans_that_never_ran(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_the_program_marks_current_lines_and_plans_that_never_ran() -> None:
+    async with shown(RECORDS) as page:
         await page.click("#tab-program")
         await page.wait_for("document.querySelector('.code-line.current')")
         current = await page.texts(".code-line.current")
@@ -185,14 +151,11 @@ def test_the_program_marks_current_lines_and_plans_that_never_ran(tmp_path: Path
         assert await page.evaluate(numbers.format("unused")) == ["10", "11", "12", "13"]
         assert await page.evaluate(numbers.format("used")) == ["5", "6", "7", "8", "9"]
 
-    shown(RECORDS, tmp_path, test)
-
 
 @needs_chromium
-def test_a_thousand_agents_are_listed_without_lag(tmp_path: Path) -> None:
+async def test_a_thousand_agents_are_listed_without_lag() -> None:
     agents = [(0.0, "agent", {"agent": f"agent{n}", "what": "asl", "state": "began"}) for n in range(1000)]
-
-    async def test(page: Page) -> None:
+    async with shown([*RECORDS, *agents]) as page:
         assert len(await page.texts(".item")) < 40
         await page.click("input[aria-label='Find agents by name']")
         await page.type("agent99")
@@ -208,14 +171,11 @@ def test_a_thousand_agents_are_listed_without_lag(tmp_path: Path) -> None:
         )
         assert slowest < 100, "milliseconds from one picture to the next"
 
-    shown([*RECORDS, *agents], tmp_path, test)
-
 
 @needs_chromium
-def test_messages_are_a_sequence_chart(tmp_path: Path) -> None:
+async def test_messages_are_a_sequence_chart() -> None:
     sent = {"id": 90, "from": "guard", "to": "cook", "performative": "tell", "content": "low(12)"}
-
-    async def test(page: Page) -> None:
+    async with shown([*RECORDS, (11.0, "message", {**sent, "state": "sent"})]) as page:
         await page.click("#tab-messages")
         await page.wait_for("document.querySelector('.arrow')")
         assert await page.texts(".chart-head button") == ["guard", "cook"]
@@ -226,23 +186,18 @@ def test_messages_are_a_sequence_chart(tmp_path: Path) -> None:
             "document.querySelector('.asked')?.innerText === 'message from guard to cook: tell low(12)'"
         )
 
-    shown([*RECORDS, (11.0, "message", {**sent, "state": "sent"})], tmp_path, test)
-
 
 @needs_chromium
-def test_artifacts_have_properties_operations_and_observers(tmp_path: Path) -> None:
+async def test_artifacts_have_properties_operations_and_observers() -> None:
     wheels = {"artifact": "/main/wheels"}
     more: list[Record] = [
         (0.2, "focus", {**wheels, "agent": "guard", "on": True}),
         (8.0, "property", {**wheels, "name": "speed", "values": [0.25], "cause": 4}),
     ]
-
-    async def test(page: Page) -> None:
+    async with shown(sorted([*RECORDS, *more], key=lambda record: record[0])) as page:
         await page.click("#tab-artifacts")
         await page.wait_for("document.querySelector('#artifacts .beliefs')?.checkVisibility()")
         text = await page.text("#artifacts")
         assert "speed(0.25)" in text
         assert "go(kitchen)" in text
         assert await page.texts("#artifacts .names button") == ["guard"]
-
-    shown(sorted([*RECORDS, *more], key=lambda record: record[0]), tmp_path, test)

@@ -2,29 +2,33 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-import jacaros
 from jacaros import Mas
 from jacaros.look import record
 from jacaros.runtime.cli.main import main
 
+FAST = pytest.mark.clock("fast")
 
-def test_world_lines_and_goals_are_recorded(tmp_path: Path) -> None:
-    async def main() -> None:
-        async with Mas(seed=1, on_print=lambda agent, text: None) as mas:
-            mas.add_agent("ann", "+!go <- .wait(500); .print(hello).")
-            with record(mas, tmp_path / "run.jsonl", replay=tmp_path / "run.html") as recording:
-                assert recording is not None
-                bob = mas.add_agent("bob", "+!go <- .wait(1000).")
-                await mas.agent("ann").achieve("go")
-                await bob.achieve("go")
+
+def lines_of(path: Path) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in path.read_text().splitlines()]
+
+
+@FAST
+async def test_world_lines_and_goals_are_recorded(tmp_path: Path) -> None:
+    async with Mas(seed=1, on_print=lambda agent, text: None) as mas:
+        mas.add_agent("ann", "+!go <- .wait(500); .print(hello).")
+        with record(mas, tmp_path / "run.jsonl", replay=tmp_path / "run.html") as recording:
+            assert recording is not None
+            bob = mas.add_agent("bob", "+!go <- .wait(1000).")
             await mas.agent("ann").achieve("go")
-            assert [text for _, _, text in recording.texts] == ["hello"]
-
-    jacaros.run(main(), clock="fast")
-    written = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
+            await bob.achieve("go")
+        await mas.agent("ann").achieve("go")
+        assert [text for _, _, text in recording.texts] == ["hello"]
+    written = lines_of(tmp_path / "run.jsonl")
     assert written[0]["kind"] == "world"
     assert [(line["t"], line["agent"], line["text"]) for line in written if line["kind"] == "text"] == [
         (0.5, "ann", "hello")
@@ -35,33 +39,25 @@ def test_world_lines_and_goals_are_recorded(tmp_path: Path) -> None:
     assert (tmp_path / "run.html").read_text(encoding="utf-8").startswith("<!doctype html>")
 
 
-def test_a_run_without_robots_has_no_world() -> None:
-    worlds = []
-
-    async def main() -> None:
-        async with Mas() as mas:
-            mas.add_agent("ann", "+!go <- .wait(500).")
-            with record(mas) as recording:
-                assert recording is not None
-                await mas.agent("ann").achieve("go")
-                worlds.append(recording.world)
-                mas.ros  # noqa: B018  # the world comes into being when the graph is first asked for
-                await mas.agent("ann").achieve("go")
-                worlds.append(recording.world)
-                assert recording.frames[-1].robots
-
-    jacaros.run(main(), clock="fast")
-    assert worlds[0] == {}
-    assert worlds[1]["name"] == "empty"
+@FAST
+async def test_a_run_without_robots_has_no_world() -> None:
+    async with Mas() as mas:
+        mas.add_agent("ann", "+!go <- .wait(500).")
+        with record(mas) as recording:
+            assert recording is not None
+            await mas.agent("ann").achieve("go")
+            assert recording.world == {}
+            mas.ros  # noqa: B018  # the world comes into being when the graph is first asked for
+            await mas.agent("ann").achieve("go")
+            assert recording.world["name"] == "empty"
+            assert recording.frames[-1].robots
 
 
-def test_a_file_alone_is_not_kept_in_memory(tmp_path: Path) -> None:
-    async def main() -> None:
-        async with Mas() as mas:
-            with record(mas, tmp_path / "run.jsonl") as recording:
-                assert recording is None
-
-    jacaros.run(main(), clock="fast")
+@FAST
+async def test_a_file_alone_is_not_kept_in_memory(tmp_path: Path) -> None:
+    async with Mas() as mas:
+        with record(mas, tmp_path / "run.jsonl") as recording:
+            assert recording is None
     assert (tmp_path / "run.jsonl").is_file()
 
 
@@ -99,20 +95,10 @@ def test_goals_of_agents_in_python_and_agents_created_later_are_recorded(tmp_pat
     (tmp_path / "artifacts.py").write_text(WORKER)
     (tmp_path / "starter.asl").write_text('!s. +!s <- .wait(100); .create_agent(late, "late.asl").')
     (tmp_path / "late.asl").write_text("!l. +!l <- .wait(1).")
+    options = ["--clock", "fast", "--until-idle", "--record", str(tmp_path / "r")]
     with pytest.raises(SystemExit) as ended:
-        main(
-            [
-                "run",
-                str(tmp_path / "work.jcm"),
-                "--clock",
-                "fast",
-                "--until-idle",
-                "--record",
-                str(tmp_path / "r"),
-            ]
-        )
-    written = [json.loads(line) for line in (tmp_path / "r").read_text().splitlines()]
-    goals = [line["data"] for line in written if line.get("event") == "goal"]
+        main(["run", str(tmp_path / "work.jcm"), *options])
+    goals = [line["data"] for line in lines_of(tmp_path / "r") if line.get("event") == "goal"]
     told = [(goal["state"], goal["goal"]) for goal in goals if goal["agent"] == "worker"]
     assert told == [
         ("pursued", "Worker.run"),
@@ -129,7 +115,8 @@ def test_goals_of_agents_in_python_and_agents_created_later_are_recorded(tmp_pat
     assert not ended.value.code
 
 
-def test_the_causes_of_an_action_are_recorded_from_the_message_on(tmp_path: Path) -> None:
+@FAST
+async def test_the_causes_of_an_action_are_recorded_from_the_message_on(tmp_path: Path) -> None:
     program = """
         !start.
         +!start
@@ -137,16 +124,15 @@ def test_the_causes_of_an_action_are_recorded_from_the_message_on(tmp_path: Path
              makeArtifact(wheels, "ArtCmdVel", [], _); moveForward(1).
         +odom(X, _, _) : X > 0.5 & not told <- +told; lookupArtifact(wheels, _).
     """
-
-    async def main() -> None:
-        async with Mas(seed=1, on_print=lambda agent, text: None) as mas:
-            with record(mas, tmp_path / "run.jsonl", replay=tmp_path / "run.html"):
-                mas.add_agent("ann", program)
-                await mas.sleep(5)
-
-    jacaros.run(main(), clock="fast")
-    lines = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
-    linked = [line["data"] for line in lines if line.get("event") in ("cause", "deliberation")]
+    async with Mas(seed=1, on_print=lambda agent, text: None) as mas:
+        with record(mas, tmp_path / "run.jsonl", replay=tmp_path / "run.html"):
+            mas.add_agent("ann", program)
+            await mas.sleep(5)
+    linked = [
+        line["data"]
+        for line in lines_of(tmp_path / "run.jsonl")
+        if line.get("event") in ("cause", "deliberation")
+    ]
     causes = {data["id"]: {"kind": "event", **data} for data in linked}
     [link] = [cause for cause in causes.values() if cause.get("what") == "ann lookupArtifact/2"]
     chain = [link]

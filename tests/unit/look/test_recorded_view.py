@@ -5,6 +5,8 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
@@ -35,49 +37,39 @@ def recorded(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_page_receives_the_whole_recording_in_time_order(recorded: Path) -> None:
-    async def main() -> None:
-        server = LiveServer(bound_socket(), Access(), LiveView.of_recording(Recording.read(recorded)))
-        await server.start()
-        assert (await get(server.address))[0] == 200
-        async with live_page(server.address) as page:
-            assert page.hello == {
-                "kind": "hello",
-                "version": 2,
-                "title": "patrol",
-                "live": False,
-                "can": ["why"],
-            }
-            await page.event("ended", code=0)
-            texts = [each["text"] for each in page.records if each["kind"] == "text"]
-            assert texts == [f"at {index}" for index in range(3000)]
-            frames = [each for each in page.records if each["kind"] == "frame"]
-            assert len(frames) == 3000
-            assert frames[-1]["robots"] == [[29.99, 0.0, 0.0, 90.0, 0, 0]]
-            times = [each["t"] for each in page.records[1:]]
-            assert times == sorted(times)
-            assert (await page.do("pause"))["ok"] is False
-            reply = await page.do("why", question="nothing")
-            assert reply["ok"]
-            assert isinstance(reply["result"], str)
-            assert "\n" not in (await page.do("why", question="gibberish of no kind"))["error"]
-        await server.close()
-
-    asyncio.run(main())
+@asynccontextmanager
+async def served(recorded: Path) -> AsyncIterator[LiveServer]:
+    server = LiveServer(bound_socket(), Access(), LiveView.of_recording(Recording.read(recorded)))
+    await server.start()
+    assert (await get(server.address))[0] == 200
+    yield server
+    await server.close()
 
 
-def test_closing_the_server_waits_for_an_opened_browser(recorded: Path) -> None:
-    async def main() -> None:
-        server = LiveServer(bound_socket(), Access(), LiveView.of_recording(Recording.read(recorded)))
-        await server.start()
+async def test_a_page_receives_the_whole_recording_in_time_order(recorded: Path) -> None:
+    async with served(recorded) as server, live_page(server.address) as page:
+        hello = {"kind": "hello", "version": 2, "title": "patrol", "live": False, "can": ["why"]}
+        assert page.hello == hello
+        await page.event("ended", code=0)
+        assert [each["text"] for each in page.of("text")] == [f"at {index}" for index in range(3000)]
+        frames = page.of("frame")
+        assert len(frames) == 3000
+        assert frames[-1]["robots"] == [[29.99, 0.0, 0.0, 90.0, 0, 0]]
+        times = [each["t"] for each in page.records[1:]]
+        assert times == sorted(times)
+        assert (await page.do("pause"))["ok"] is False
+        assert isinstance(await page.done("why", question="nothing"), str)
+        await page.refused("why", question="gibberish of no kind")
+
+
+async def test_closing_the_server_waits_for_an_opened_browser(recorded: Path) -> None:
+    async with served(recorded) as server:
         closing = asyncio.create_task(server.close(PATIENCE, visited=True))
         await asyncio.sleep(0)
         assert (await get(server.address))[0] == 200
         async with live_page(server.address) as page:
             await page.event("ended", code=0)
             await asyncio.wait_for(closing, PATIENCE)
-
-    asyncio.run(main())
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends a signal of POSIX")

@@ -2,7 +2,6 @@
 
 import gzip
 import json
-import re
 import threading
 from pathlib import Path
 from random import Random
@@ -45,81 +44,76 @@ def test_a_recording_reads_back_unchanged(tmp_path: Path) -> None:
     assert recorder.recording.duration == pytest.approx(0.4)
 
 
-def test_a_recorder_without_a_path_keeps_the_run_in_memory() -> None:
+def texts_of(path: Path) -> list[str]:
+    return [text for _, _, text in Recording.read(path).texts]
+
+
+def test_a_recorder_keeps_the_run_in_memory_without_a_path_alone(tmp_path: Path) -> None:
+    for path, frames in ((None, 1), (tmp_path / "run.jsonl", 0)):
+        recorder = Recorder(path)
+        recorder.frame(0.0, at(0.0))
+        recorder.close()
+        assert len(recorder.recording.frames) == frames
+        assert path is None or recorder.recording == Recording()
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ([*((step * 0.1, 1.0) for step in range(100)), (10.0, 1.5)], [(0.0, 1.0), (9.9, 1.0), (10.0, 1.5)]),
+        ([(0.0, 1.0), (50.0, 1.0)], [(0.0, 1.0), (50.0, 1.0)]),
+        ([(0.0, 1.0), (4.0, 1.0), (5.0, 1.5), (6.0, 2.0)], [(0.0, 1.0), (4.0, 1.0), (5.0, 1.5), (6.0, 2.0)]),
+    ],
+    ids=["a rest costs two frames", "the last rest is kept when the run ends", "frames stay in order"],
+)
+def test_a_robot_rests_and_then_starts_sharply(given, kept: list[tuple[float, float]]) -> None:
     recorder = Recorder()
-    recorder.frame(0.0, at(0.0))
-    recorder.close()
-    assert len(recorder.recording.frames) == 1
-
-
-def test_a_recorder_with_a_path_does_not_fill_the_memory(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path / "run.jsonl")
-    recorder.frame(0.0, at(0.0))
-    recorder.text(0.0, "a", "text")
-    recorder.close()
-    assert recorder.recording == Recording()
-
-
-def test_a_resting_robot_costs_two_frames_and_then_starts_sharply() -> None:
-    recorder = Recorder()
-    for step in range(100):
-        recorder.frame(step * 0.1, at(1.0))
-    recorder.frame(10.0, at(1.5))
-    recorder.close()
-    assert [(frame.t, frame.robots[0].x) for frame in recorder.recording.frames] == [
-        (0.0, 1.0),
-        (9.9, 1.0),
-        (10.0, 1.5),
-    ]
-
-
-def test_the_last_rest_is_recorded_when_the_run_ends() -> None:
-    recorder = Recorder()
-    recorder.frame(0.0, at(1.0))
-    recorder.frame(50.0, at(1.0))
+    for t, x in given:
+        recorder.frame(t, at(x))
     recorder.close()
     recorder.close()
-    assert recorder.recording.duration == 50.0
+    assert [(frame.t, frame.robots[0].x) for frame in recorder.recording.frames] == kept
+    assert recorder.recording.duration == given[-1][0]
 
 
-def test_a_line_truncated_by_a_crash_is_skipped(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl"
-    record(path)
-    path.write_text(path.read_text(encoding="utf-8") + '{"kind": "fra', encoding="utf-8")
-    assert len(Recording.read(path).frames) == 5
-
-
-def test_a_line_truncated_by_a_full_disk_is_skipped(tmp_path: Path) -> None:
+def test_a_line_truncated_by_a_crash_or_a_full_disk_is_skipped(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join(lines) + '{"kind": "fra', encoding="utf-8")
+    assert len(Recording.read(path).frames) == 5
     path.write_text(lines[0] + lines[1][:20] + "\n" + "".join(lines[2:]), encoding="utf-8")
     assert len(Recording.read(path).frames) == 4
 
 
-def test_records_are_in_the_file_during_the_run(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path / "run.jsonl")
+@pytest.mark.parametrize("name", ["run.jsonl", "run.jsonl.gz"])
+def test_records_are_in_the_file_during_the_run(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    recorder = Recorder(path)
     recorder.world({"name": "nowhere"})
     recorder.text(0.1, "ann", "hello")
-    while not (tmp_path / "run.jsonl").read_text(encoding="utf-8").endswith("\n"):
+    while path.stat().st_size < 50 or not (path.suffix == ".gz" or path.read_text().endswith("\n")):
         threading.Event().wait(0.01)
-    assert Recording.read(tmp_path / "run.jsonl").texts == [(0.1, "ann", "hello")]
+    assert Recording.read(path).texts == [(0.1, "ann", "hello")]
     recorder.close()
 
 
-def test_a_long_recording_keeps_its_newest_half(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl"
-    recorder = Recorder(path, limit=20_000)
+@pytest.mark.parametrize(
+    ("name", "limit", "count", "least"),
+    [("run.jsonl", 20_000, 1000, 100), ("run.jsonl.gz", 40_000, 3000, 300)],
+)
+def test_a_long_recording_keeps_its_newest_half(tmp_path, name: str, limit, count: int, least: int) -> None:
+    path, generator = tmp_path / name, Random(1)
+    recorder = Recorder(path, limit=limit)
     recorder.world({"name": "nowhere"})
-    for number in range(1000):
-        recorder.text(number / 10, "ann", f"line {number}")
+    for number in range(count):
+        recorder.text(number / 10, "ann", f"line {number} {generator.random()}")
     recorder.close()
-    assert path.stat().st_size + path.with_name("run.jsonl.1").stat().st_size <= 20_000
-    recording = Recording.read(path)
-    texts = [text for _, _, text in recording.texts]
-    assert recording.world == {"name": "nowhere"}
-    assert len(texts) > 100
-    assert texts == [f"line {number}" for number in range(1000 - len(texts), 1000)]
+    assert path.stat().st_size + path.with_name(f"{name}.1").stat().st_size <= limit
+    assert Recording.read(path).world == {"name": "nowhere"}
+    numbers = [int(text.split()[1]) for text in texts_of(path)]
+    assert len(numbers) > least
+    assert numbers == list(range(count - len(numbers), count))
 
 
 def test_an_older_part_of_another_run_is_not_read(tmp_path: Path) -> None:
@@ -217,28 +211,6 @@ def test_a_compressed_recording_reads_back_the_same(tmp_path: Path) -> None:
         assert len(lines.readlines()) == 8
 
 
-def test_a_compressed_recording_is_in_the_file_during_the_run(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl.gz"
-    recorder = Recorder(path)
-    recorder.world({"name": "nowhere"})
-    recorder.text(0.1, "ann", "hello")
-    while path.stat().st_size < 50:
-        threading.Event().wait(0.01)
-    assert Recording.read(path).texts == [(0.1, "ann", "hello")]
-    recorder.close()
-
-
-def packed_in_pieces(count: int) -> tuple[list[bytes], int]:
-    """The beginning of a compressed recording in pieces of one text each, and the size of the first piece."""
-    form = CompressedLines()
-    pieces = [form.pack([{"kind": "world", "version": 2, "world": {"name": "nowhere"}}])]
-    pieces += [
-        form.pack([{"kind": "text", "t": number, "agent": "ann", "text": "x" * 300_000 + str(number)}])
-        for number in range(count)
-    ]
-    return pieces, len(pieces[0])
-
-
 def test_a_truncated_compressed_recording_is_read_to_its_end(tmp_path: Path) -> None:
     path, whole = tmp_path / "run.jsonl.gz", record(tmp_path / "whole.jsonl.gz").recording
     data = (tmp_path / "whole.jsonl.gz").read_bytes()
@@ -253,29 +225,18 @@ def test_a_truncated_compressed_recording_is_read_to_its_end(tmp_path: Path) -> 
 
 def test_records_after_damage_in_a_compressed_recording_are_read(tmp_path: Path) -> None:
     """A full disk has not taken a piece: the members behind it can be read."""
-    pieces, _ = packed_in_pieces(12)
+    form = CompressedLines()
+    pieces = [form.pack([{"kind": "world", "version": 2, "world": {"name": "nowhere"}}])]
+    for number in range(12):
+        text = "x" * 300_000 + str(number)
+        pieces.append(form.pack([{"kind": "text", "t": number, "agent": "ann", "text": text}]))
     path = tmp_path / "run.jsonl.gz"
     path.write_bytes(b"".join([*pieces[:2], *pieces[3:]]))
-    numbers = [int(text.lstrip("x")) for _, _, text in Recording.read(path).texts]
+    numbers = [int(text.lstrip("x")) for text in texts_of(path)]
     assert numbers[0] == 0
     assert numbers[-1] == 11
     assert 1 not in numbers
     assert len(numbers) >= 8
-
-
-def test_a_long_compressed_recording_keeps_its_newest_half(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl.gz"
-    recorder = Recorder(path, limit=40_000)
-    recorder.world({"name": "nowhere"})
-    generator = Random(1)
-    for number in range(3000):
-        recorder.text(number / 10, "ann", f"line {number} {generator.random()}")
-    recorder.close()
-    older = path.with_name("run.jsonl.gz.1")
-    assert path.stat().st_size + older.stat().st_size <= 40_000
-    texts = [text.split()[1] for _, _, text in Recording.read(path).texts]
-    assert len(texts) > 300
-    assert texts == [str(number) for number in range(3000 - len(texts), 3000)]
 
 
 def test_known_records_of_a_newer_version_are_read_with_a_warning(tmp_path: Path) -> None:
@@ -295,6 +256,12 @@ def test_known_records_of_a_newer_version_are_read_with_a_warning(tmp_path: Path
     assert "version 9" in warning
 
 
+def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"kind": "world", "version": 1, "world": {"name": "nowhere"}}\n', encoding="utf-8")
+    assert Recording.read(path).warnings == []
+
+
 def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     record(path)
@@ -307,30 +274,22 @@ def test_a_truncated_recording_is_read_with_a_warning(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("line", "reason"),
-    [("[1, 2]", "Expected `object`, got `array`"), ("{}", "Object missing required field `kind`")],
+    [
+        ("[1, 2]", "Expected `object`, got `array`"),
+        ("{}", "Object missing required field `kind`"),
+        (
+            '{"kind": "world", "world": {"robots": [{}]}}',
+            "Object missing required field `name` - at `$.robots[0]`",
+        ),
+    ],
 )
-def test_an_invalid_line_is_described(tmp_path: Path, line: str, reason: str) -> None:
+def test_an_invalid_line_is_reported_with_its_location_and_help(tmp_path, line: str, reason: str) -> None:
     path = tmp_path / "run.jsonl"
-    path.write_text(f"{line}\n", encoding="utf-8")
-    with pytest.raises(JacarosError, match=re.escape(f"not a recording: {reason}")):
-        Recording.read(path)
-
-
-def test_a_recording_of_version_1_is_read_without_a_warning(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl"
-    path.write_text('{"kind": "world", "version": 1, "world": {"name": "nowhere"}}\n', encoding="utf-8")
-    assert Recording.read(path).warnings == []
-
-
-def test_errors_in_a_file_have_a_location_and_help(tmp_path: Path) -> None:
-    path = tmp_path / "run.jsonl"
-    path.write_text('{"kind": "world", "world": {"robots": [{}]}}\n\n', encoding="utf-8")
+    path.write_text(f"{line}\n\n", encoding="utf-8")
     with pytest.raises(JacarosError) as refused:
         Recording.read(path)
-    assert str(refused.value) == (
-        f"error: not a recording: Object missing required field `name` - at `$.robots[0]`\n  --> {path}:1\n"
-        "  = help: `jacaros run FILE --record RUN.jsonl` makes one"
-    )
+    help_ = "\n  = help: `jacaros run FILE --record RUN.jsonl` makes one"
+    assert str(refused.value) == f"error: not a recording: {reason}\n  --> {path}:1{help_}"
 
 
 def test_a_text_that_looks_like_a_record_stays_in_its_record() -> None:
@@ -351,39 +310,22 @@ def test_only_the_part_before_is_read_with_a_later_part(tmp_path: Path, older: i
             f'{{"kind": "text", "t": 1, "agent": "ann", "text": "{name}"}}\n',
             encoding="utf-8",
         )
-    texts = [text for _, _, text in Recording.read(tmp_path / "run.jsonl").texts]
-    assert texts == (["run.jsonl.1", "run.jsonl"] if read else ["run.jsonl"])
-
-
-def test_a_robot_that_starts_after_a_rest_has_its_frames_in_order(tmp_path: Path) -> None:
-    recorder = Recorder()
-    for t, x in ((0.0, 1.0), (4.0, 1.0), (5.0, 1.5), (6.0, 2.0)):
-        recorder.frame(t, at(x))
-    recorder.close()
-    assert [frame.t for frame in recorder.recording.frames] == [0.0, 4.0, 5.0, 6.0]
+    assert texts_of(tmp_path / "run.jsonl") == (["run.jsonl.1", "run.jsonl"] if read else ["run.jsonl"])
 
 
 def test_damage_in_front_of_whole_members_is_reported(tmp_path: Path) -> None:
     form = CompressedLines()
     members = []
     for number in range(3):
-        members.append(
-            bytearray(
-                form.pack(
-                    [{"kind": "world", "world": {}}, {"kind": "text", "t": number, "agent": "a", "text": "x"}]
-                )
-                + form.end()
-            )
-        )
+        text = {"kind": "text", "t": number, "agent": "a", "text": "x"}
+        members.append(bytearray(form.pack([{"kind": "world", "world": {}}, text]) + form.end()))
     members[0][15:] = b"\xff" * (len(members[0]) - 15)
     content, broken = unpacked(b"".join(members), 2**20)
     assert broken
     assert content.count(b'"text": "x"') == 2
 
 
-def test_a_compressed_recording_that_contains_too_much_is_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_compressed_recording_that_contains_too_much_is_an_error(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(reading, "LARGEST", 100_000)
     record(tmp_path / "run.jsonl")
     line = b'{"kind": "text", "t": 1, "agent": "ann", "text": "' + b"a" * 1000 + b'"}\n'
@@ -398,9 +340,7 @@ def test_a_compressed_recording_that_contains_too_much_is_an_error(
     assert len(Recording.read(tmp_path / "run.jsonl").texts) == 2001
 
 
-def test_a_large_compressed_recording_of_a_run_is_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_large_compressed_recording_of_a_run_is_read(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(reading, "LARGEST", 1000)
     path, generator = tmp_path / "run.jsonl.gz", Random(1)
     recorder = Recorder(path)

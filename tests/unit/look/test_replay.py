@@ -1,21 +1,19 @@
 """The replay page and the still picture: self-contained, complete, and shown by a real browser."""
 
-import asyncio
 import base64
 import gzip
 import itertools
 import json
 import re
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
-from devtools import Page, chromium, needs_chromium
+from devtools import needs_chromium, replayed
 
-from jacaros.look.page.page import STATIC, bundle, lines_of, replay_html, write_replay
+from jacaros.look.page.page import STATIC, bundle, lines_of, replay_html
 from jacaros.look.page.picture import picture_svg, write_picture
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import RobotView
@@ -23,8 +21,6 @@ from jacaros.look.records.recording import Recording
 from jacaros.robots.world import World
 from jacaros.robots.world.data.ground_truth import RobotState
 from jacaros.runtime.errors import JacarosError
-
-Test = Callable[[Page], Awaitable[None]]
 
 
 def recording(world: str = "house") -> Recording:
@@ -46,22 +42,6 @@ def recording(world: str = "house") -> Recording:
     recorder.event(2.0, "docked", {"robot": "turtlebot", "dock": "dock"})
     recorder.close()
     return recorder.recording
-
-
-def shown(recorded: Recording, path: Path, test: Test, fragment: str = "t=3") -> None:
-    """Test the page of a recording in a browser, which must not report an error."""
-    file = path / "replay.html"
-    write_replay(recorded, file)
-
-    async def drive() -> None:
-        async with chromium() as page:
-            await page.open(f"{file.as_uri()}#{fragment}")
-            await page.wait_for("!document.body.classList.contains('starting')")
-            await page.wait_for(f"document.querySelector('#now').textContent === '0:0{fragment[2:3]}.0'")
-            await test(page)
-            assert page.errors == []
-
-    asyncio.run(drive())
 
 
 def unpacked(page: str) -> list[dict[str, Any]]:
@@ -146,8 +126,8 @@ def test_no_module_ends_the_script_that_it_is_part_of() -> None:
 
 @needs_chromium
 @pytest.mark.parametrize("world", ["house", "two_robots"])
-def test_a_browser_shows_the_run_at_a_moment(tmp_path: Path, world: str) -> None:
-    async def test(page: Page) -> None:
+async def test_a_browser_shows_the_run_at_a_moment(world: str) -> None:
+    async with replayed(recording(world), more="&theme=dark") as page:
         assert await page.evaluate("document.documentElement.dataset.theme") == "dark"
         assert "70 %" in await page.text("#robots"), "the battery"
         assert "clean(kitchen)" in await page.text("#agents")
@@ -156,24 +136,20 @@ def test_a_browser_shows_the_run_at_a_moment(tmp_path: Path, world: str) -> None
         assert "docked at dock" in log
         assert await page.evaluate("document.querySelector('#notice').hidden")
 
-    shown(recording(world), tmp_path, test, "t=3&theme=dark")
-
 
 @needs_chromium
-def test_the_map_is_drawn_and_a_click_selects_a_robot(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_the_map_is_drawn_and_a_click_selects_a_robot() -> None:
+    async with replayed(recording()) as page:
         colours = """new Set(new Uint32Array(document.querySelector("#map canvas").getContext("2d")
             .getImageData(0, 0, 800, 600).data.buffer)).size"""
         assert await page.evaluate(colours) > 10
         await page.click(".robot")
         await page.wait_for("document.querySelector('.robot').getAttribute('aria-pressed') === 'true'")
 
-    shown(recording(), tmp_path, test)
-
 
 @needs_chromium
-def test_keys_move_through_time(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_keys_move_through_time() -> None:
+    async with replayed(recording()) as page:
         for key, now in (
             ("ArrowRight", "0:04.0"),
             ("ArrowLeft", "0:03.0"),
@@ -189,12 +165,12 @@ def test_keys_move_through_time(tmp_path: Path) -> None:
         await page.wait_for("document.querySelector('#play').getAttribute('aria-label') === 'Play'")
         assert await page.text("#now") == "0:04.9", "it stops at the end"
 
-    shown(recording(), tmp_path, test)
-
 
 @needs_chromium
-def test_marks_are_reachable_by_keyboard_and_have_texts(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_marks_are_reachable_by_keyboard_and_have_texts() -> None:
+    run = recording()
+    run.events.append((4.0, "bump", {"robot": "turtlebot", "side": "front"}))
+    async with replayed(run) as page:
         await page.wait_for("document.querySelectorAll('.marks .mark').length === 2")
         await page.evaluate("document.querySelector('.marks .mark').focus()")
         assert await page.text(".tip") == "0:02.0 docked: docked at dock"
@@ -206,26 +182,20 @@ def test_marks_are_reachable_by_keyboard_and_have_texts(tmp_path: Path) -> None:
         await page.wait_for("document.querySelector('#now').textContent === '0:04.0'")
         assert await page.texts("footer .legend li") == ["failure", "docked"]
 
-    run = recording()
-    run.events.append((4.0, "bump", {"robot": "turtlebot", "side": "front"}))
-    shown(run, tmp_path, test)
-
 
 @needs_chromium
-def test_a_run_without_robots_has_no_map(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
-        assert not await page.evaluate("document.querySelector('#map').checkVisibility()")
-        assert "!greet" in await page.text("#agents")
-
+async def test_a_run_without_robots_has_no_map() -> None:
     recorder = Recorder()
     recorder.event(1.0, "goal", {"agent": "a", "goal": "!greet", "state": "pursued", "id": 1, "intention": 1})
     recorder.text(3.0, "a", "hello")
     recorder.close()
-    shown(recorder.recording, tmp_path, test)
+    async with replayed(recorder.recording) as page:
+        assert not await page.evaluate("document.querySelector('#map').checkVisibility()")
+        assert "!greet" in await page.text("#agents")
 
 
 @needs_chromium
-def test_the_reason_of_nested_goals_is_shown_once(tmp_path: Path) -> None:
+async def test_the_reason_of_nested_goals_is_shown_once() -> None:
     recorder = Recorder()
     why = "action_failed, no way (robot.asl:4)\nstep: navigate_to(5,5,0)"
     goals = (("!work", why), ("!tour", why), ("!other", "stuck (robot.asl:9)"))
@@ -235,8 +205,7 @@ def test_the_reason_of_nested_goals_is_shown_once(tmp_path: Path) -> None:
         failed = {"agent": "a", "goal": goal, "state": "failed", "id": number, "why": reason}
         recorder.event(2.0, "goal", failed)
     recorder.close()
-
-    async def test(page: Page) -> None:
+    async with replayed(recorder.recording, 2.0) as page:
         found = await page.evaluate(
             "[...document.querySelectorAll('#agents li.failed')].map((each) => "
             "[each.querySelector('code').textContent, each.querySelector('.why')?.innerText ?? ''])"
@@ -246,8 +215,6 @@ def test_the_reason_of_nested_goals_is_shown_once(tmp_path: Path) -> None:
             ["!tour", "action_failed, no way (robot.asl:4)"],
             ["!other", "stuck (robot.asl:9)"],
         ]
-
-    shown(recorder.recording, tmp_path, test, "t=2")
 
 
 def test_the_picture_is_svg_with_path_dock_and_rooms() -> None:
@@ -285,21 +252,19 @@ def test_a_world_with_any_name_is_shown() -> None:
 
 
 @needs_chromium
-def test_the_valid_parts_of_broken_records_are_shown(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
-        assert "hello" in await page.text("#log")
-        assert (await page.text("#notice")).startswith("1 record is not shown: goal: ")
-
+async def test_the_valid_parts_of_broken_records_are_shown() -> None:
     recorder = Recorder()
     recorder.event(1.0, "goal", {"agent": "a", "goal": "!go", "state": "failed", "why": 5})
     recorder.text(3.0, "a", "hello")
-    shown(recorder.recording, tmp_path, test)
+    async with replayed(recorder.recording) as page:
+        assert "hello" in await page.text("#log")
+        assert (await page.text("#notice")).startswith("1 record is not shown: goal: ")
 
 
 @needs_chromium
 @pytest.mark.parametrize(("width", "height"), [(1400, 900), (900, 800), (390, 844)])
-def test_the_page_fits_its_window(tmp_path: Path, width: int, height: int) -> None:
-    async def test(page: Page) -> None:
+async def test_the_page_fits_its_window(width: int, height: int) -> None:
+    async with replayed(recording("two_robots")) as page:
         await page.resize(width, height, mobile=width < 500)
         await page.wait_for(f"innerWidth === {width}")
         await page.wait_for("document.querySelector('#map canvas').width > 100")
@@ -307,12 +272,10 @@ def test_the_page_fits_its_window(tmp_path: Path, width: int, height: int) -> No
         play = await page.evaluate("document.querySelector('#play').getBoundingClientRect().bottom")
         assert play <= height, "the controls are seen without scrolling"
 
-    shown(recording("two_robots"), tmp_path, test)
-
 
 @needs_chromium
-def test_every_button_is_reachable_by_the_tab_key(tmp_path: Path) -> None:
-    async def test(page: Page) -> None:
+async def test_every_button_is_reachable_by_the_tab_key() -> None:
+    async with replayed(recording("two_robots")) as page:
         reached = set()
         for _ in range(30):
             await page.press("Tab")
@@ -328,5 +291,3 @@ def test_every_button_is_reachable_by_the_tab_key(tmp_path: Path) -> None:
             " && !each.innerText && !each.ariaLabel && !each.labels?.length).map((each) => each.outerHTML)"
         )
         assert unnamed == []
-
-    shown(recording("two_robots"), tmp_path, test)

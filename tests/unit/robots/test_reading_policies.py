@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any, ClassVar
 
 import pytest
-from jacaros.artifacts.streams import ReadingPolicy
 from robot_lab import Lab, Watcher, made
 
 from jacaros.artifacts import ArtifactId, Structure, operation
@@ -15,8 +14,7 @@ from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.mapping.decoding import Values
-from jacaros.robots.streams import ReadingPolicy
+from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.clock import VirtualClock
 from jacaros.runtime.trace import Cause
 

@@ -39,12 +39,6 @@ AGENT_CODE = """\
 """
 
 
-def test_code_lines_of_a_program_have_no_comments_and_no_blank_lines(tmp_path: Path) -> None:
-    file = counted(tmp_path, "water.asl", AGENT)
-    assert file.code == AGENT_CODE
-    assert (file.lines, file.counts.code_lines) == (9, 4)
-
-
 PYTHON = '''\
 #!/usr/bin/env python3
 """Über: a module.
@@ -87,12 +81,6 @@ its end"""
 '''
 
 
-def test_code_lines_of_python_have_no_docstrings_either(tmp_path: Path) -> None:
-    file = counted(tmp_path, "artifacts.py", PYTHON)
-    assert file.code == PYTHON_CODE
-    assert (file.lines, file.counts.code_lines) == (26, 10)
-
-
 YAML = """\
 # A robot.
 properties:
@@ -121,12 +109,6 @@ properties:
 """
 
 
-def test_code_lines_of_a_mapping_have_no_comments(tmp_path: Path) -> None:
-    file = counted(tmp_path, "robot.yaml", YAML)
-    assert file.code == YAML_CODE
-    assert (file.lines, file.counts.code_lines) == (13, 9)
-
-
 PROJECT = """\
 // A garden.
 mas garden {
@@ -144,10 +126,20 @@ mas garden {
 """
 
 
-def test_code_lines_of_a_project_have_no_comments(tmp_path: Path) -> None:
-    file = counted(tmp_path, "garden.jcm", PROJECT)
-    assert file.code == PROJECT_CODE
-    assert (file.lines, file.counts.code_lines) == (8, 4), "the last line has no line feed"
+@pytest.mark.parametrize(
+    ("name", "text", "code", "lines"),
+    [
+        ("water.asl", AGENT, AGENT_CODE, (9, 4)),
+        ("artifacts.py", PYTHON, PYTHON_CODE, (26, 10)),
+        ("robot.yaml", YAML, YAML_CODE, (13, 9)),
+        ("garden.jcm", PROJECT, PROJECT_CODE, (8, 4)),  # its last line has no line feed
+    ],
+    ids=["program", "python", "mapping", "project"],
+)
+def test_code_lines_have_no_comments_docstrings_and_blank_lines(tmp_path, name, text, code, lines) -> None:
+    file = counted(tmp_path, name, text)
+    assert file.code == code
+    assert (file.lines, file.counts.code_lines) == lines
 
 
 def test_both_sizes_are_those_of_gzip_at_its_highest_level(tmp_path: Path) -> None:
@@ -182,9 +174,7 @@ def listing(name: str) -> str:
 
 
 @pytest.mark.parametrize(("lines", "artifacts"), SCENARIOS.items())
-def test_physical_lines_follow_the_rule_of_the_thesis(
-    tmp_path: Path, lines: int, artifacts: list[str]
-) -> None:
+def test_physical_lines_follow_the_rule_of_the_thesis(tmp_path: Path, lines: int, artifacts) -> None:
     (tmp_path / "agent.asl").write_text("!go.\n+!go.\n")
     for name in artifacts:
         (tmp_path / f"{name}.py").write_text(listing(name))

@@ -3,8 +3,6 @@
 import gzip
 from pathlib import Path
 
-import pytest
-
 from jacaros.look.metrics import Counts, Group, ProgramMetrics, measure
 
 AGENT = """\
@@ -34,13 +32,6 @@ thirsty(P) :- dry(P) & not watered(P).
 ^!water_all[state(suspended)] <- .wait({+rain(_)}); .send(boss, achieve, refill).
 +?place(P, 1, 2).
 """
-"""Goals: water_all, look around, use_artifact, place. Event: rain. Operations: move_to, pour, rest.
-Besides: tank, thirsty, dry, watered, each, and the variables P, L, X."""
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    return tmp_path
 
 
 def measured(folder: Path, **texts: str) -> ProgramMetrics:
@@ -54,26 +45,19 @@ def names(program: ProgramMetrics, group: Group) -> set[str]:
     return {name for file in program.files[group] for name in file.identifiers}
 
 
-def test_names_of_goals_events_and_operations_count_once(folder: Path) -> None:
-    program = measured(folder, gardener__asl=AGENT)
-    goals = {"water_all", "look around", "use_artifact", "place"}
-    assert names(program, Group.AGENTS) == goals | {"rain"} | {"move_to", "pour", "rest"}
-    assert program.counts(Group.AGENTS).identifiers == 8
-
-
-def test_beliefs_rules_labels_and_variables_count_as_names(folder: Path) -> None:
-    program = measured(folder, gardener__asl=AGENT)
+def test_names_of_an_agent_count_once_and_identifiers_are_goals_events_and_operations(tmp_path: Path) -> None:
+    program = measured(tmp_path, gardener__asl=AGENT)
     (file,) = program.files[Group.AGENTS]
-    others = {"tank", "thirsty", "dry", "watered", "each", "P", "L", "X"}
-    assert file.names == file.identifiers | others
-    assert program.counts(Group.AGENTS).names == 16
+    goals = {"water_all", "look around", "use_artifact", "place"}
+    assert file.identifiers == goals | {"rain"} | {"move_to", "pour", "rest"}
+    beliefs, variables = {"tank", "thirsty", "dry", "watered"}, {"P", "L", "X"}
+    assert file.names == file.identifiers | beliefs | {"each"} | variables
+    assert (program.counts(Group.AGENTS).identifiers, program.counts(Group.AGENTS).names) == (8, 16)
 
 
-def test_the_names_of_an_included_file_belong_to_it(folder: Path) -> None:
+def test_the_names_of_an_included_file_belong_to_it(tmp_path: Path) -> None:
     program = measured(
-        folder,
-        a__asl='{ include("b.asl") }\n!go.\n+!go <- !help.\n',
-        b__asl="+!help <- ring.\n",
+        tmp_path, a__asl='{ include("b.asl") }\n!go.\n+!go <- !help.\n', b__asl="+!help <- ring.\n"
     )
     assert [(file.path.name, file.identifiers) for file in program.files[Group.AGENTS]] == [
         ("a.asl", {"go", "help"}),
@@ -117,12 +101,10 @@ class Pump(object):
 
 async def run(): pass
 '''
-"""Classes and functions: Pump, __init__, made, run. Parameters: node, pipes, speed, rest, angle. Attributes: node, x.
-Variables: LIMIT, flow, first, second, others, total, each, file, found, error, head, tail, word."""
 
 
-def test_names_bound_by_python_code_count_once(folder: Path) -> None:
-    program = measured(folder, a__asl="!go.\n+!go.\n", artifacts__py=PYTHON)
+def test_names_bound_by_python_code_count_once(tmp_path: Path) -> None:
+    program = measured(tmp_path, a__asl="!go.\n+!go.\n", artifacts__py=PYTHON)
     functions = {"Pump", "__init__", "made", "run"}
     parameters = {"node", "pipes", "speed", "rest", "angle"}
     variables = {
@@ -150,14 +132,14 @@ artifacts:
 """
 
 
-def test_a_mapping_file_names_artifacts_and_what_they_offer(folder: Path) -> None:
-    program = measured(folder, a__asl="!go.\n+!go.\n", robot__yaml=MAPPING)
+def test_a_mapping_file_names_artifacts_and_what_they_offer(tmp_path: Path) -> None:
+    program = measured(tmp_path, a__asl="!go.\n+!go.\n", robot__yaml=MAPPING)
     assert names(program, Group.ARTIFACTS) == {"base", "pose", "bump", "turn", "angle", "speed", "stop"}
 
 
-def test_configuration_names_agents_places_and_things(folder: Path) -> None:
+def test_configuration_names_agents_places_and_things(tmp_path: Path) -> None:
     program = measured(
-        folder,
+        tmp_path,
         garden__jcm='mas garden { agent ann : a.asl agent bob : a.asl { instances: 2 } world: "beds.yaml"\n'
         "  workspace shed { artifact clock : Clock } }\n",
         a__asl="!go.\n+!go.\n",
@@ -167,12 +149,12 @@ def test_configuration_names_agents_places_and_things(folder: Path) -> None:
     assert names(program, Group.WORLDS) == {"beds", "lawn", "mower"}
 
 
-def test_a_group_is_compressed_together_and_a_total_adds_groups(folder: Path) -> None:
+def test_a_group_is_compressed_together_and_a_total_adds_groups(tmp_path: Path) -> None:
     texts = {"a.asl": "!go.\n+!go <- move.\n", "b.asl": "!stop.\n+!stop <- move.\n"}
     code = "x = 1\n"
     for name, text in texts.items():
-        (folder / name).write_text(text)
-    program = measured(folder, artifacts__py=code)
+        (tmp_path / name).write_text(text)
+    program = measured(tmp_path, artifacts__py=code)
     agents = program.counts(Group.AGENTS)
     whole = "".join(texts.values()).encode()
     assert agents == Counts(3, 3, 4, 4, *[len(gzip.compress(whole, 9, mtime=0))] * 2, 2)

@@ -6,21 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from jacaros.look.metrics import (
-    CountedFile,
-    Group,
-    ProgramMetrics,
-    Series,
-    Table,
-    as_csv,
-    as_markdown,
-    as_text,
-    bar_chart,
-    file_table,
-    group_table,
-    measure_chart,
-    measure_table,
-)
+from jacaros.look import metrics
+from jacaros.look.metrics import CountedFile, Group, ProgramMetrics, Series, Table, as_text
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -51,7 +38,7 @@ PATROL = ProgramMetrics(
 
 
 def test_a_table_has_a_row_for_each_program_and_a_column_for_each_group() -> None:
-    assert as_text(measure_table([SQUARE, PATROL], "lines")) == (
+    assert as_text(metrics.measure_table([SQUARE, PATROL], "lines")) == (
         "Physical lines\n"
         "program    agents  artifacts  total  baseline  projects  worlds  library  baseline library\n"
         "02_square      18          0     18        73         0       0        0                 0\n"
@@ -61,7 +48,7 @@ def test_a_table_has_a_row_for_each_program_and_a_column_for_each_group() -> Non
 
 def test_columns_of_baselines_appear_only_with_a_baseline() -> None:
     alone = ProgramMetrics("01_alone", {Group.AGENTS: SQUARE.files[Group.AGENTS]})
-    assert as_text(measure_table([alone], "names")) == (
+    assert as_text(metrics.measure_table([alone], "names")) == (
         "Identifiers, with beliefs and variables of agents\n"
         "program   agents  artifacts  total  projects  worlds  library\n"
         "01_alone       2          0      2         0       0        0"
@@ -69,8 +56,8 @@ def test_columns_of_baselines_appear_only_with_a_baseline() -> None:
 
 
 def test_external_figures_get_a_column() -> None:
-    table = measure_table([SQUARE, PATROL], "code_lines").with_column("thesis | Python", [110, "536"])
-    assert as_markdown(table) == (
+    table = metrics.measure_table([SQUARE, PATROL], "code_lines").with_column("thesis | Python", [110, "536"])
+    assert metrics.as_markdown(table) == (
         "| program | agents | artifacts | total | baseline | projects | worlds | library | baseline library "
         "| thesis \\| Python |\n"
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |\n"
@@ -83,7 +70,7 @@ def test_external_figures_get_a_column() -> None:
 
 def test_csv_has_a_line_for_each_group_with_files() -> None:
     agents, baseline = (len(gzip.compress(b"x\n" * lines, 9, mtime=0)) for lines in (18, 73))
-    assert as_csv(group_table([SQUARE])) == (
+    assert metrics.as_csv(metrics.group_table([SQUARE])) == (
         "program,group,files,identifiers,names,lines,code_lines,gzip_bytes,gzip_code_bytes\n"
         f"02_square,agents,1,1,2,18,18,{agents},{agents}\n"
         f"02_square,total,1,1,2,18,18,{agents},{agents}\n"
@@ -92,7 +79,7 @@ def test_csv_has_a_line_for_each_group_with_files() -> None:
 
 
 def test_a_table_shows_the_files() -> None:
-    rows = file_table([PATROL]).rows
+    rows = metrics.file_table([PATROL]).rows
     assert [row[:6] for row in rows] == [
         ("04_patrol", "agents", "robot.asl", 1, 2, 98),
         ("04_patrol", "artifacts", "artifacts.py", 1, 2, 20),
@@ -121,7 +108,7 @@ def bars(svg: str) -> list[tuple[str, float, float]]:
 
 
 def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
-    svg = measure_chart([SQUARE, PATROL], "lines")
+    svg = metrics.measure_chart([SQUARE, PATROL], "lines")
     drawn = bars(svg)
     assert [title for title, _, _ in drawn] == [
         "02_square, agents: 18",
@@ -144,6 +131,6 @@ def test_a_chart_has_bars_in_proportion_with_artifacts_on_agents() -> None:
 
 
 def test_a_chart_escapes_names_and_accepts_zeros() -> None:
-    svg = bar_chart("<&>", ['a"<b'], [[Series("x & y", (0,))], [Series("z", (3,))]])
+    svg = metrics.bar_chart("<&>", ['a"<b'], [[Series("x & y", (0,))], [Series("z", (3,))]])
     assert texts(svg) == ["<&>", "z", "0", "1", "2", "3", "4", "5", "0", "3", 'a"<b']
-    assert bar_chart("none", [], []).count("<rect") == 0
+    assert metrics.bar_chart("none", [], []).count("<rect") == 0

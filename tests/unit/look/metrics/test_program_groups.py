@@ -96,9 +96,7 @@ def test_plans_of_the_package_are_library_code(tmp_path: Path) -> None:
         {"a.asl": AGENT, "artifacts.py": "from jacaros.robots.artifacts.battery import ArtSimBattery\n"},
     ],
 )
-def test_artifacts_of_the_package_are_library_code_with_what_they_import(
-    tmp_path: Path, files: dict[str, str]
-) -> None:
+def test_artifacts_of_the_package_are_library_code_with_what_they_import(tmp_path: Path, files) -> None:
     found = library(measured(tmp_path, files))
     assert {
         "robots/artifacts/battery.py",
@@ -110,12 +108,8 @@ def test_artifacts_of_the_package_are_library_code_with_what_they_import(
 
 
 def test_a_shipped_mapping_is_library_code_with_its_reader(tmp_path: Path) -> None:
-    found = library(
-        measured(
-            tmp_path,
-            {"a.asl": AGENT, "a.jcm": 'mas a { agent a mapping: "turtlebot4.yaml" world: "house" }\n'},
-        )
-    )
+    project = 'mas a { agent a mapping: "turtlebot4.yaml" world: "house" }\n'
+    found = library(measured(tmp_path, {"a.asl": AGENT, "a.jcm": project}))
     assert {"robots/mappings/turtlebot4.yaml", "robots/mapping/artifact.py"} <= found
     assert not any(name.endswith("nav2.yaml") or name.startswith("robots/world/") for name in found)
 
@@ -154,13 +148,10 @@ def test_libraries_of_a_baseline_are_counted_separately(tmp_path: Path) -> None:
     assert without.files[Group.BASELINE_LIBRARY] == ()
 
 
-def test_a_library_that_is_not_installed_is_reported(tmp_path: Path) -> None:
+def test_a_library_that_is_not_installed_and_a_missing_baseline_are_reported(tmp_path: Path) -> None:
     write(tmp_path, {"agent/a.asl": AGENT, "patrol.py": "import no_such_library.trees\n"})
     with pytest.raises(MetricsError, match="cannot be counted: `no_such_library`"):
         measure([tmp_path / "agent"], [[tmp_path / "patrol.py"]], libraries=["no_such_library"])
-
-
-def test_each_program_needs_a_baseline(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="expected 2 baselines, found 1"):
         measure([tmp_path, tmp_path], [[tmp_path]])
 
@@ -192,13 +183,11 @@ def test_files_that_include_each_other_are_reported(tmp_path: Path) -> None:
 
 
 def test_imports_for_type_checkers_do_not_count_as_library_code(tmp_path: Path) -> None:
-    text = (
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import py_trees\nelse:\n    import json\n"
-    )
+    checked = "if TYPE_CHECKING:\n    import py_trees\nelse:\n    import json\n"
+    text = f"from typing import TYPE_CHECKING\n{checked}"
     program = measured(tmp_path, {"a.asl": AGENT, "artifacts.py": text})
     assert program.files[Group.LIBRARY] == ()
-    program = measured(
-        tmp_path, {"artifacts.py": "def late():\n    import jacaros.artifacts.behaviour_trees.act\n"}
-    )
+    late = "def late():\n    import jacaros.artifacts.behaviour_trees.act\n"
+    program = measured(tmp_path, {"artifacts.py": late})
     found = {file.path.name for file in program.files[Group.LIBRARY]}
     assert {"act.py", "behaviour.py"} <= found, "those of jacaros and of py_trees"
