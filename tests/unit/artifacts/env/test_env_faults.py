@@ -47,7 +47,6 @@ RAISED = [
         "ExceptionGroup in operation {op} of it: several (1 sub-exception)",
     ),
 ]
-AS_A_COROUTINE = {"StopIteration": "RuntimeError in operation {op} of it: coroutine raised StopIteration"}
 
 
 @pytest.fixture(autouse=True)
