@@ -3,7 +3,7 @@
 import asyncio
 import math
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -131,7 +131,7 @@ class Lab:
     """
 
     def __init__(self, clock: VirtualClock, backend: Backend, world: World | None) -> None:
-        self.clock, self.backend, self.world = clock, backend, world
+        self.clock, self.backend, self.world = clock, backend, cast(World, world)  # of a lab that has one
         self.environment = Environment(clock, {"ros": backend}, log=self.take_log)
         self.workspace = self.environment.workspace("/main")
         self.logged: list[str] = []
@@ -212,14 +212,12 @@ class Lab:
 
     def pose(self, robot: str | None = None) -> tuple[float, float, float]:
         """The robot's true pose: metres, metres, degrees."""
-        assert self.world is not None
         assert self.sim is not None
         self.sim.time.catch_up()
         x, y, yaw = self.world.robot(robot).pose
         return x, y, math.degrees(yaw)
 
     def speed(self, robot: str | None = None) -> tuple[float, float]:
-        assert self.world is not None
         assert self.sim is not None
         self.sim.time.catch_up()
         state = self.world.robot(robot)

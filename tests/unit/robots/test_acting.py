@@ -1,6 +1,7 @@
 """Operations over actions: results, feedback, reasons, and dropping."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -63,13 +64,7 @@ async def test_a_server_that_aborts_gives_the_reason(
 
 
 def test_a_code_may_be_a_message_as_in_moveit() -> None:
-    class Code:
-        val = -2
-
-    class Result:
-        error_code = Code()
-
-    assert error_code(Result()) == -2
+    assert error_code(SimpleNamespace(error_code=SimpleNamespace(val=-2))) == -2
 
 
 async def test_a_goal_cancelled_by_another_client_is_canceled(lab: Lab) -> None:
@@ -134,10 +129,8 @@ async def test_a_missing_server_is_unavailable_as_soon_with_a_guard(lab: Lab) ->
 
 
 async def test_a_server_that_neither_accepts_nor_rejects_in_time_has_its_goal_cancelled(lab: Lab) -> None:
-    server = FakeServer(lab)
-    server.accepting = ACCEPTANCE + 2
-    artifact = await lab.make(Navigator)
-    await failed(lab.begin(artifact, "go", 3, Out()), f"timeout({ACCEPTANCE:g})")
+    server, going = await begun(lab, "go", after=0, accepting=ACCEPTANCE + 2)
+    await failed(going, f"timeout({ACCEPTANCE:g})")
     await lab.sleep(3)
     assert server.events[:2] == [(7, "accepted 0"), (7, "cancel 0")]
 
@@ -201,12 +194,8 @@ async def test_two_goals_are_pursued_side_by_side_and_one_of_them_dropped(lab: L
 
 
 async def test_feedback_during_the_end_of_a_dropped_goal_is_ignored(lab: Lab) -> None:
-    server = FakeServer(lab)
-    server.ending = 1
-    artifact = await lab.make(Navigator)
-    watcher = lab.watch(artifact)
-    going = lab.begin(artifact, "go", 3, Out())
-    await lab.sleep(1)
+    server, going = await begun(lab, "go", ending=1)
+    watcher = lab.watch(going.execution.request.artifact)
     server.goals[0].feedback(distance=2)
     await going.drop(0.5)
     server.goals[0].feedback(distance=1)

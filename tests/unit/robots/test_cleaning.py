@@ -82,7 +82,6 @@ async def test_a_tool_rests_while_the_intention_is_suspended_and_stops_at_the_en
 
 @pytest.mark.world("house")
 async def test_the_world_logs_each_task_with_the_true_place(lab: Lab) -> None:
-    assert lab.world is not None
     cleaner = await lab.make(ArtCleaning)
     await lab.do(cleaner, "clean", 2)
     (event,) = [event for event in lab.world.log if event.kind == "task"]

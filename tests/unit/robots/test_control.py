@@ -126,18 +126,22 @@ def test_a_motion_ends_although_wheels_stick_below_a_speed(late: int, stuck: Vel
     assert math.degrees(base.pose.yaw) == pytest.approx(math.degrees(2), abs=1.5)
 
 
+def furthest(base: Base, maneuver: Maneuver) -> float:
+    """Drive a maneuver to its end; the greatest x on the way."""
+    reached = 0.0
+    maneuver.begin(base.model.pose)
+    while (step := maneuver.command(base.outlook())) is not None:
+        base.drive(step)
+        reached = max(reached, base.pose.x)
+    return reached
+
+
 @pytest.mark.parametrize("late", [0, 2, 6])
 @pytest.mark.parametrize("acceleration", [0.1, 0.3, 3.0])
 def test_a_drive_brakes_by_the_acceleration_that_it_has_measured(late: int, acceleration: float) -> None:
     base = Base(late, acceleration=acceleration)
-    furthest = 0.0
-    maneuver = Straight(2.0)
-    maneuver.begin(base.model.pose)
-    while (step := maneuver.command(base.outlook())) is not None:
-        base.drive(step)
-        furthest = max(furthest, base.pose.x)
+    assert furthest(base, Straight(2.0)) < 2.05
     assert base.pose.x == pytest.approx(2, abs=0.01)
-    assert furthest < 2.05
     assert base.model.linear.acceleration == pytest.approx(min(0.8, acceleration), rel=0.45)
 
 
@@ -149,13 +153,7 @@ def test_the_delay_is_measured_from_commands_and_odometry(late: int) -> None:
 
 
 def test_a_robot_whose_delay_is_unknown_does_not_overshoot_a_short_way() -> None:
-    base, furthest = Base(12), 0.0
-    maneuver = Straight(0.1)
-    maneuver.begin(base.model.pose)
-    while (step := maneuver.command(base.outlook())) is not None:
-        base.drive(step)
-        furthest = max(furthest, base.pose.x)
-    assert furthest < 0.12
+    assert furthest(Base(12), Straight(0.1)) < 0.12
 
 
 def test_a_drive_takes_hardly_longer_than_the_ramps_allow() -> None:

@@ -68,7 +68,6 @@ async def test_turns_and_poses_are_those_of_the_map(lab: Lab) -> None:
 async def test_robots_share_the_map(lab: Lab, frame: str) -> None:
     wheels = await lab.make(ArtCmdVel, "two", Structure("frame", (frame,)))
     await lab.do(wheels, "driveTo", 2, 0)
-    assert lab.world is not None
     robot = lab.world.robot("two")
     assert abs(robot.x - 2) < 0.05
     assert abs(robot.y) < 0.05

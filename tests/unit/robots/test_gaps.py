@@ -102,10 +102,8 @@ async def test_an_agent_is_notified_of_missing_odometry(lab: Lab) -> None:
 async def test_a_motion_does_not_continue_where_odometry_was_reset(lab: Lab, artifact: ArtifactId) -> None:
     """The robot was started anew: its places have another meaning."""
     moving = await lab.begun(4, artifact, "driveTo", 5, 0)
-    assert lab.sim is not None
     back = disturb(lab, dropped())
     await lab.sleep(2)
-    assert lab.world is not None
     lab.world.robot().odometry.x = 0.0
     back()
     await moving.done

@@ -101,7 +101,6 @@ async def test_driving_to_poses_ends_at_the_poses(lab: Lab) -> None:
 
 
 async def test_a_disturbed_heading_is_corrected_while_driving(lab: Lab) -> None:
-    assert lab.world is not None
     artifact = await lab.make(ArtCmdVel, Structure("speed", (0.3,)))
     driving = await lab.begun(2, artifact, "moveForward", 2)
     robot = lab.world.robot()
@@ -190,7 +189,6 @@ async def test_commands_obey_the_limits_and_never_pause_longer_than_the_base_all
     assert max(angular for _, _, angular in lab.commands) <= math.pi
     times = [time for time, _, _ in lab.commands]
     assert max(b - a for a, b in pairwise(times)) <= 0.2
-    assert lab.world is not None
     assert [event.kind for event in lab.world.log] == []
 
 

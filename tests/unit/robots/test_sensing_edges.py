@@ -12,10 +12,9 @@ from jacaros.robots.kit.faults import Faults, Stamps
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
-from jacaros.robots.mapping.decoding import Values, converted, extractor
+from jacaros.robots.mapping.decoding import Values, converted
 from jacaros.robots.mapping.fields import Conversion, Line, conversion
 from jacaros.robots.mapping.file import read_mapping
-from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.streams import ReadingPolicy
 from jacaros.runtime.clock import VirtualClock, run
@@ -113,19 +112,6 @@ def test_a_conversion_of_units_is_followed_by_scale_and_offset() -> None:
 def test_rounding_down_forgives_the_error_of_a_multiplication(share: float, percent: int) -> None:
     down = converted(Conversion(line=Line(100.0), digits=0, floor=True))
     assert down(share) == percent
-
-
-def test_an_echo_too_close_to_measure_has_the_least_range_and_none_the_greatest() -> None:
-    text = "properties: {r: {topic: t, fields: [{path: ranges, sample: 5, otherwise: range_max}]}}"
-    part = read_mapping(text).artifacts["mapping"].properties[0]
-    extract = extractor(part, "sensor_msgs/msg/LaserScan", stored_interfaces(), [])
-    assert extract is not None
-    ranges = [-math.inf, 1.0, math.inf, 2.0, math.nan]
-    message = stored_interfaces().message(
-        "sensor_msgs/msg/LaserScan", ranges=ranges, range_min=0.125, range_max=8.0
-    )
-    [row] = extract(message)
-    assert row.values == (0.125, 1.0, 8.0, 2.0, 8.0)
 
 
 def test_operations_may_share_the_name_of_their_feedback_but_not_that_of_a_property() -> None:

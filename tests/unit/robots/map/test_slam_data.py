@@ -82,20 +82,15 @@ async def test_the_agents_cell_is_shown_and_the_map_can_be_forgotten(lab: Lab) -
     assert (await lab.call(artifact, "getRoute")).reason == "no_goal"
 
 
-async def test_the_range_of_view_signals_each_cell_as_in_the_thesis(lab: Lab) -> None:
+async def test_the_range_of_view_signals_each_cell_as_in_the_thesis(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     """Listing B.1: column by column, and again for a cell that was in view before."""
-    artifact = await lab.make(ArtSlamData)
-    watcher = lab.watch(artifact)
     await label(lab, artifact, ["..", ".#"])
     await lab.do(artifact, "getVisionRange", 0, 0, 1)
     await lab.do(artifact, "getVisionRange", 1, 1, 0)
-    assert [arguments for _, arguments in watcher.signals] == [
-        (0, 0, "free"),
-        (0, 1, "free"),
-        (1, 0, "free"),
-        (1, 1, "obstacle"),
-        (1, 1, "obstacle"),
-    ]
+    cells = [(0, 0, "free"), (0, 1, "free"), (1, 0, "free"), (1, 1, "obstacle"), (1, 1, "obstacle")]
+    assert [arguments for _, arguments in watcher.signals] == cells
     assert watcher.holds("currentRange") == [([cell(1, 1, "obstacle")],)]
 
 
@@ -142,19 +137,16 @@ async def test_steps_move_the_agent_and_turn_it(lab: Lab, artifact: ArtifactId, 
     assert (await lab.call(artifact, "updatePos", "up", 1, 0)).reason == 'unknown_direction("up")'
 
 
-async def test_the_distance_is_that_since_the_last_question(lab: Lab) -> None:
-    artifact = await lab.make(ArtSlamData, Structure("cell_size", (0.5,)))
-    out = Out()
+@made(ArtSlamData, Structure("cell_size", (0.5,)))
+async def test_the_distance_is_that_since_the_last_question(lab: Lab, artifact: ArtifactId) -> None:
+    out, told = Out(), []
     for _ in range(3):
         await lab.do(artifact, "moveUp")
-    await lab.do(artifact, "updatePos", 4, 3)
-    await lab.do(artifact, "getDistance", out)
-    assert out.value == 3.5
-    await lab.do(artifact, "getDistance", out)
-    assert out.value == 0
-    await lab.do(artifact, "updatePos", 1, 7)
-    await lab.do(artifact, "getDistance", out)
-    assert out.value == 2.5
+    for place in ((4, 3), (4, 3), (1, 7)):
+        await lab.do(artifact, "updatePos", *place)
+        await lab.do(artifact, "getDistance", out)
+        told.append(out.value)
+    assert told == [3.5, 0, 2.5]
 
 
 async def test_the_map_is_printed_north_at_the_top(lab: Lab) -> None:
@@ -184,13 +176,12 @@ async def test_a_route_leads_round_obstacles_to_the_goal_and_shows_the_direction
     assert out.value == [cell(2, 0), cell(2, 1)]
 
 
-async def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route(lab: Lab) -> None:
-    artifact = await lab.make(ArtSlamData)
-    watcher = lab.watch(artifact)
+async def test_a_goal_that_cannot_be_reached_fails_and_leaves_the_route(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
     await label(lab, artifact, [".#G"])
-    assert (await lab.call(artifact, "getRoute")).reason == "no_route(2,0)"
-    assert (await lab.call(artifact, "getRoute", 1, 0)).reason == "no_route(1,0)"
-    assert (await lab.call(artifact, "getRoute", 7, 7)).reason == "no_route(7,7)"
+    for place, told in (((), "2,0"), ((1, 0), "1,0"), ((7, 7), "7,7")):
+        assert (await lab.call(artifact, "getRoute", *place)).reason == f"no_route({told})"
     assert watcher.holds("route") == [([],)]
 
 

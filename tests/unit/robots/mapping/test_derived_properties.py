@@ -106,24 +106,22 @@ async def test_topics_come_together_by_their_stamps(lab: Lab) -> None:
 
 
 async def test_entries_may_be_derived_of_those_above(lab: Lab) -> None:
-    s = await derived(
-        lab,
-        "low: {hysteresis: a, on_below: 10, off_above: 20}\n  unsteady: {count: low, within: 5, at_least: 2}",
-    )
+    low = "low: {hysteresis: a, on_below: 10, off_above: 20}"
+    s = await derived(lab, f"{low}\n  unsteady: {{count: low, within: 5, at_least: 2}}")
     for x in (5.0, 50.0, 5.0):
         await s.send("a", x)
     assert s.watcher.holds("unsteady") == [()]
 
 
-async def test_frames_are_streams(lab: Lab) -> None:
-    text = """
-frames:
-  pose: {target: map, source: base_link}
-derived:
-  far: {hysteresis: pose, on_above: 1.5, off_below: 0.5}
+FAR = """
+frames: {pose: {target: map, source: base_link}}
+derived: {far: {hysteresis: pose, on_above: 1.5, off_below: 0.5}}
 """
-    artifact = await lab.make(mapped(text))
-    watcher, seen = lab.watch(artifact), []
+
+
+@made(mapped(FAR))
+async def test_frames_are_streams(lab: Lab, watcher: Watcher) -> None:
+    seen = []
     for x in (0.0, 1.6, 0.8, 0.4):
         await _stand(lab, x)
         await lab.sleep(0.5)

@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.mapping.decoding import MessageHandle, Unshowable, extractor
+from jacaros.robots.mapping.decoding import MessageHandle, Row, Unshowable, extractor
 from jacaros.robots.mapping.encoding import WrongValue, builder
 from jacaros.robots.mapping.fields import FieldPart
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.mapping.properties import TopicPart
 
-SCAN = "sensor_msgs/msg/LaserScan"
+SCAN, POSE = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Pose"
 BATTERY = "sensor_msgs/msg/BatteryState"
 NAMED_SHARE = "{path: percentage, unit: percent, round: 0, names: {-1: unknown}}"
 QUARTER = {"z": math.sin(math.pi / 4), "w": math.cos(math.pi / 4)}
@@ -24,13 +24,18 @@ def topic(fields: str, more: str = "") -> TopicPart:
     return read_mapping(text).artifacts["mapping"].properties[0]
 
 
-def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
-    """The values of some fields of a message."""
+def rows(part: TopicPart, type_name: str, message: Any = None, **fields: Any) -> list[Row]:
+    """What a part makes of a message."""
     problems: list[Any] = []
-    extract = extractor(topic(fields), type_name, stored_interfaces(), problems)
+    extract = extractor(part, type_name, stored_interfaces(), problems)
     assert problems == []
     assert extract is not None
-    [row] = extract(stored_interfaces().message(type_name, **message))
+    return extract(message or stored_interfaces().message(type_name, **fields))
+
+
+def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
+    """The values of some fields of a message."""
+    [row] = rows(topic(fields), type_name, **message)
     return row.values
 
 
@@ -44,16 +49,16 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
         ("std_msgs/msg/Byte", {"data": 7}, "data", (7,)),
         ("std_msgs/msg/Header", {"stamp": 12.5}, "stamp", (12.5,)),
         ("std_msgs/msg/Header", {"stamp": 12.5}, "{path: stamp, unit: minutes, round: 2}", (0.21,)),
-        ("geometry_msgs/msg/Pose", {"orientation": QUARTER}, "{path: orientation, as: yaw}", (math.pi / 2,)),
-        ("geometry_msgs/msg/Pose", {"orientation": QUARTER}, "{path: orientation, as: yaw, unit: degrees}", (90.0,)),
-        ("geometry_msgs/msg/Pose", {"orientation": QUARTER}, "{path: orientation, as: roll}", (0.0,)),
+        (POSE, {"orientation": QUARTER}, "{path: orientation, as: yaw}", (math.pi / 2,)),
+        (POSE, {"orientation": QUARTER}, "{path: orientation, as: yaw, unit: degrees}", (90.0,)),
+        (POSE, {"orientation": QUARTER}, "{path: orientation, as: roll}", (0.0,)),
         (
-            "geometry_msgs/msg/Pose",
+            POSE,
             {"orientation": {"y": QUARTER["z"], "w": QUARTER["w"]}},
             "{path: orientation, as: pitch, unit: degrees, round: 0}",
             (90,),
         ),
-        ("sensor_msgs/msg/BatteryState", {"percentage": 0.25}, "{path: percentage, unit: percent}", (25.0,)),
+        (BATTERY, {"percentage": 0.25}, "{path: percentage, unit: percent}", (25.0,)),
         (BATTERY, {"percentage": 0.997}, "{path: percentage, unit: percent, round: down}", (99,)),
         (BATTERY, {"percentage": 0.57}, "{path: percentage, unit: percent, round: down}", (57,)),
         (BATTERY, {"percentage": 1.0}, "{path: percentage, unit: percent, round: down}", (100,)),
@@ -71,7 +76,7 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
         (BATTERY, {"power_supply_status": 1}, "{path: power_supply_status, as: name}", (Atom("charging"),)),
         (BATTERY, {"power_supply_status": 99}, "{path: power_supply_status, as: name}", (99,)),
         (
-            "sensor_msgs/msg/BatteryState",
+            BATTERY,
             {"power_supply_status": 2},
             "{path: power_supply_status, as: name, prefix: POWER_SUPPLY_HEALTH_}",
             (Atom("overheat"),),
@@ -110,7 +115,7 @@ def taken(type_name: str, fields: str, **message: Any) -> tuple[object, ...]:
             ([90.0],),
         ),
         (
-            "geometry_msgs/msg/Pose",
+            POSE,
             {"position": {"x": 1}},
             "position",
             (Structure("point", (1.0, 0.0, 0.0)),),
@@ -145,33 +150,23 @@ def test_values_of_fields(
 
 
 def test_without_fields_all_of_the_message_is_shown() -> None:
-    extract = extractor(
-        TopicPart("a", topic("x").place, None), "geometry_msgs/msg/Point", stored_interfaces(), []
-    )
-    assert extract is not None
-    assert extract(stored_interfaces().message("geometry_msgs/msg/Point", z=2))[0].values == (0.0, 0.0, 2.0)
+    [row] = rows(TopicPart("a", topic("x").place, None), "geometry_msgs/msg/Point", z=2)
+    assert row.values == (0.0, 0.0, 2.0)
 
 
 @pytest.mark.parametrize(
-    ("fields", "message", "path", "functor"),
-    [
-        ("x", {"x": math.nan}, "x", "not_finite"),
-        ("x", {"x": -math.inf}, "x", "not_finite"),
-        ("{path: x, unit: centimetres}", {"x": math.inf}, "x", "not_finite"),
-    ],
+    ("fields", "x"), [("x", math.nan), ("x", -math.inf), ("{path: x, unit: centimetres}", math.inf)]
 )
-def test_a_number_that_is_not_finite_is_not_shown(
-    fields: str, message: dict[str, float], path: str, functor: str
-) -> None:
+def test_a_number_that_is_not_finite_is_not_shown(fields: str, x: float) -> None:
     with pytest.raises(Unshowable) as caught:
-        taken("geometry_msgs/msg/Point", fields, **message)
-    assert (caught.value.path, caught.value.functor) == (path, functor)
+        taken("geometry_msgs/msg/Point", fields, x=x)
+    assert (caught.value.path, caught.value.functor) == ("x", "not_finite")
     assert "otherwise: 0" in caught.value.help
 
 
 def test_a_nested_number_that_is_not_finite_is_not_shown() -> None:
     with pytest.raises(Unshowable, match=r"`position\.x` is nan"):
-        taken("geometry_msgs/msg/Pose", "position", position={"x": math.nan})
+        taken(POSE, "position", position={"x": math.nan})
 
 
 @pytest.mark.parametrize("fields", ["'ranges[3]'", "{path: ranges, sample: 2}"])
@@ -183,14 +178,8 @@ def test_a_missing_element_is_not_shown(fields: str) -> None:
 
 def test_big_things_go_by_handle() -> None:
     message = stored_interfaces().message("sensor_msgs/msg/Image", data=[1, 2, 3])
-    extract = extractor(
-        topic("[{path: ., as: object}, {path: data, as: object}]"),
-        "sensor_msgs/msg/Image",
-        stored_interfaces(),
-        [],
-    )
-    assert extract is not None
-    whole, data = extract(message)[0].values
+    part = topic("[{path: ., as: object}, {path: data, as: object}]")
+    whole, data = rows(part, "sensor_msgs/msg/Image", message)[0].values
     assert isinstance(whole, MessageHandle)
     assert isinstance(data, MessageHandle)
     assert whole.value is message
@@ -200,21 +189,15 @@ def test_big_things_go_by_handle() -> None:
 
 def test_one_row_for_each_element_with_parallel_arrays() -> None:
     part = topic("[., '/position[i]', /header.frame_id]", "each: name")
-    extract = extractor(part, "sensor_msgs/msg/JointState", stored_interfaces(), [])
-    assert extract is not None
-    message = stored_interfaces().message(
-        "sensor_msgs/msg/JointState", name=["left", "right"], position=[1.0, 2.0], header={"frame_id": "base"}
-    )
-    assert [row.values for row in extract(message)] == [("left", 1.0, "base"), ("right", 2.0, "base")]
+    message = {"name": ["left", "right"], "position": [1.0, 2.0], "header": {"frame_id": "base"}}
+    found = [row.values for row in rows(part, "sensor_msgs/msg/JointState", **message)]
+    assert found == [("left", 1.0, "base"), ("right", 2.0, "base")]
 
 
 def test_a_list_may_identify_elements() -> None:
     part = topic("[header.frame_id]", "each: markers, key: points")
-    extract = extractor(part, "visualization_msgs/msg/MarkerArray", stored_interfaces(), [])
-    assert extract is not None
     markers = [{"points": [{"x": 1}]}, {"points": [{"x": 2}]}]
-    rows = extract(stored_interfaces().message("visualization_msgs/msg/MarkerArray", markers=markers))
-    assert len({row.key for row in rows}) == 2
+    assert len({row.key for row in rows(part, "visualization_msgs/msg/MarkerArray", markers=markers)}) == 2
 
 
 def test_field_parts_know_how_many_values_they_give() -> None:
@@ -249,7 +232,7 @@ def test_parameters_constants_and_the_time() -> None:
 
 
 def test_units_and_quaternions_backwards() -> None:
-    made = filled("geometry_msgs/msg/Pose", "{orientation: {value: $a, as: yaw, unit: degrees}}", 90)
+    made = filled(POSE, "{orientation: {value: $a, as: yaw, unit: degrees}}", 90)
     assert (made.orientation.z, made.orientation.w) == pytest.approx((QUARTER["z"], QUARTER["w"]))
     twist = filled("geometry_msgs/msg/Twist", "{angular.z: {value: $a, unit: degrees}}", 180)
     assert twist.angular.z == pytest.approx(math.pi)
@@ -259,7 +242,7 @@ def test_units_and_quaternions_backwards() -> None:
 
 def test_constants_of_the_type_by_name() -> None:
     fields = "{power_supply_status: POWER_SUPPLY_STATUS_FULL, power_supply_health: {value: $a, as: name}}"
-    made = filled("sensor_msgs/msg/BatteryState", fields, Atom("overheat"))
+    made = filled(BATTERY, fields, Atom("overheat"))
     assert (made.power_supply_status, made.power_supply_health) == (4, 2)
 
 
@@ -271,7 +254,7 @@ def test_words_for_values_backwards() -> None:
 
 
 def test_structures_lists_and_handles_stand_for_messages() -> None:
-    point = filled("geometry_msgs/msg/Pose", "{position: $a}", Structure("at", (1, 2, 3)))
+    point = filled(POSE, "{position: $a}", Structure("at", (1, 2, 3)))
     assert (point.position.x, point.position.z) == (1.0, 3.0)
     polygon = filled("geometry_msgs/msg/Polygon", "{points: $a}", [[1, 2, 3], Structure("p", (4, 5, 6))])
     assert [each.x for each in polygon.points] == [1.0, 4.0]

@@ -82,7 +82,6 @@ def near(lab: Lab, x: float, y: float) -> bool:
 
 
 def dock_of(robot: Ready) -> object:
-    assert robot.lab.world is not None
     robot.lab.pose()
     return robot.lab.world.robot(None).dock
 
@@ -270,7 +269,6 @@ async def test_the_lights_and_tunes_of_a_create(robot: Ready) -> None:
         await robot.do("lights", [red] * 2 + [off] * 4)
     await robot.do("play", [Structure("note", (440, 0.5)), Structure("note", (880, 0.25))])
     await robot.lab.sleep(0.1)
-    assert robot.lab.world is not None
     lights, sound = robot.lab.world.ground_truth.events_of("lights", "sound")
     assert lights.data == {"colors": ["#ff0000"] * 2 + ["#000000"] * 4}
     assert sound.data == {"notes": [[440, 0.5], [880, 0.25]], "append": False}

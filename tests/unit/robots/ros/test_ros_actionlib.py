@@ -133,25 +133,22 @@ async def test_the_goal_of_a_killed_run_is_cancelled_before_the_next_run_sends_o
         assert asked == [f"{found}. Cancel it?"]
 
 
-async def test_the_goal_of_a_killed_run_is_kept_on_request(lab: Actionlib) -> None:
+@pytest.mark.parametrize(
+    ("orphans", "name", "told"),
+    [("keep", "client", 1), ("cancel", "client2", 0)],
+    ids=["kept", "of another node"],
+)
+async def test_the_goal_of_a_killed_run_goes_on_by_request_or_if_it_is_of_another_node(
+    lab: Actionlib, orphans: OrphanPolicy, name: str, told: int
+) -> None:
     client = await lab.open()
     await client.send({"target": 3, "period": 900.0}, timeout=20)
-    client = await lab.run_again("keep")
+    client = await lab.run_again(orphans, name)
     await client.send({"target": 4, "period": 0.5}, timeout=20)
     await lab.clock.sleep(5)
     assert lab.stopped == []
     found = "action /count is still executing a goal of an earlier run of this node; the robot may be moving"
-    assert lab.logged.count(f"warning: {found}") == 1
-
-
-async def test_the_goal_of_another_node_is_not_an_orphan(lab: Actionlib) -> None:
-    client = await lab.open()
-    await client.send({"target": 3, "period": 900.0}, timeout=20)
-    client = await lab.run_again("cancel", name="client2")
-    await client.send({"target": 4, "period": 0.5}, timeout=20)
-    await lab.clock.sleep(5)
-    assert lab.stopped == []
-    assert not [line for line in lab.logged if "earlier run" in line]
+    assert [line for line in lab.logged if "earlier run" in line] == [f"warning: {found}"] * told
 
 
 async def test_a_server_is_ready_after_its_first_message_on_all_topics(lab: Actionlib) -> None:
@@ -190,12 +187,10 @@ async def test_a_goal_that_arrived_is_sent_once(lab: Actionlib) -> None:
 async def test_an_abandoned_goal_is_not_sent_again(lab: Actionlib) -> None:
     client = await lab.open()
     lab.swallowed = 1
-    try:
+    with pytest.raises(CallTimedOut):
         await client.send({"target": 3, "period": 0.5}, timeout=0.5)
-    except CallTimedOut:
-        await lab.clock.sleep(10)
-    assert lab.sent == 1
-    assert lab.began == []
+    await lab.clock.sleep(10)
+    assert (lab.sent, lab.began) == (1, [])
 
 
 async def test_a_duplicate_goal_is_executed_once(lab: Actionlib) -> None:

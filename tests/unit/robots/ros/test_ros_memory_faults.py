@@ -64,7 +64,14 @@ def play(scene: Callable[[Lab], Coroutine[Any, Any, None]]) -> None:
 Lab.play = staticmethod(play)
 
 
-async def test_messages_can_be_delayed(lab: Lab) -> None:
+async def goal_of_counting(lab: Lab) -> Any:
+    """A goal that counts to 100, a second each."""
+    here, there = await lab.open()
+    there.action_server("/count", COUNT, lab.count)
+    return await here.action_client("/count", COUNT).send({"target": 100, "period": 1.0})
+
+
+async def test_messages_can_be_delayed_and_two_delays_add_up(lab: Lab) -> None:
     await lab.open()
     end = lab.graph.disturb("/n", delayed(0.25))
     await lab.publish(2)
@@ -73,34 +80,40 @@ async def test_messages_can_be_delayed(lab: Lab) -> None:
     end()
     await lab.publish(1)
     assert lab.got[2:] == [(1.2, 0)]
+    lab.graph.disturb("/n", both(delayed(1.0), delayed(2.0)))
+    await lab.publish(1)
+    await lab.clock.sleep(5.0)
+    assert lab.got[3:] == [(4.3, 0)]
 
 
 def test_a_jitter_lets_messages_overtake_each_other_in_the_same_way_each_time() -> None:
     seen = []
+
+    async def scene(lab: Lab) -> None:
+        await lab.open()
+        lab.graph.disturb("/n", delayed(0.0, jitter=1.0, seed=4))
+        await lab.publish(20)
+        await lab.clock.sleep(2.0)
+        seen.append(lab.got)
+
     for _ in range(2):
-
-        async def scene(lab: Lab) -> None:
-            await lab.open()
-            lab.graph.disturb("/n", delayed(0.0, jitter=1.0, seed=4))
-            await lab.publish(20)
-            await lab.clock.sleep(2.0)
-            seen.append(lab.got)
-
         play(scene)
     numbers = [number for _, number in seen[0]]
     assert sorted(numbers) == list(range(20)) != numbers
     assert seen[0] == seen[1]
 
 
-async def test_messages_can_be_dropped(lab: Lab) -> None:
-    await lab.open()
+async def test_messages_can_be_dropped_and_later_subscriptions_are_disturbed_too(lab: Lab) -> None:
+    _, there = await lab.open()
     lab.graph.disturb("/n", dropped(0.5, seed=1))
     await lab.publish(200)
     assert 60 < len(lab.got) < 140
     lab.graph.disturb("/n", dropped())
     lab.got.clear()
+    late: list[Any] = []
+    there.subscription("/n", INT, late.append)
     await lab.publish(20)
-    assert lab.got == []
+    assert (lab.got, late) == ([], [])
 
 
 async def test_messages_can_come_several_times_and_late(lab: Lab) -> None:
@@ -108,15 +121,6 @@ async def test_messages_can_come_several_times_and_late(lab: Lab) -> None:
     lab.graph.disturb("/n", both(delayed(0.5), duplicated(3, apart=0.1)))
     await lab.publish(1, apart=2.0)
     assert lab.got == [(0.5, 0), (0.6, 0), (0.7, 0)]
-
-
-async def test_later_subscriptions_are_disturbed_too(lab: Lab) -> None:
-    _, there = await lab.open()
-    lab.graph.disturb("/n", dropped())
-    late: list[Any] = []
-    there.subscription("/n", INT, late.append)
-    await lab.publish(3)
-    assert (lab.got, late) == ([], [])
 
 
 async def test_a_vanished_node_is_silent(lab: Lab) -> None:
@@ -154,10 +158,7 @@ async def test_a_vanished_service_does_not_answer_and_its_loss_is_found_out(lab:
 
 
 async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
-    here, there = await lab.open()
-    there.action_server("/count", COUNT, lab.count)
-    client = here.action_client("/count", COUNT)
-    goal = await client.send({"target": 100, "period": 1.0})
+    goal = await goal_of_counting(lab)
     await lab.clock.sleep(0.5)
     lab.graph.vanish("/count")
     with pytest.raises(ServerLost, match="went away during goal"):
@@ -168,8 +169,7 @@ async def test_a_vanished_action_server_is_lost_after_a_while(lab: Lab) -> None:
 async def test_a_server_in_the_place_of_a_vanished_one_does_not_know_its_goals(lab: Lab) -> None:
     here, there = await lab.open()
     there.action_server("/count", COUNT, lab.count)
-    client = here.action_client("/count", COUNT)
-    goal = await client.send({"target": 100, "period": 1.0})
+    goal = await here.action_client("/count", COUNT).send({"target": 100, "period": 1.0})
     lab.graph.vanish("/count")
     await lab.clock.sleep(1.0)
     there.action_server("/count", COUNT, lab.count)
@@ -217,9 +217,7 @@ async def test_a_short_interruption_does_not_lose_a_goal(lab: Lab) -> None:
 
 
 async def test_a_long_interruption_loses_a_goal(lab: Lab) -> None:
-    here, there = await lab.open()
-    there.action_server("/count", COUNT, lab.count)
-    goal = await here.action_client("/count", COUNT).send({"target": 100, "period": 1.0})
+    goal = await goal_of_counting(lab)
     lab.graph.interrupt()
     with pytest.raises(ServerLost):
         await goal.outcome(timeout=60.0)
@@ -235,47 +233,24 @@ async def test_parameters_cannot_be_reached_in_an_interrupted_graph(lab: Lab) ->
     assert await here.parameters("/there").get("speed", timeout=1.0) == 1.0
 
 
-def test_two_delays_add_up() -> None:
-    lab = Lab()
-
-    async def main() -> None:
-        await lab.open()
-        lab.graph.disturb("/n", both(delayed(1.0), delayed(2.0)))
-        await lab.publish(1)
-        await lab.clock.sleep(5.0)
-
-    run(main, lab.clock)
-    assert lab.got == [(3.0, 0)]
-
-
-def test_what_is_late_does_not_reach_a_closed_subscription() -> None:
-    lab = Lab()
-
-    async def main() -> None:
-        _, there = await lab.open()
-        got: list[Any] = []
-        subscription = there.subscription("/n", INT, got.append)
-        lab.graph.disturb("/n", delayed(1.0))
-        await lab.publish(1)
-        subscription.close()
-        await lab.clock.sleep(5.0)
-        assert got == []
-
-    run(main, lab.clock)
+async def test_what_is_late_does_not_reach_a_closed_subscription(lab: Lab) -> None:
+    _, there = await lab.open()
+    got: list[Any] = []
+    subscription = there.subscription("/n", INT, got.append)
+    lab.graph.disturb("/n", delayed(1.0))
+    await lab.publish(1)
+    subscription.close()
+    await lab.clock.sleep(5.0)
+    assert got == []
     assert lab.got, "the other subscription has heard it"
 
 
-def test_one_silence_is_logged_once_however_many_deadlines_pass() -> None:
-    lab = Lab()
-
-    async def main() -> None:
-        here, there = await lab.open()
-        quality = QoS(deadline=0.5)
-        there.subscription("/d", INT, lambda sample: None, quality)
-        publisher = here.publisher("/d", INT, quality)
-        for _ in range(2):
-            publisher.publish(publisher.message(data=1))
-            await lab.clock.sleep(10.0)
-
-    run(main, lab.clock)
+async def test_one_silence_is_logged_once_however_many_deadlines_pass(lab: Lab) -> None:
+    here, there = await lab.open()
+    quality = QoS(deadline=0.5)
+    there.subscription("/d", INT, lambda sample: None, quality)
+    publisher = here.publisher("/d", INT, quality)
+    for _ in range(2):
+        publisher.publish(publisher.message(data=1))
+        await lab.clock.sleep(10.0)
     assert sum("deadline" in line for line in lab.log) == 2

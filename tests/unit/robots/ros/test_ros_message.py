@@ -108,9 +108,9 @@ def test_arrays_may_be_lists_tuples_ranges_and_numpy_arrays() -> None:
         assert make("sensor_msgs/msg/Image", data=octets).data.tolist() == [0, 255]
 
 
-def test_infinite_ranges_are_kept() -> None:
-    ranges = make("sensor_msgs/msg/LaserScan", ranges=[math.inf, math.nan]).ranges
-    assert math.isinf(ranges[0])
+def test_infinite_ranges_are_kept_and_too_large_a_number_for_32_bits_is_infinite() -> None:
+    ranges = make("sensor_msgs/msg/LaserScan", ranges=[math.inf, math.nan, 1e300]).ranges
+    assert ranges[0] == ranges[2] == math.inf
     assert math.isnan(ranges[1])
 
 
@@ -121,13 +121,10 @@ def test_seconds_survive_a_stamp(seconds: float) -> None:
     assert 0 <= header.stamp.nanosec < 1_000_000_000
 
 
-def test_a_stamp_is_set_in_place() -> None:
+def test_a_stamp_is_set_in_place_and_negative_durations_have_a_floor() -> None:
     header = make("std_msgs/msg/Header")
     stamp(header.stamp, 1.9999999999)
     assert (header.stamp.sec, header.stamp.nanosec) == (2, 0)
-
-
-def test_negative_durations_have_a_floor() -> None:
     duration = factory.make("builtin_interfaces/msg/Duration", {"sec": -1, "nanosec": 500_000_000})
     assert to_seconds(duration) == -0.5
     stamp(duration, -0.25)
@@ -152,14 +149,24 @@ def test_an_unknown_type_has_a_help() -> None:
         make("my_msgs/msg/Thing")
 
 
+def defined(folder: Path, **definitions: str) -> DefinitionSchema:
+    """A schema of a package of ours; a name such as Order_msg has its definition."""
+    for name, text in definitions.items():
+        stem, kind = name.split("_")
+        path = folder / "shop_msgs" / kind / f"{stem}.{kind}"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return DefinitionSchema([folder])
+
+
 def test_definitions_in_folders_are_found(tmp_path: Path) -> None:
-    (tmp_path / "shop_msgs" / "msg").mkdir(parents=True)
-    (tmp_path / "shop_msgs" / "srv").mkdir()
-    (tmp_path / "shop_msgs" / "msg" / "Order.msg").write_text("geometry_msgs/Point where\nint32[<=3] items\n")
-    (tmp_path / "shop_msgs" / "srv" / "Buy.srv").write_text("string what # the thing\n---\nfloat64 price\n")
-    schema = DefinitionSchema([tmp_path])
-    order = schema.make("shop_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
-    assert (order.where.x, order.items.tolist()) == (2.0, [1, 2])
+    order, buy = (
+        "geometry_msgs/Point where\nint32[<=3] items\n",
+        "string what # the thing\n---\nfloat64 price\n",
+    )
+    schema = defined(tmp_path, Order_msg=order, Buy_srv=buy)
+    made = schema.make("shop_msgs/msg/Order", {"where": {"x": 2}, "items": [1, 2]})
+    assert (made.where.x, made.items.tolist()) == (2.0, [1, 2])
     with pytest.raises(MessageMismatch, match="4 elements"):
         schema.make("shop_msgs/msg/Order", {"items": [1, 2, 3, 4]})
     schema.load("shop_msgs/srv/Buy")
@@ -168,24 +175,13 @@ def test_definitions_in_folders_are_found(tmp_path: Path) -> None:
 
 
 def test_arrays_of_booleans_are_lists_and_others_have_the_items_of_their_type(tmp_path: Path) -> None:
-    (tmp_path / "shop_msgs" / "msg").mkdir(parents=True)
-    (tmp_path / "shop_msgs" / "msg" / "Shelf.msg").write_text(
-        "bool[] full\nbool[2] pair\nbyte[] marks\nint64[] ids\n"
-    )
-    shelf = DefinitionSchema([tmp_path]).make(
-        "shop_msgs/msg/Shelf", {"full": [True], "marks": b"\x07", "ids": [2**40, -1.0]}
-    )
+    schema = defined(tmp_path, Shelf_msg="bool[] full\nbool[2] pair\nbyte[] marks\nint64[] ids\n")
+    shelf = schema.make("shop_msgs/msg/Shelf", {"full": [True], "marks": b"\x07", "ids": [2**40, -1.0]})
     assert (shelf.full, shelf.pair) == ([True], [False, False])
     assert (shelf.marks, shelf.ids) == (array("B", [7]), array("q", [2**40, -1]))
     assert plain(shelf) == {"full": [True], "pair": [False, False], "marks": [7], "ids": [2**40, -1]}
 
 
-def test_too_large_a_number_for_32_bits_is_infinite() -> None:
-    assert make("sensor_msgs/msg/LaserScan", ranges=[1e300]).ranges[0] == math.inf
-
-
 def test_a_wrong_definition_is_reported_with_its_line(tmp_path: Path) -> None:
-    (tmp_path / "shop_msgs" / "msg").mkdir(parents=True)
-    (tmp_path / "shop_msgs" / "msg" / "Bad.msg").write_text("int32 a\nint32\n")
     with pytest.raises(UnknownInterface, match="definition of shop_msgs/msg/Bad is wrong: line 2"):
-        DefinitionSchema([tmp_path]).fields("shop_msgs/msg/Bad")
+        defined(tmp_path, Bad_msg="int32 a\nint32\n").fields("shop_msgs/msg/Bad")
