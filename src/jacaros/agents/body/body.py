@@ -566,7 +566,7 @@ class AgentBody(AgentPresence):
         if not self._entered:
             self.enter()
         self._pending[act.id] = ENDED
-        self._activity.begin()
+        self._activity.pending += 1
         if act.functor is NEEDS:
             self._need(act)
             return

@@ -31,7 +31,6 @@ from jacaros.robots.artifacts.odometry import (
     Odometry,
     Placed,
     driving_frame,
-    pose_values,
 )
 from jacaros.robots.kit.connection import MATCH_OPTIONS
 from jacaros.robots.kit.options import positive, text
@@ -470,9 +469,9 @@ class WheeledArtifact(RosArtifact):
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Handle every odometry message."""
-        late = self.odometer.header.late
-        self.model.observed(odometry.pose, odometry.velocity, self.clock.elapsed, late)
-        self.newest_pose.take(pose_values(odometry))
+        late, pose = self.odometer.header.late, odometry.pose
+        self.model.observed(pose, odometry.velocity, self.clock.elapsed, late)
+        self.newest_pose.take((pose.x, pose.y, math.degrees(pose.yaw)))
 
     def _settings(self) -> MotionSettings:
         """Read speeds, which options give in degrees where they turn, and time-outs."""
@@ -492,10 +491,12 @@ class WheeledArtifact(RosArtifact):
 
     def command(self, velocity: Velocity) -> None:
         """Publish one velocity command."""
-        self.motions.commanded(velocity, self.clock.elapsed)
+        now = self.clock.elapsed
+        for model in self.motions.models:  # all artifacts that drive the robot see the effect in odometry
+            model.commanded(velocity, now)
         if velocity != STANDSTILL:
             self._drove = True
-        twist = self._commands.message()
+        twist = self._commands.new()
         twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
         self._commands.publish(twist)
 

@@ -8,8 +8,9 @@ from collections.abc import Callable
 from typing import Self
 from weakref import WeakKeyDictionary
 
+from jacaros.artifacts.env.arbiter import HOLDING
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.drive_model import DriveModel, Velocity
+from jacaros.robots.artifacts.drive_model import DriveModel
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.guarded import guarded_by
@@ -40,12 +41,6 @@ class Claim:
         self.gap: Structure | Atom | None = None
         self._waiting: asyncio.Future[None] | None = None
         self._woken = False
-
-    def abort(self) -> None:
-        """Abort the motion: stop the robot immediately; the operation fails when it runs next."""
-        self.aborted = True
-        self.stop()
-        self.wake()
 
     def interrupt(self, why: Structure | Atom) -> None:
         """Stop the robot immediately; the motion decides whether it continues."""
@@ -113,16 +108,16 @@ class Motions:
         mover.at_dispose(guarded_by(mover.ros).on_standstill(stand))
         mover.at_dispose(halt)
 
-    def commanded(self, velocity: Velocity, now: float) -> None:
-        """Note a command: all artifacts that drive the robot see its effect in odometry."""
-        for model in self.models:
-            model.commanded(velocity, now)
-
     def abort(self) -> None:
-        """Abort the motion that drives and all that wait, except suspended ones."""
+        """Abort the motion that drives and all that wait, except suspended ones.
+
+        The robot stops immediately; the operations fail when they run next.
+        """
         self.stops += 1
         for claim in list(self.claims):
-            claim.abort()
+            claim.aborted = True
+            claim.stop()
+            claim.wake()
 
 
 class Aborted(Exception):
@@ -164,7 +159,7 @@ class Driving(Claim):
 
     def halt(self) -> None:
         """Stop the robot immediately if this motion drives; otherwise another one may be driving it."""
-        if self._holding.holds:
+        if self._holding.claim.state in HOLDING:
             self._stop()
 
     def __enter__(self) -> Self:

@@ -184,7 +184,14 @@ class Stamps:
             if self._dropped >= IN_A_ROW:
                 self._least = None  # the sender's clock was set back slightly
             if stamp > self._newest or self._least is None:
-                self._note_delay(stamp)
+                elapsed = self._clock.elapsed
+                delay = elapsed - stamp  # the zero is arbitrary; only differences count
+                least = delay
+                if self._least is not None:  # clocks drift apart, so the limit grows
+                    least = min(delay, self._least + DRIFT * (elapsed - self._heard))
+                self._least, self._heard, self.late = least, elapsed, delay - least
+                if self.late >= LATE:
+                    self._report_late()
             self._newest = stamp
             self._dropped = 0
             self._stragglers.clear()
@@ -208,20 +215,10 @@ class Stamps:
         self._least = None
         return True
 
-    def _note_delay(self, stamp: float) -> None:
-        """Compare the delay of a message with the shortest so far; the limit grows as the clocks drift apart."""
-        now = self._clock.elapsed
-        delay = now - stamp  # the zero is arbitrary; only differences count
-        if self._least is not None:
-            self._least = min(delay, self._least + DRIFT * (now - self._heard))
-        else:
-            self._least = delay
-        self._heard = now
-        self.late = delay - self._least
-        if self.late >= LATE:
-            late = round(self.late, 3)
-            text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
-            self._faults.add(Structure("late", (late,)), text)
+    def _report_late(self) -> None:
+        late = round(self.late, 3)
+        text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
+        self._faults.add(Structure("late", (late,)), text)
 
 
 class Header(Stamps):
