@@ -6,7 +6,7 @@ import pytest
 from robot_lab import STANDSTILL, Lab, assert_at
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.artifacts.motion_claim import GUARD_TRIPPED
+from jacaros.robots.artifacts.motion import GUARD_TRIPPED
 from jacaros.robots.artifacts.velocity import ArtCmdVel
 from jacaros.robots.ros.drivers.memory.graph import delayed, dropped
 from jacaros.robots.ros.guarded import guarded_by

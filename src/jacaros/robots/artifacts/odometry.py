@@ -9,7 +9,7 @@ from weakref import WeakSet
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.artifacts.streams import ReadingPolicy
 from jacaros.robots.artifacts.drive_model import Velocity
-from jacaros.robots.kit.faults import Header
+from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import text
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
@@ -63,7 +63,7 @@ class Odometer:
         artifact: subscribes to the topic, and reports bad messages.
         topic: the robot's topic.
         on_reading: called with every good message.
-        frame: see `Header`.
+        frame: see `Stamps`.
         placed: converts odometry to the driving frame, None while that is unknown; see `driving_frame`.
 
     Attributes:
@@ -89,7 +89,7 @@ class Odometer:
         self.count = 0
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.faults = artifact.faults_of(topic)
-        self.header = Header(self.faults, artifact.clock, frame)
+        self.header = Stamps(self.faults, artifact.clock, frame)
         self._on_reading, self._placed = on_reading, placed
         artifact.subscription(topic, ODOMETRY, self.take, SENSOR_DATA)
 
@@ -106,7 +106,8 @@ class Odometer:
             self.trusted, self.lacking = False, NO_ODOMETRY
             self.faults.not_finite(*wrong)
             return
-        if not self.header.accepts(sample):
+        header = message.header
+        if not self.header.accept(to_seconds(header.stamp), sample.stamp, header.frame_id):
             return
         position = (float(p.x), float(p.y), float(p.z))
         yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))  # that of `yaw_of`, inlined
@@ -120,6 +121,13 @@ class Odometer:
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
         self._on_reading(odometry)
+
+    def lack(self) -> str:
+        """Return why there is no odometry, for messages."""
+        if self.lacking == NO_TRANSFORM:
+            return "no transform from the frame of odometry to the driving frame; is the robot localised?"
+        bad = f" ({self.faults.total} messages were bad)" if self.faults.total else ""
+        return f"no odometry{bad}"
 
     def age(self, now: float) -> float | None:
         """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
