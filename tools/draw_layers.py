@@ -26,9 +26,7 @@ def layers() -> list[list[str]]:
     contracts = ConfigParser()
     contracts.read(ROOT / ".importlinter")
     told = contracts["importlinter:contract:layers"]["layers"].split("\n")
-    rows = [
-        [name.strip().removeprefix("jacaros.") for name in line.split("|")] for line in told if line.strip()
-    ]
+    rows = [[name.strip().removeprefix("jacaros.") for name in line.split("|")] for line in told if line.strip()]
     return [kept for row in rows if (kept := [name for name in row if name.partition(".")[0] in COLOURS])]
 
 
