@@ -21,7 +21,7 @@ OTHERS = frozenset(
         *("Steps._drive", "Motion._drive", "Claim.wait", "Claim.wake"),
         *("WheeledArtifact.perform", "WheeledArtifact.on_odometry"),
         # done once for each operation, not for each message
-        *("Workspace._offer_of", "OperationIndex.__init__", "OperationIndex.add", "OperationIndex.providers"),
+        "Workspace.providers",
     }
 )
 """Functions that are called meanwhile on behalf of something else, with all that they call."""

@@ -59,9 +59,7 @@ class ReadingPolicy:
         """Return whether *new* differs enough from *old* to be delivered."""
         if old == new:
             return False
-        if self.dead_band == 0.0 and self.finite:
-            return True
-        if len(old) != len(new):
+        if len(old) != len(new) or (self.dead_band == 0.0 and self.finite):
             return True
         for index, value in enumerate(new):  # noqa: SIM110 - most differ in the first field: no generator for that
             if self._field_differs(index, old[index], value):

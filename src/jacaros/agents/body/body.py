@@ -88,22 +88,12 @@ class Call:
         return f"{self.name}/{len(self.arguments)}"
 
 
-def read(act: Act) -> Call:
-    """Read an act.
+def _direction(act: Act) -> Direction:
+    """Return what the annotations of an act say.
 
     Raises:
         Undelivered: an annotation is invalid.
     """
-    symbol, arguments = act.functor, act.arguments
-    name = unquoted(symbol.name) if symbol.name[0] == "'" else symbol.name
-    for argument in arguments:
-        if argument.__class__ is Var:
-            arguments = tuple(map(deref, arguments))
-            break
-    return Call(act, name, symbol.namespace, arguments, _direction(act) if act.annotations else ANYWHERE)
-
-
-def _direction(act: Act) -> Direction:
     direction = Direction()
     # An id takes precedence over a name, in whatever order they are written.
     for annotation in sorted(act.annotations, key=lambda a: _name(a) in ("artifact_id", "aid", "wid")):
@@ -566,12 +556,19 @@ class AgentBody(AgentPresence):
         if not self._entered:
             self.enter()
         self._pending[act.id] = ENDED
-        self._activity.begin()
+        self._activity.pending += 1
         if act.functor is NEEDS:
             self._need(act)
             return
+        symbol, arguments = act.functor, act.arguments
+        name = unquoted(symbol.name) if symbol.name[0] == "'" else symbol.name
+        for argument in arguments:
+            if argument.__class__ is Var:
+                arguments = tuple(map(deref, arguments))
+                break
         try:
-            handle = self._begin(read(act))
+            direction = _direction(act) if act.annotations else ANYWHERE
+            handle = self._begin(Call(act, name, symbol.namespace, arguments, direction))
         except OperationFailed as failure:
             self._finish(act.id, refused(failure, self.references))
             return

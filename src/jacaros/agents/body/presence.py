@@ -1,11 +1,10 @@
 """The presence of an agent with a mind: what it has joined and focuses, as beliefs, and the resources it needs."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from itertools import chain
 from typing import NoReturn
 
-from jacaros.agents.body.values import ADD, REMOVE, PerceptWriter, atom_of
+from jacaros.agents.body.values import ADD, REMOVE, FocusObserver, Notice, PerceptWriter, atom_of
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import Act, Percept
@@ -15,7 +14,6 @@ from jacaros.artifacts.env.artifact import Artifact, Out, internal_operation, op
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.ports import Workspace
-from jacaros.artifacts.env.property import Observation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.presence.presence import Focused, JoinedWorkspaces, Presence
 from jacaros.runtime.files.texts import aside
@@ -25,41 +23,6 @@ from jacaros.runtime.files.texts import aside
 
 Watcher = Callable[[ArtifactId, bool], None]
 """Called with an artifact that is focused (True) or no longer focused (False)."""
-
-
-Notice = Callable[[list[Percept]], None]
-"""Receives percepts."""
-
-Untaken = Callable[[str], bool]
-"""Returns whether percepts about properties of a name are still unprocessed."""
-
-
-@dataclass(slots=True, eq=False, repr=False)
-class FocusObserver:
-    """Perceives for an agent, in one namespace of its program.
-
-    Attributes:
-        agent: name of the agent.
-        namespace: namespace of its program.
-        writer: writes its percepts.
-        notice: receives its percepts.
-        has_untaken: returns whether the mind still has unprocessed percepts about properties of a name.
-    """
-
-    agent: str
-    namespace: str | None
-    writer: PerceptWriter
-    notice: Notice
-    has_untaken: Untaken
-
-    def observe(self, observation: Observation) -> None:
-        """Pass an observation to the mind."""
-        writer, namespace = self.writer, self.namespace
-        # The percepts just written for another observer are the same.
-        if observation is writer.newest and namespace is writer.namespace:
-            self.notice(writer.written)
-        else:
-            self.notice(writer.percepts(observation, namespace))
 
 
 class FocusedArtifacts(Focused):

@@ -18,6 +18,7 @@ formula, plan              its text
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
 from weakref import WeakValueDictionary
@@ -440,3 +441,38 @@ def _complete(value: object) -> object:
     if isinstance(value, Out):
         return _complete(value.value) if value.is_set else _NULL
     return _NULL if value is None else value
+
+
+Notice = Callable[[list[Percept]], None]
+"""Receives percepts."""
+
+Untaken = Callable[[str], bool]
+"""Returns whether percepts about properties of a name are still unprocessed."""
+
+
+@dataclass(slots=True, eq=False, repr=False)
+class FocusObserver:
+    """Perceives for an agent, in one namespace of its program.
+
+    Attributes:
+        agent: name of the agent.
+        namespace: namespace of its program.
+        writer: writes its percepts.
+        notice: receives its percepts.
+        has_untaken: returns whether the mind still has unprocessed percepts about properties of a name.
+    """
+
+    agent: str
+    namespace: str | None
+    writer: PerceptWriter
+    notice: Notice
+    has_untaken: Untaken
+
+    def observe(self, observation: Observation) -> None:
+        """Pass an observation to the mind."""
+        writer, namespace = self.writer, self.namespace
+        # The percepts just written for another observer are the same.
+        if observation is writer.newest and namespace is writer.namespace:
+            self.notice(writer.written)
+        else:
+            self.notice(writer.percepts(observation, namespace))

@@ -72,6 +72,10 @@ class State(StrEnum):
     YIELDING = "yielding"
 
 
+HOLDING = (State.HELD, State.YIELDING)
+"""States in which no other claim can have the resources."""
+
+
 class Claimant(Protocol):
     """Receives the events of a claim. Each method may call the arbiter."""
 
@@ -129,11 +133,6 @@ class Claim:
     def root(self) -> "Claim":
         """The outermost claim around it, or itself."""
         return self.within[0] if self.within else self
-
-    @property
-    def holds(self) -> bool:
-        """Whether no other claim can have its resources."""
-        return self.state is State.HELD or self.state is State.YIELDING
 
     @property
     def base(self) -> int:

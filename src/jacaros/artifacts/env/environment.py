@@ -393,7 +393,7 @@ class Environment(Setting, WorkspaceTree):
 
     def execute(self, request: OperationRequest) -> UnderWay:
         """Run an operation for an agent, wherever the artifact is. See `Workspace.execute`."""
-        steps = self._registry.find(request.artifact)
+        steps = self._registry.steps.get(request.artifact) or self._registry.find(request.artifact)
         if steps is None:
             return self.at(request.artifact.workspace, self._own[0]).execute(request)
         return steps.execute(request, OPERATION)

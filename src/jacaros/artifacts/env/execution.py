@@ -59,6 +59,7 @@ class OperationExecution:
         suspended: its caller has paused it. It may also be paused because it waits for a resource.
         task: the task of a coroutine that has begun.
         linked: executions in other artifacts that it is waiting for.
+        pauses: its pauses. None if it has not been paused, and nothing waits for a pause.
     """
 
     turns: Turns
@@ -75,7 +76,7 @@ class OperationExecution:
     suspended: bool = field(default=False, init=False)
     task: "asyncio.Task[None] | None" = field(default=None, init=False)
     linked: Sequence[UnderWay] = field(default=(), init=False)
-    _pause: "Pause | None" = field(default=None, init=False)
+    pauses: "Pause | None" = field(default=None, init=False)
 
     @property
     def stopped(self) -> bool:
@@ -109,12 +110,12 @@ class OperationExecution:
         """Pause or continue, depending on its caller and the resources it uses."""
         barred = self.suspended or (self.holding is not None and self.holding.barred)
         if barred and not self.paused and not self.ended:
-            pause = self._pauses()
+            pause = self._noted_pauses()
             pause.since = self.turns.clock.elapsed
             self._call(pause.callbacks)
             self.turns.reconsider()
-        elif not barred and self._pause is not None and self._pause.end():
-            self._call(self._pause.resumers)
+        elif not barred and self.pauses is not None and self.pauses.end():
+            self._call(self.pauses.resumers)
             self.turns.reconsider()
 
     def _call(self, callbacks: list[Callable[[], None]]) -> None:
@@ -163,7 +164,7 @@ class OperationExecution:
     @property
     def paused(self) -> bool:
         """Whether it is between `pause` and `resume`."""
-        return self._pause is not None and self._pause.since is not None
+        return self.pauses is not None and self.pauses.since is not None
 
     def on_pause(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Call *callback* at every `pause`, immediately if it is paused. Return a function that ends this.
@@ -171,7 +172,7 @@ class OperationExecution:
         The callback runs outside of the artifact's steps: it may stop a motor, but must not change properties. Without
         a call of the returned function, it is called until the operation ends.
         """
-        callbacks = self._pauses().callbacks
+        callbacks = self._noted_pauses().callbacks
         callbacks.append(callback)
         if self.paused:
             callback()
@@ -179,12 +180,12 @@ class OperationExecution:
 
     def on_resume(self, callback: Callable[[], None]) -> None:
         """Call *callback* at the end of every pause. As with `on_pause`, it must not change properties."""
-        self._pauses().resumers.append(callback)
+        self._noted_pauses().resumers.append(callback)
 
     async def resumed(self) -> None:
         """Wait until it is not paused. Await it through `Artifact.pause_point` or `Artifact.step`."""
-        while self._pause is not None and self._pause.since is not None:
-            await self._rest(self._pause)
+        while self.pauses is not None and self.pauses.since is not None:
+            await self._rest(self.pauses)
 
     async def _rest(self, pause: "Pause") -> None:
         """Wait for the end of the pause. Nothing moves, so others may use its resources."""
@@ -201,12 +202,12 @@ class OperationExecution:
 
     def take_paused_time(self) -> float:
         """Return the seconds that it has been paused since the last call."""
-        return self._pause.take() if self._pause is not None else 0.0
+        return self.pauses.take() if self.pauses is not None else 0.0
 
-    def _pauses(self) -> "Pause":
-        if self._pause is None:
-            self._pause = Pause(self.turns.clock)
-        return self._pause
+    def _noted_pauses(self) -> "Pause":
+        if self.pauses is None:
+            self.pauses = Pause(self.turns.clock)
+        return self.pauses
 
 
 @dataclass(slots=True)
@@ -292,11 +293,6 @@ class Holding:
     def barred(self) -> bool:
         """Whether the operation has claimed its resources, and must not continue without them."""
         return self.entered and self.claim.state is not State.HELD
-
-    @property
-    def holds(self) -> bool:
-        """Whether no other claim can have the resources. Also true while the operation yields."""
-        return self.claim.holds
 
     def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Call *callback* whenever the claim is granted or preempted, or the caller pauses or resumes the operation.

@@ -9,8 +9,9 @@ after a cancel.
 """
 
 import asyncio
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 from typing import Any, Final, Protocol, runtime_checkable
 
 from jacaros.artifacts.env.errors import ArtifactId
@@ -90,10 +91,12 @@ class Workspace(Protocol):
     Attributes:
         path: full path in the environment in which it is visible, such as ``/main/lab``.
         name: last part of the path.
+        known: results of `providers` that still hold. Empty if they cannot be known, as for a remote workspace.
     """
 
     path: str
     name: str
+    known: Mapping[tuple[str, int], tuple[ArtifactId, ...]] = MappingProxyType({})
 
     # ---- lookups
 

@@ -78,7 +78,9 @@ class PropertyStore:
         check_name(name)
         key = self._last_key + 1
         # A value that cannot be converted raises here, before anything has changed.
-        new = ObservableProperty(name, _plain(values), plain_annotations(annotations or ()), key)
+        if not SCALARS.issuperset(map(type, values)):
+            values = tuple(map(plain, values))
+        new = ObservableProperty(name, values, plain_annotations(annotations or ()), key)
         self._last_key = key
         self.changing[key] = (name, None)
         self._by_name.setdefault(name, {})[key] = new
@@ -92,19 +94,26 @@ class PropertyStore:
         annotations: tuple[object, ...] | None,
         if_new: bool = False,
         where: tuple[object, ...] = (),
+        or_define: bool = False,
     ) -> None:
         """Update the first property called *name* that matches *where*. None as annotations keeps the current ones.
 
-        With *if_new*, do nothing if values and annotations are unchanged.
+        With *if_new*, do nothing if values and annotations are unchanged. With *or_define*, add a property if none of
+        that name exists.
 
         Raises:
             UnknownProperty: no property matches.
+            InvalidArtifact: *name* is not a valid name of a belief.
         """
         properties = self._by_name.get(name)
         if not properties:
+            if or_define:
+                self.define(name, values, annotations)
+                return
             raise self._unknown(name)
         old = self.first(name, where) if where else next(iter(properties.values()))
-        values = _plain(values)
+        if not SCALARS.issuperset(map(type, values)):
+            values = tuple(map(plain, values))
         kept = old.annotations if annotations is None else plain_annotations(annotations)
         if if_new and _all_equal(values, old.values) and _all_equal(kept, old.annotations):
             return
@@ -115,17 +124,6 @@ class PropertyStore:
         if name in self._by_first:
             self._leave_index(old)
             self._by_first[name].setdefault(_first(new), {})[key] = None
-
-    def put(self, name: str, values: tuple[object, ...]) -> None:
-        """Update the first property called *name*, or add one.
-
-        Raises:
-            InvalidArtifact: *name* is not a valid name of a belief.
-        """
-        if self._by_name.get(name):
-            self.update(name, values, None)
-        else:
-            self.define(name, values, None)
 
     def remove(self, name: str, template: tuple[object, ...]) -> None:
         """Remove the first property called *name* whose values match *template* (see `first`).
@@ -261,14 +259,6 @@ def check_name(name: str) -> None:
         raise InvalidArtifact(
             f"the name of a property or signal must begin with a lower-case letter: {name!r}"
         )
-
-
-def _plain(values: tuple[object, ...]) -> tuple[object, ...]:
-    """Convert values to plain values. Numbers and strings, the common case, are plain already."""
-    for value in values:
-        if type(value) not in SCALARS:
-            return tuple(map(plain, values))
-    return values
 
 
 def _all_equal(new: tuple[object, ...], old: tuple[object, ...]) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from types import MappingProxyType
 
 from jacaros.artifacts.env import ports
 from jacaros.artifacts.env.artifact import Artifact, Host
@@ -455,6 +456,8 @@ class Workspace(ports.Workspace):
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
         self._indexes: dict[tuple[str, int], OperationIndex] = {}
+        self._known: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
+        self.known = MappingProxyType(self._known)
         self._watchers: dict[object, Watcher] = {}
         self._watchers_of_all: dict[object, Watcher] = {}
         self._telling: tuple[Iterator[Watcher], ArtifactId, bool] | None = None
@@ -633,7 +636,8 @@ class Workspace(ports.Workspace):
             index = self._indexes[operation, arity] = OperationIndex()
             for artifact_id in self._artifacts.values():
                 self._offer_of(artifact_id, operation, arity, index)
-        return index.found or index.providers()
+        found = self._known[operation, arity] = index.found or index.providers()
+        return found
 
     def _offer_of(self, artifact_id: ArtifactId, operation: str, arity: int, index: OperationIndex) -> None:
         """Add an artifact to the index of an operation, if it offers it."""
@@ -661,6 +665,7 @@ class Workspace(ports.Workspace):
         """Update the indexes after an artifact has changed its operations."""
         if self._artifacts.get(artifact_id.name) is artifact_id:
             self._indexes.clear()
+            self._known.clear()
 
     def interface(self, artifact_id: ArtifactId) -> Interface:
         """Return the operations of an artifact.
@@ -783,6 +788,7 @@ class Workspace(ports.Workspace):
         return steps
 
     def _changed(self, artifact_id: ArtifactId, present: bool) -> None:
+        self._known.clear()
         for (operation, arity), index in self._indexes.items():
             if present:
                 self._offer_of(artifact_id, operation, arity, index)

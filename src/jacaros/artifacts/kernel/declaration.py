@@ -374,9 +374,13 @@ def name_of(function: Callable[..., Any]) -> str:
 
 @dataclass(slots=True, eq=False, repr=False)
 class OperationTable:
-    """Operations of one kind, by name and number of arguments."""
+    """Operations of one kind, by name and number of arguments.
 
-    _exact: dict[tuple[str, int], DeclaredOperation] = field(default_factory=dict)
+    Attributes:
+        exact: those that take exactly this number of arguments, which nearly all calls use.
+    """
+
+    exact: dict[tuple[str, int], DeclaredOperation] = field(default_factory=dict)
     _variable: dict[str, DeclaredOperation] = field(default_factory=dict)
 
     def add(self, declared: DeclaredOperation) -> None:
@@ -390,12 +394,12 @@ class OperationTable:
             self._variable[declared.name] = declared
             return
         for arity in declared.signature.arities:
-            _check_overlap(self._exact.get((declared.name, arity)), declared, str(arity))
-            self._exact[declared.name, arity] = declared
+            _check_overlap(self.exact.get((declared.name, arity)), declared, str(arity))
+            self.exact[declared.name, arity] = declared
 
     def find(self, name: str, arity: int) -> DeclaredOperation | None:
         """Return the operation for a call. An exact number of arguments has precedence over ``*args``."""
-        found = self._exact.get((name, arity))
+        found = self.exact.get((name, arity))
         if found is not None:
             return found
         found = self._variable.get(name)
@@ -404,20 +408,20 @@ class OperationTable:
     def remove(self, name: str) -> None:
         """Remove all operations called *name*."""
         self._variable.pop(name, None)
-        for key in [key for key in self._exact if key[0] == name]:
-            del self._exact[key]
+        for key in [key for key in self.exact if key[0] == name]:
+            del self.exact[key]
 
     def copy(self) -> "OperationTable":
         """Return a table that can be changed independently."""
-        return OperationTable(dict(self._exact), dict(self._variable))
+        return OperationTable(dict(self.exact), dict(self._variable))
 
     def __iter__(self) -> Iterator[DeclaredOperation]:
-        listed = (*self._exact.values(), *self._variable.values())
+        listed = (*self.exact.values(), *self._variable.values())
         return iter({id(each): each for each in listed if not each.common}.values())
 
     def keys(self) -> list[str]:
         """Return names and arities, such as ``inc/1`` and ``sum/any``, without operations that every artifact has."""
-        exact = [f"{name}/{arity}" for (name, arity), each in self._exact.items() if not each.common]
+        exact = [f"{name}/{arity}" for (name, arity), each in self.exact.items() if not each.common]
         return exact + [f"{name}/any" for name in self._variable]
 
     def explain(self, name: str) -> str:

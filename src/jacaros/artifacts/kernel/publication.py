@@ -105,6 +105,7 @@ class Setting:
         told: advice to authors that has been logged once.
         arbiter: assigns resources to operations and plans.
         loop: event loop of the operations. None before the first one.
+        thread: the thread of the loop; 0 before the first operation.
         on_internal_error: called with defects of JaCaROS itself. None lets them propagate.
     """
 
@@ -117,7 +118,7 @@ class Setting:
     told: set[object] = field(default_factory=set, init=False)
     arbiter: Arbiter = field(init=False)
     loop: asyncio.AbstractEventLoop | None = field(default=None, init=False)
-    _loop_thread: int = field(default=0, init=False)
+    thread: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
         self.arbiter = Arbiter(self.clock, lambda text: self.log(f"warning: {text}"))
@@ -127,11 +128,11 @@ class Setting:
         if self.loop is None:
             with suppress(RuntimeError):
                 self.loop = asyncio.get_running_loop()
-                self._loop_thread = threading.get_ident()
+                self.thread = threading.get_ident()
 
     def elsewhere(self) -> bool:
         """Return whether the caller is in another thread than that of the event loop."""
-        return self.loop is not None and self._loop_thread != threading.get_ident()
+        return self.thread != 0 and self.thread != threading.get_ident()
 
     def call_on_loop(self, callback: Callable[[], object]) -> None:
         """Call *callback* on the event loop, from another thread. No effect if the loop has ended."""

@@ -18,11 +18,12 @@ class Registry:
     An artifact may be promised: it has its id, and is created when more than its operations is needed.
 
     Attributes:
+        steps: the artifacts that have been created.
         when_disposed: called with the id of a disposed artifact, after its observers have been notified.
     """
 
     def __init__(self) -> None:
-        self._steps: dict[ArtifactId, Steps] = {}
+        self.steps: dict[ArtifactId, Steps] = {}
         self._promises: dict[ArtifactId, Promise] = {}
         self._forget: dict[ArtifactId, Callable[[ArtifactId], None]] = {}
         self._ending: list[Steps] = []
@@ -37,7 +38,7 @@ class Registry:
 
     def add(self, steps: Steps, forget: Callable[[ArtifactId], None]) -> None:
         """Add an artifact. *forget* is called when it is removed."""
-        self._steps[steps.id] = steps
+        self.steps[steps.id] = steps
         self._forget[steps.id] = forget
 
     def promise(self, artifact_id: ArtifactId, interface: Interface, make: Callable[[], Steps]) -> None:
@@ -50,7 +51,7 @@ class Registry:
 
     def find(self, artifact_id: ArtifactId) -> Steps | None:
         """Return the artifact with this id, or None if it is gone."""
-        found = self._steps.get(artifact_id)
+        found = self.steps.get(artifact_id)
         if found is None and artifact_id in self._promises:
             _, make = self._promises.pop(artifact_id)
             return make()
@@ -58,19 +59,19 @@ class Registry:
 
     def made(self, artifact_id: ArtifactId) -> Steps | None:
         """Return the artifact with this id, or None if it is gone or only promised."""
-        return self._steps.get(artifact_id)
+        return self.steps.get(artifact_id)
 
     def interface(self, artifact_id: ArtifactId) -> Interface | None:
         """Return the operations of the artifact with this id, or None if it is gone."""
         if artifact_id in self._promises:
             return self._promises[artifact_id][0]
-        found = self._steps.get(artifact_id)
+        found = self.steps.get(artifact_id)
         return found.interface if found is not None else None
 
     def dispose(self, steps: Steps) -> None:
         """Remove an artifact and all links from and to it, and end its operations."""
         steps.publish_last()
-        if steps.id in self._steps:
+        if steps.id in self.steps:
             self._remove(steps.id)
         steps.dispose()
         self._ending = [each for each in (*self._ending, steps) if not each.ending.over]
@@ -83,7 +84,7 @@ class Registry:
             await steps.closed()
 
     def _remove(self, artifact_id: ArtifactId) -> None:
-        del self._steps[artifact_id]
+        del self.steps[artifact_id]
         for port, behind in tuple(self._links.items()):
             behind.pop(artifact_id, None)
             if not behind or port[0] is artifact_id:

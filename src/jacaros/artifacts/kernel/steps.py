@@ -7,6 +7,7 @@ This module does not depend on what an artifact looks like to its author (`Artif
 
 import asyncio
 import inspect
+import threading
 from collections.abc import Awaitable, Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
@@ -236,14 +237,18 @@ class Steps:
 
     def execute(self, request: OperationRequest, kind: str) -> OperationExecution:
         """Run an operation of *kind*. A plain ``def`` of a free artifact has ended when this returns."""
-        table = self.interface.links if kind == LINK else self.interface.operations
-        declared = table.find(request.operation, len(request.arguments))
+        table, arguments = self.interface.operations, request.arguments
+        if kind == LINK:
+            table = self.interface.links
+        count = len(arguments)
+        declared = table.exact.get((request.operation, count)) or table.find(request.operation, count)
         if declared is None:
             return self.refuse(request, faults.unknown_operation(request, kind, self.interface))
-        try:
-            arguments = declared.signature.bind(request.arguments)
-        except WrongArguments as wrong:
-            return self.refuse(request, faults.wrong_arguments(request, wrong))
+        if count:
+            try:
+                arguments = declared.signature.bind(arguments)
+            except WrongArguments as wrong:
+                return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
             what = f"{self.id.path} {request.key}"
@@ -251,7 +256,10 @@ class Steps:
         execution = OperationExecution(self, request, declared, arguments, cause)
         if self.setting.listener is not None:
             self.setting.listener.began(execution)
-        self._arrive(execution, declared)
+        if declared.uses or declared.guard is not None:
+            self._arrive(execution, declared)
+        else:
+            self.turns.enter(execution, None)
         if request.timeout is not None and not execution.ended:
             execution.limit = self.clock.call_later(request.timeout, partial(self._time_is_up, execution))
         return execution
@@ -306,7 +314,7 @@ class Steps:
         turns = self.turns
         if turns.holder is not None or turns.places or turns.serving or self.disposed:
             return False
-        if self.setting.elsewhere():
+        if self.setting.thread and self.setting.thread != threading.get_ident():
             return False
         teller = self._teller
         teller.cause, turns.holder = cause, teller
@@ -384,15 +392,13 @@ class Steps:
         execution.begun = not declared.coroutine
         if error is not None:
             self.end(execution, error)
-        elif not declared.coroutine:
-            self._run(execution, declared)
-        else:
+            return
+        if declared.coroutine:
             name = f"{self.id.path} {execution.request.key}"
             self.setting.know_loop()
             execution.task = asyncio.get_running_loop().create_task(self._drive(execution), name=name)
             self._running[execution] = None
-
-    def _run(self, execution: OperationExecution, declared: DeclaredOperation) -> None:
+            return
         before = None if self.setting.tracer is None else CURRENT.set(execution.cause)
         try:
             result = declared.function(self.artifact, *execution.arguments)

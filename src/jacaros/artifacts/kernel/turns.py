@@ -54,7 +54,7 @@ class TurnQueue:
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
         """Begin an operation as soon as it has the turn, possibly immediately."""
-        if self.holder is not None or self.serving or execution.paused:
+        if self.holder is not None or self.serving or (execution.pauses is not None and execution.paused):
             self.places.append(Place(execution, guard))
             return
         self.serving = True

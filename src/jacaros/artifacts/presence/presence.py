@@ -48,6 +48,7 @@ class JoinedWorkspaces:
 
     Attributes:
         home: the home workspace.
+        here: the current workspace of all intentions. None if they differ, or if none is joined.
         watcher: called with each workspace that is joined (True) or quit (False).
 
     Raises:
@@ -62,6 +63,7 @@ class JoinedWorkspaces:
         self.home = environment.workspace(home)
         self._joined: dict[str, Workspace] = {self.home.path: self.home}
         self._last = self.home
+        self.here: Workspace | None = self.home
         self.watcher: Callable[[Workspace, bool], None] | None = None
         self._of_intention: dict[int, Workspace] = {}
 
@@ -142,6 +144,10 @@ class JoinedWorkspaces:
         """Make a workspace the current one. Return True if it was not joined before."""
         is_new = self._joined.pop(workspace.path, None) is None
         self._joined[workspace.path] = self._last = workspace
+        if intention is None and not self._of_intention:
+            self.here = workspace
+        else:
+            self.here = None
         if is_new and self.watcher is not None:
             self.watcher(workspace, True)
         if intention is not None:
@@ -156,6 +162,7 @@ class JoinedWorkspaces:
         del self._joined[workspace.path]
         if self._last is workspace:
             self._last = next(reversed(self._joined.values()), self.home)
+        self.here = self._last if self._joined and not self._of_intention else None
         if self.watcher is not None:
             self.watcher(workspace, False)
 
@@ -520,7 +527,8 @@ class Presence:
         """
         if direction is ANYWHERE and namespace is None:
             # Nearly always it is the only one of the current workspace.
-            candidates = self.workspaces.current(intention).providers(operation, arity)
+            here = self.workspaces.here or self.workspaces.current(intention)
+            candidates = here.known.get((operation, arity)) or here.providers(operation, arity)
             if len(candidates) == 1:
                 return candidates[0]
         wanted = direction.artifact
@@ -659,7 +667,13 @@ identifies it, and the reason of a failure as text.
 
 
 class Activity(Protocol):
-    """Counts what runs, so that a run can detect idleness."""
+    """Counts what runs, so that a run can detect idleness.
+
+    Attributes:
+        pending: the number.
+    """
+
+    pending: int
 
     def begin(self) -> None:
         """Something with an end has begun."""

@@ -433,3 +433,26 @@ class Sequence:
 def go_to(x: float, y: float, heading: float) -> Maneuver:
     """Drive to a point, then turn to a heading."""
     return Sequence(DriveTo(x, y), TurnTo(heading))
+
+
+LEAST_PROGRESS = 0.01
+"""Metres or radians that count as progress."""
+
+
+class Progress:
+    """Detects a motion that makes no progress."""
+
+    def __init__(self) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset: the robot is not supposed to move, or has a new goal."""
+        self._least = math.inf
+        self._since = 0.0
+
+    def is_stuck(self, remaining: float, now: float, patience: float) -> bool:
+        """Record the remaining distance at *now* (seconds of driving). Return True if it decreased too little for too
+        long."""
+        if remaining < self._least - LEAST_PROGRESS:
+            self._least, self._since = remaining, now
+        return now - self._since >= patience

@@ -1,15 +1,18 @@
-"""One motion operation from its request to its end: the loop around a maneuver.
+"""The motions of a robot, from their request to their end: claims of its wheels, and the loop around a maneuver.
 
 Every end publishes zero velocity: success, failure, drop, suspension, loss of odometry, disposal of the artifact.
 """
 
+import asyncio
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import ClassVar, NoReturn
+from typing import ClassVar, NoReturn, Self
+from weakref import WeakKeyDictionary
 
-from jacaros.artifacts.env.arbiter import WHEELS
+from jacaros.artifacts.env.arbiter import HOLDING, WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
 from jacaros.robots.artifacts.drive_model import (
@@ -20,27 +23,27 @@ from jacaros.robots.artifacts.drive_model import (
     read_quality,
     write_quality,
 )
-from jacaros.robots.artifacts.maneuver import Maneuver, distance
-from jacaros.robots.artifacts.motion_claim import Aborted, Driving, motions_of
+from jacaros.robots.artifacts.maneuver import LEAST_PROGRESS, Maneuver, Progress, distance
 from jacaros.robots.artifacts.odometry import (
     LOCALISED,
-    NO_TRANSFORM,
     Drift,
     Odometer,
     Odometry,
     Placed,
     driving_frame,
-    pose_values,
 )
 from jacaros.robots.kit.connection import MATCH_OPTIONS
 from jacaros.robots.kit.options import positive, text
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.plane.pose import Pose
+from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import CapabilityMissing
+from jacaros.robots.ros.guarded import guarded_by
 from jacaros.robots.ros.names import frame_name
 from jacaros.robots.ros.qos import SENSOR_DATA
 from jacaros.robots.streams import ReadingPolicy
+from jacaros.runtime.clock import Clock
 
 TWIST = "geometry_msgs/msg/Twist"
 
@@ -55,9 +58,6 @@ STALE = 0.5
 STUCK = 2.0
 """Seconds without progress after which a commanded motion is blocked."""
 
-LEAST_PROGRESS = 0.01
-"""Metres or radians that count as progress."""
-
 FRESH = 2
 """Odometry messages that must arrive after a gap before a motion continues: the first one may predate it."""
 
@@ -67,6 +67,13 @@ meaning."""
 
 LONGEST_BRAKING = 3.0
 """Seconds after which a braking robot counts as standing: its twist may only be noise."""
+
+GAP = 0.5
+"""Seconds by which a motion may be late, or the clock be set. More is a gap: the robot was not watched for longer
+than a base waits for commands."""
+
+GUARD_TRIPPED = Atom("guard_tripped")
+"""Reason of the gap of a robot that a guard has stopped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,18 +91,222 @@ class MotionSettings:
     timeout: float | None
 
 
+# The motions of a robot: who drives, who waits, and what ends or interrupts them. The arbiter of resources decides which
+# of them drives: all use ``wheels``.
+
+
+class Claim:
+    """One motion, from its request to its end.
+
+    Args:
+        stop: commands zero velocity immediately.
+
+    Attributes:
+        aborted: the motion was aborted.
+        gap: why the robot was not watched for a while; the motion clears it. None otherwise.
+    """
+
+    def __init__(self, stop: Callable[[], None]) -> None:
+        self.stop = stop
+        self.aborted = False
+        self.gap: Structure | Atom | None = None
+        self._waiting: asyncio.Future[None] | None = None
+        self._woken = False
+
+    def interrupt(self, why: Structure | Atom) -> None:
+        """Stop the robot immediately; the motion decides whether it continues."""
+        self.gap = why
+        self.stop()
+        self.wake()
+
+    def wake(self) -> None:
+        """End the present wait, or the next one if none exists."""
+        if self._waiting is None:
+            self._woken = True
+        elif not self._waiting.done():
+            self._waiting.set_result(None)
+
+    async def wait(self, clock: Clock, seconds: float | None) -> None:
+        """Wait until this motion is woken or the time is over."""
+        if self._woken:
+            self._woken = False
+            return
+        waiting = self._waiting = asyncio.get_running_loop().create_future()
+        began, set_to = clock.elapsed, clock.now() - clock.elapsed
+        unknown = clock.now() == 0.0  # a clock that follows /clock before its first message
+        timer = None if seconds is None else clock.call_later(seconds, self.wake)
+        try:
+            await waiting
+        finally:
+            self._waiting = None
+            if timer is not None:
+                timer.cancel()
+        if seconds is not None:
+            moved = 0.0 if unknown else clock.now() - clock.elapsed - set_to
+            self._look_for_gap(clock.elapsed - began - seconds, moved)
+
+    def _look_for_gap(self, late: float, moved: float) -> None:
+        """Detect that the process was frozen or stuck, or that the clock was set."""
+        if late > GAP:
+            self.gap = Structure("delayed", (round(late, 3),))
+        elif abs(moved) > GAP:
+            self.gap = Structure("clock_jumped", (round(moved, 3),))
+        else:
+            return
+        self.stop()
+
+
+class Motions:
+    """The motions of one robot that drive or wait to drive, of all artifacts.
+
+    Attributes:
+        stops: how often the robot was stopped; a command that is still waiting to be sent must not follow.
+        claims: motions that are neither suspended nor finished.
+        models: what is known of the robot, for each artifact that drives it.
+    """
+
+    def __init__(self) -> None:
+        self.stops = 0
+        self.claims: dict[Claim, None] = {}
+        self.models: list[DriveModel] = []
+
+    def watch(self, mover: RosArtifact, stand: Callable[[], None], halt: Callable[[], None]) -> None:
+        """Stop the robot when the process ends or a guard trips, by *stand*, and when *mover* ends, by *halt*.
+
+        *stand* may be called in a thread, so it only publishes.
+        """
+        mover.at_dispose(mover.ros.add_exit_hook(stand))
+        mover.at_dispose(guarded_by(mover.ros).on_standstill(stand))
+        mover.at_dispose(halt)
+
+    def abort(self) -> None:
+        """Abort the motion that drives and all that wait, except suspended ones.
+
+        The robot stops immediately; the operations fail when they run next.
+        """
+        self.stops += 1
+        for claim in list(self.claims):
+            claim.aborted = True
+            claim.stop()
+            claim.wake()
+
+
+class Aborted(Exception):
+    """Raised in a motion that was aborted."""
+
+
+class Driving(Claim):
+    """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
+
+    A context manager: the motion begins when it is entered, and stops when it is left.
+
+    Args:
+        mover: the artifact of the operation.
+        motions: the motions of the robot.
+        use: what the motion needs.
+        stop: stops the robot.
+        show: shows ``waiting`` or ``paused`` to observers.
+    """
+
+    def __init__(
+        self,
+        mover: RosArtifact,
+        motions: Motions,
+        use: str,
+        stop: Callable[[], None],
+        show: Callable[[str], None] = lambda state: None,
+    ) -> None:
+        super().__init__(self.halt)
+        self._mover, self._motions, self._stop, self._show = mover, motions, stop, show
+        self._execution = mover.current
+        self._holding = self._execution.hold((use,))
+        self._claims_itself = not self._holding.entered
+        self._hooks: list[Callable[[], None]] = []
+
+    @property
+    def paused(self) -> bool:
+        """Whether the agent has suspended the motion, or another one drives."""
+        return self._execution.paused
+
+    def halt(self) -> None:
+        """Stop the robot immediately if this motion drives; otherwise another one may be driving it."""
+        if self._holding.claim.state in HOLDING:
+            self._stop()
+
+    def __enter__(self) -> Self:
+        self._hooks = [
+            self._execution.on_pause(self._on_pause),
+            self._holding.watch(self.wake),
+            guarded_by(self._mover.ros).on_interruption(lambda: self.interrupt(GUARD_TRIPPED)),
+        ]
+        return self
+
+    def _on_pause(self) -> None:
+        self.halt()
+        self.wake()
+
+    def __exit__(self, *_: object) -> None:
+        for forget in self._hooks:
+            forget()
+        self.halt()
+        self._motions.claims.pop(self, None)
+        if self._claims_itself:
+            self._holding.leave()
+
+    async def ready(self) -> None:
+        """Wait until this motion may drive. While it is suspended, `Motions.abort` does not end it."""
+        execution, claims = self._execution, self._motions.claims
+        self._holding.enter()
+        claims[self] = None
+        while execution.paused:
+            suspended = execution.suspended
+            if suspended:
+                claims.pop(self, None)
+            else:
+                claims[self] = None
+            self._show("paused" if suspended else "waiting")
+            self._holding.rest()
+            if execution.paused:
+                await self.pass_time(None)
+        claims[self] = None
+
+    async def pass_time(self, seconds: float | None) -> None:
+        """Wait until this motion is woken or the time is over.
+
+        Raises:
+            Aborted: the motion was aborted.
+        """
+        await self._mover.step(self.wait(self._mover.clock, seconds))
+        if self.aborted:
+            raise Aborted
+
+
+_motions: WeakKeyDictionary[Backend, dict[str, Motions]] = WeakKeyDictionary()
+
+
+def motions_of(backend: Backend, robot: str) -> Motions:
+    """Return the motions of the robot with the topic prefix *robot*: the same object for the same backend."""
+    return _motions.setdefault(backend, {}).setdefault(robot, Motions())
+
+
+# One motion operation, and its loop around a maneuver.
+
+
 class Motion:
     """Run one motion operation.
 
     Args:
         wheels: the artifact of the operation.
         maneuver: the task.
+
+    Attributes:
+        driving: its claim.
     """
 
     def __init__(self, wheels: "WheeledArtifact", maneuver: Maneuver) -> None:
         self._wheels, self._fail = wheels, wheels.fail
         self._maneuver = maneuver
-        self._driving = Driving(
+        self.driving = Driving(
             wheels,
             wheels.motions,
             WHEELS,
@@ -113,10 +324,6 @@ class Motion:
         self._progress = Progress()
         self._sought = (0.0, 0.0)
 
-    def halt(self) -> None:
-        """Command zero velocity immediately if this motion is driving."""
-        self._driving.halt()
-
     async def run(self) -> None:
         """Drive the maneuver to its end.
 
@@ -125,7 +332,7 @@ class Motion:
                 ``interrupted`` or ``timeout``.
         """
         try:
-            with self._driving:
+            with self.driving:
                 await self._drive()
         except Aborted:
             if self._begun:
@@ -154,7 +361,7 @@ class Motion:
         """Claim the robot and wait until it stands: it may still roll from an earlier motion."""
         ready = False
         while not ready:
-            await self._driving.ready()
+            await self.driving.ready()
             ready = await self._stand()
 
     async def _stand(self) -> bool:
@@ -163,7 +370,7 @@ class Motion:
         blind = not self._maneuver.needs_odometry
         pauses = self._wheels.matching.pauses(always=blind)
         self._due = self._wheels.clock.elapsed
-        while not self._driving.paused:
+        while not self.driving.paused:
             self._heed_gap()
             seen = blind or self._has_odometry()
             pause = next(pauses, None)
@@ -188,7 +395,7 @@ class Motion:
         blind = not maneuver.needs_odometry
         self._due = self._wheels.clock.elapsed
         while True:
-            if self._driving.paused:
+            if self.driving.paused:
                 if await self._brake():
                     maneuver.rest(self._pose())
                     return False
@@ -211,7 +418,7 @@ class Motion:
     async def _command(self, step: Step, periodic: bool = True) -> None:
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(step.velocity)
-        await self._driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
+        await self.driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
         self._active += step.seconds
 
     def _until_due(self, period: float) -> float:
@@ -232,11 +439,11 @@ class Motion:
         """
         self._wheels.show(self, "paused")
         braking = 0.0
-        while self._driving.paused:
+        while self.driving.paused:
             if self._rests(braking):
                 return True
             self._wheels.command(STANDSTILL)
-            await self._driving.pass_time(PERIOD)
+            await self.driving.pass_time(PERIOD)
             braking += PERIOD
         return False
 
@@ -252,8 +459,8 @@ class Motion:
         if self._sees():
             self._watched = True
         elif self._watched and not self._maneuver.needs_odometry:
-            self._driving.interrupt(self._silence())
-        why, self._driving.gap = self._driving.gap, None
+            self.driving.interrupt(self._silence())
+        why, self.driving.gap = self.driving.gap, None
         if why is None:
             return
         self._progress.reset()
@@ -284,10 +491,10 @@ class Motion:
         if self._blind_since is None:
             self._blind_since = self._active
             if self._begun and odometer.trusted and odometer.count >= self._fresh:
-                self._driving.gap = self._silence()
+                self.driving.gap = self._silence()
         limit = self._wheels.settings.odometry_timeout
         if self._active - self._blind_since >= limit:
-            self._fail(f"{_lack(odometer)} for {limit:g} s", odometer.lacking, limit)
+            self._fail(f"{odometer.lack()} for {limit:g} s", odometer.lacking, limit)
         return False
 
     def _check_leap(self) -> None:
@@ -340,32 +547,6 @@ class Motion:
         if model.is_late:
             self._fail(text, "late", round(model.delay, 3))
         self._fail(text, "does_not_move", Atom("dead_band"))
-
-
-def _lack(odometer: Odometer) -> str:
-    if odometer.lacking == NO_TRANSFORM:
-        return "no transform from the frame of odometry to the driving frame; is the robot localised?"
-    bad = f" ({odometer.faults.total} messages were bad)" if odometer.faults.total else ""
-    return f"no odometry{bad}"
-
-
-class Progress:
-    """Detects a motion that makes no progress."""
-
-    def __init__(self) -> None:
-        self.reset()
-
-    def reset(self) -> None:
-        """Reset: the robot is not supposed to move, or has a new goal."""
-        self._least = math.inf
-        self._since = 0.0
-
-    def is_stuck(self, remaining: float, now: float, patience: float) -> bool:
-        """Record the remaining distance at *now* (seconds of driving). Return True if it decreased too little for too
-        long."""
-        if remaining < self._least - LEAST_PROGRESS:
-            self._least, self._since = remaining, now
-        return now - self._since >= patience
 
 
 class WheeledArtifact(RosArtifact):
@@ -470,9 +651,9 @@ class WheeledArtifact(RosArtifact):
 
     def on_odometry(self, odometry: Odometry) -> None:
         """Handle every odometry message."""
-        late = self.odometer.header.late
-        self.model.observed(odometry.pose, odometry.velocity, self.clock.elapsed, late)
-        self.newest_pose.take(pose_values(odometry))
+        late, pose = self.odometer.header.late, odometry.pose
+        self.model.observed(pose, odometry.velocity, self.clock.elapsed, late)
+        self.newest_pose.take((pose.x, pose.y, math.degrees(pose.yaw)))
 
     def _settings(self) -> MotionSettings:
         """Read speeds, which options give in degrees where they turn, and time-outs."""
@@ -492,10 +673,12 @@ class WheeledArtifact(RosArtifact):
 
     def command(self, velocity: Velocity) -> None:
         """Publish one velocity command."""
-        self.motions.commanded(velocity, self.clock.elapsed)
+        now = self.clock.elapsed
+        for model in self.motions.models:  # all artifacts that drive the robot see the effect in odometry
+            model.commanded(velocity, now)
         if velocity != STANDSTILL:
             self._drove = True
-        twist = self._commands.message()
+        twist = self._commands.new()
         twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
         self._commands.publish(twist)
 
@@ -544,7 +727,7 @@ class WheeledArtifact(RosArtifact):
 
     def _halt(self) -> None:
         for motion in list(self._motions):
-            motion.halt()
+            motion.driving.halt()
 
     def _stand(self) -> None:
         """Stop when the process ends. This may run in a thread, so it only publishes.

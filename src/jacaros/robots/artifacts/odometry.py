@@ -8,11 +8,11 @@ from weakref import WeakSet
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.robots.artifacts.drive_model import Velocity
-from jacaros.robots.kit.faults import Header
+from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import text
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.plane.pose import Pose, normalised, yaw_of
+from jacaros.robots.plane.pose import Pose, normalised
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import TransformUnavailable
 from jacaros.robots.ros.message import to_seconds
@@ -43,28 +43,9 @@ class Odometry:
     sample: Sample
 
 
-def read_odometry(sample: Sample) -> Odometry:
-    """Read the relevant fields of a ``nav_msgs/msg/Odometry``."""
-    pose: Any = sample.message.pose.pose
-    twist: Any = sample.message.twist.twist
-    position = (float(pose.position.x), float(pose.position.y), float(pose.position.z))
-    q = pose.orientation
-    return Odometry(
-        position,
-        Pose(position[0], position[1], yaw_of(q.x, q.y, q.z, q.w)),
-        Velocity(float(twist.linear.x), float(twist.angular.z)),
-        sample,
-    )
-
-
-def not_finite(sample: Sample) -> tuple[str, float] | None:
+def not_finite(message: Any) -> tuple[str, float] | None:
     """Return the first NaN or infinite number of an odometry message with its field; None if none exists."""
-    pose: Any = sample.message.pose.pose
-    twist: Any = sample.message.twist.twist
-    p, q = pose.position, pose.orientation
-    # A sum is finite only if all its terms are: one test for nearly all messages.
-    if math.isfinite(p.x + p.y + p.z + q.x + q.y + q.z + q.w + twist.linear.x + twist.angular.z):
-        return None
+    twist, p, q = message.twist.twist, message.pose.pose.position, message.pose.pose.orientation
     fields = [(f"pose.pose.position.{name}", getattr(p, name)) for name in "xyz"]
     fields += [(f"pose.pose.orientation.{name}", getattr(q, name)) for name in "xyzw"]
     fields += [("twist.twist.linear.x", twist.linear.x), ("twist.twist.angular.z", twist.angular.z)]
@@ -82,7 +63,7 @@ class Odometer:
         artifact: subscribes to the topic, and reports bad messages.
         topic: the robot's topic.
         on_reading: called with every good message.
-        frame: see `Header`.
+        frame: see `Stamps`.
         placed: converts odometry to the driving frame, None while that is unknown; see `driving_frame`.
 
     Attributes:
@@ -108,20 +89,30 @@ class Odometer:
         self.count = 0
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.faults = artifact.faults_of(topic)
-        self.header = Header(self.faults, artifact.clock, frame)
+        self.header = Stamps(self.faults, artifact.clock, frame)
         self._on_reading, self._placed = on_reading, placed
         artifact.subscription(topic, ODOMETRY, self.take, SENSOR_DATA)
 
     def take(self, sample: Sample) -> None:
         """Handle a message; the callback of the subscription."""
-        wrong = not_finite(sample)
-        if wrong is not None:
+        message: Any = sample.message
+        twist, p, q = message.twist.twist, message.pose.pose.position, message.pose.pose.orientation
+        x, y, z, w, linear, angular = q.x, q.y, q.z, q.w, twist.linear.x, twist.angular.z
+        # A sum is finite only if all its terms are: one test for nearly all messages.
+        if (
+            not math.isfinite(p.x + p.y + p.z + x + y + z + w + linear + angular)
+            and (wrong := not_finite(message)) is not None
+        ):
             self.trusted, self.lacking = False, NO_ODOMETRY
             self.faults.not_finite(*wrong)
             return
-        if not self.header.accepts(sample):
+        header = message.header
+        if not self.header.accept(to_seconds(header.stamp), sample.stamp, header.frame_id):
             return
-        read = read_odometry(sample)
+        position = (float(p.x), float(p.y), float(p.z))
+        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))  # that of `yaw_of`, inlined
+        pose, velocity = Pose(position[0], position[1], yaw), Velocity(float(linear), float(angular))
+        read = Odometry(position, pose, velocity, sample)
         odometry = read if self._placed is None else self._placed(read)
         if odometry is None:
             self.trusted, self.lacking = False, NO_TRANSFORM
@@ -130,6 +121,13 @@ class Odometer:
         self.trusted, self.lacking = True, NO_ODOMETRY
         self.count += 1
         self._on_reading(odometry)
+
+    def lack(self) -> str:
+        """Return why there is no odometry, for messages."""
+        if self.lacking == NO_TRANSFORM:
+            return "no transform from the frame of odometry to the driving frame; is the robot localised?"
+        bad = f" ({self.faults.total} messages were bad)" if self.faults.total else ""
+        return f"no odometry{bad}"
 
     def age(self, now: float) -> float | None:
         """Return the age of the newest message in seconds, corrected by its delay; None before the first."""
@@ -169,8 +167,9 @@ class ArtOdometry(RosArtifact):
         Odometer(self, self.option("topic", "odom"), self._take, self.option("frame", ""))
 
     def _take(self, odometry: Odometry) -> None:
-        position, pose = (self._position, odometry.position), (self._pose, pose_values(odometry))
-        self.take_together(odometry.sample.cause, position, pose)
+        pose = odometry.pose
+        values = (pose.x, pose.y, math.degrees(pose.yaw))
+        self.take_together(odometry.sample.cause, (self._position, odometry.position), (self._pose, values))
 
     @operation(name="getCurrentOdom")
     async def get_current_odom(self) -> None:
@@ -193,12 +192,6 @@ class ArtOdometryOnDemand(ArtOdometry):
     """Shows odometry only when an agent requests it with ``getCurrentOdom``."""
 
     on_demand = True
-
-
-def pose_values(odometry: Odometry) -> tuple[float, float, float]:
-    """x and y in metres, heading in degrees."""
-    pose = odometry.pose
-    return (pose.x, pose.y, math.degrees(pose.yaw))
 
 
 # The frame in which a robot drives: odometry's own, or one that localisation corrects, such as ``map``.

@@ -7,11 +7,12 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.values import Atom
-from jacaros.robots.kit.faults import Header
+from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import positive, text
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading, not_finite
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.backend import Sample
+from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.qos import SENSOR_DATA
 from jacaros.robots.streams import ReadingPolicy
 
@@ -50,13 +51,15 @@ class ArtBaseScan(RosArtifact):
         self._ranges = tuple(
             self.reading(name, policy, *[0] * len(SHARES), topic=topic) for name in self.names
         )
-        self._header = Header(self.faults_of(topic), self.clock, self.option("frame", ""))
+        self._header = Stamps(self.faults_of(topic), self.clock, self.option("frame", ""))
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take, SENSOR_DATA)
 
     def _take(self, sample: Sample) -> None:
         scan = sample.message
         longest = self.option("max", float(scan.range_max))
-        if len(scan.ranges) and self._header.accepts(sample):
+        header = scan.header
+        stamp = to_seconds(header.stamp)
+        if len(scan.ranges) and self._header.accept(stamp, sample.stamp, header.frame_id):
             values = sampled(scan.ranges, longest, scan.range_min)
             if not_finite(values) is None:
                 self.take_together(sample.cause, *((reading, values) for reading in self._ranges))

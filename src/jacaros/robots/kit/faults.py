@@ -25,10 +25,8 @@ is set back, stamps go back too; when messages are late, they do not.
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Sample
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.files.texts import is_worth_a_line
@@ -146,18 +144,24 @@ faster."""
 
 
 class Stamps:
-    """Check the stamps of the messages of a topic.
+    """Check the stamps of the messages of a topic, and the frames of their headers (``std_msgs/msg/Header``).
+
+    A zero stamp and an empty frame carry no information and are accepted.
 
     Args:
         faults: counts bad messages.
         clock: measures how late messages are.
+        frame: the only accepted frame; empty: that of the first message.
 
     Attributes:
         late: how many seconds later than earlier messages the newest one arrived.
+        frame: the frame that is accepted now; empty while it is unknown.
     """
 
-    def __init__(self, faults: Faults, clock: Clock) -> None:
+    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
         self.late = 0.0
+        self._wanted = self.frame = frame.strip("/")
+        self._good_at = -math.inf
         self._faults, self._clock = faults, clock
         self._newest = 0.0
         self._dropped = 0
@@ -165,35 +169,50 @@ class Stamps:
         self._least: float | None = None
         self._heard = 0.0
 
-    def accept(self, stamp: float, now: float) -> bool:
-        """Return whether a message may be used. Both times are in seconds since the epoch, *stamp* on the sender's
-        clock.
+    def accept(self, stamp: float, now: float, frame: str = "") -> bool:
+        """Return whether a message may be used; count it if not. Both times are in seconds since the epoch, *stamp* on
+        the sender's clock.
 
         Args:
             stamp: stamp of the message; 0.0: none.
             now: time on our clock; 0.0: not known yet.
+            frame: frame of the message; empty: none.
         """
-        if stamp == 0.0:
-            return True
+        if frame and frame != self.frame and not self._is_in_frame(frame, now):
+            return False
         # A clock that follows /clock is at 0 until its first message, and odometry may arrive before that.
-        if now != 0.0 and abs(stamp - now) >= FAR:
-            off = round(stamp - now, 3)
-            text = f"the stamp differs from our clock by {off:g} s; do both follow the same clock (use_sim_time)?"
-            self._faults.add(Structure("stamp_off", (off,)), text)
-        if stamp >= self._newest or self._has_jumped(stamp):
+        if stamp != 0.0 and now != 0.0 and abs(stamp - now) >= FAR:
+            self._report_off(round(stamp - now, 3))
+        if stamp != 0.0 and (stamp >= self._newest or self._has_jumped(stamp)):
             if self._dropped >= IN_A_ROW:
                 self._least = None  # the sender's clock was set back slightly
             if stamp > self._newest or self._least is None:
-                self._note_delay(stamp)
+                elapsed = self._clock.elapsed
+                delay = elapsed - stamp  # the zero is arbitrary; only differences count
+                least = delay
+                if self._least is not None:  # clocks drift apart, so the limit grows
+                    least = min(delay, self._least + DRIFT * (elapsed - self._heard))
+                self._least, self._heard, self.late = least, elapsed, delay - least
+                if self.late >= LATE:
+                    self._report_late()
             self._newest = stamp
             self._dropped = 0
             self._stragglers.clear()
-            return True
+        elif stamp != 0.0:
+            self._report_old(stamp)
+            return False
+        self._good_at = now
+        return True
+
+    def _report_off(self, off: float) -> None:
+        text = f"the stamp differs from our clock by {off:g} s; do both follow the same clock (use_sim_time)?"
+        self._faults.add(Structure("stamp_off", (off,)), text)
+
+    def _report_old(self, stamp: float) -> None:
         self._dropped += 1
         late = round(self._newest - stamp, 3)
         text = f"the stamp is {late:g} s older than that of an earlier message; message dropped"
         self._faults.add(Structure("out_of_order", (late,)), text)
-        return False
 
     def _has_jumped(self, stamp: float) -> bool:
         """Return whether this older stamp and the ones before it show that the sender's clock was set back."""
@@ -208,51 +227,10 @@ class Stamps:
         self._least = None
         return True
 
-    def _note_delay(self, stamp: float) -> None:
-        """Compare the delay of a message with the shortest so far; the limit grows as the clocks drift apart."""
-        now = self._clock.elapsed
-        delay = now - stamp  # the zero is arbitrary; only differences count
-        if self._least is not None:
-            self._least = min(delay, self._least + DRIFT * (now - self._heard))
-        else:
-            self._least = delay
-        self._heard = now
-        self.late = delay - self._least
-        if self.late >= LATE:
-            late = round(self.late, 3)
-            text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
-            self._faults.add(Structure("late", (late,)), text)
-
-
-class Header(Stamps):
-    """Check the headers (``std_msgs/msg/Header``) of the messages of a topic.
-
-    A zero stamp and an empty frame carry no information and are accepted.
-
-    Args:
-        faults: counts bad messages.
-        clock: measures how late messages are.
-        frame: the only accepted frame; empty: that of the first message.
-
-    Attributes:
-        frame: the frame that is accepted now; empty while it is unknown.
-    """
-
-    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
-        super().__init__(faults, clock)
-        self._wanted = self.frame = frame.strip("/")
-        self._good_at = -math.inf
-
-    def accepts(self, sample: Sample) -> bool:
-        """Return whether a message may be used; count it if not."""
-        header: Any = sample.message.header
-        frame = header.frame_id
-        good = (not frame or frame == self.frame or self._is_in_frame(frame, sample.stamp)) and (
-            self.accept(to_seconds(header.stamp), sample.stamp)
-        )
-        if good:
-            self._good_at = sample.stamp
-        return good
+    def _report_late(self) -> None:
+        late = round(self.late, 3)
+        text = f"the message arrived {late:g} s later than earlier ones; motions do not use it"
+        self._faults.add(Structure("late", (late,)), text)
 
     def _is_in_frame(self, given: str, now: float) -> bool:
         frame = given.strip("/")

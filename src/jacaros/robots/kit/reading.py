@@ -88,6 +88,8 @@ class Reading:
         self._taken = 0.0
         self._queue = Queue(self.clock, self._deliver_if_new)
         self._expecting: list[asyncio.Future[None]] = []
+        self._drops_equal = self.policy.dead_band == 0.0 and self.policy.finite
+        """Whether all values that are not equal to the last ones are delivered."""
 
     def take(self, values: Values, cause: Cause | None = None) -> None:
         """Take the values of a message, and deliver them now, later or never."""
@@ -154,13 +156,16 @@ class Reading:
         """Return whether to deliver the newest values now; if so, they count as delivered."""
         if self.newest is None or self.deliver is None:
             return False
-        passes = self._delivered is None or self.policy.differ(self._delivered, self.newest)
+        policy, newest, delivered = self.policy, self.newest, self._delivered
+        passes = delivered is None or (
+            delivered != newest if self._drops_equal else policy.differ(delivered, newest)
+        )
         if passes:
-            if self.policy.latest_only and self.behind() and self._queue.wait():
+            if policy.latest_only and self.behind() and self._queue.wait():
                 return False
-            self._delivered = self.newest
-            if self.policy.rate is not None:
-                self._pause = self.clock.call_later(1.0 / self.policy.rate, self._end_pause)
+            self._delivered = newest
+            if policy.rate is not None:
+                self._pause = self.clock.call_later(1.0 / policy.rate, self._end_pause)
         self._queue.waits = False
         return passes
 

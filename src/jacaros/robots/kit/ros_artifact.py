@@ -81,6 +81,8 @@ class RosArtifact(Artifact):
     known_options: ClassVar[Mapping[str, Reader]] = {"namespace": text, "watch_connection": watching}
     robot_in_properties: ClassVar[bool] = False
 
+    _show_values: Callable[[str, Values], None]
+
     robot: str = ""
     options: Mapping[str, object] = {}
 
@@ -91,7 +93,8 @@ class RosArtifact(Artifact):
             OperationFailed: an option is unknown (the message lists the known ones) or invalid, or ROS does not allow
                 the name.
         """
-        kind = type(self).__name__
+        kind, properties = type(self).__name__, self._steps.publication.properties
+        self._show_values = partial(properties.update, annotations=None, or_define=True)
         try:
             self.robot, self.options = read_arguments(arguments, self.all_options(), kind)
             self.open()
@@ -422,7 +425,8 @@ class RosArtifact(Artifact):
         faults = self.faults_of(topic) if topic else self.faults_at(name)
 
         def deliver(values: Values, cause: Cause | None) -> None:
-            self._tell_readings([(name, values)], cause)
+            if not self._steps.tell(self._show_values, ((name, values),), cause):
+                self._show_later([(name, values)], cause)
 
         behind = partial(self._steps.publication.has_untaken, name)
         withdraw, refuse = partial(self.start, self.withdraw_reading, name), partial(faults.not_finite, name)
@@ -431,15 +435,17 @@ class RosArtifact(Artifact):
     def take_together(self, cause: Cause | None, *taken: tuple[Reading, Values]) -> None:
         """Pass the values of one message, whose numbers are known to be finite, to several readings; all updates are
         published in one step."""
-        shown = [(reading.name, values) for reading, values in taken if reading.offer(values, cause)]
-        if shown:
-            self._tell_readings(shown, cause)
+        shown: list[tuple[str, Values]] = []
+        for reading, values in taken:
+            if reading.offer(values, cause):
+                shown.append((reading.name, values))
+        if shown and not self._steps.tell(self._show_values, shown, cause):
+            self._show_later(shown, cause)
 
-    def _tell_readings(self, shown: list[tuple[str, Values]], cause: Cause | None) -> None:
-        """Update properties now, or as soon as the artifact is free."""
-        if not self._steps.tell(self._show_values, shown, cause):
-            self._steps.publication.coming.update(name for name, _ in shown)
-            self.start(self.show_readings, shown, cause=cause)
+    def _show_later(self, shown: list[tuple[str, Values]], cause: Cause | None) -> None:
+        """Update properties as soon as the artifact is free."""
+        self._steps.publication.coming.update(name for name, _ in shown)
+        self.start(self.show_readings, shown, cause=cause)
 
     @internal_operation
     def show_readings(self, shown: object) -> None:
@@ -454,9 +460,6 @@ class RosArtifact(Artifact):
         """Remove the property *name*: its values have expired."""
         if self.has_property(name):
             self.remove_property(name)
-
-    def _show_values(self, name: str, values: Values) -> None:
-        self._steps.publication.properties.put(name, values)
 
     @internal_operation
     def show_elements(self, name: str, elements: object, arity: int | None = None) -> None:

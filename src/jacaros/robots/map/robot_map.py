@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.robots.artifacts.odometry import Odometer, Odometry
-from jacaros.robots.kit.faults import Header
+from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import not_negative, number, one_of, positive, text, yes_or_no
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.map.cells import Cell, LabelledCells, OccupancyCells
@@ -109,7 +109,7 @@ class ArtMap(ArtSlamData):
             self.subscription(topic, "nav_msgs/msg/OccupancyGrid", self._take_map, LATCHED)
             return
         topic = self.option("scan_topic", "scan")
-        self._header = Header(self.faults_of(topic), self.clock)
+        self._header = Stamps(self.faults_of(topic), self.clock)
         self.subscription(topic, "sensor_msgs/msg/LaserScan", self._take_scan, SENSOR_DATA)
 
     def _listen_for_poses(self, pose_from: str) -> None:
@@ -132,9 +132,10 @@ class ArtMap(ArtSlamData):
 
     def _take_scan(self, sample: Sample) -> None:
         message = sample.message
-        if not self._header.accepts(sample):
+        stamp = to_seconds(message.header.stamp)
+        if not self._header.accept(stamp, sample.stamp, message.header.frame_id):
             return
-        if self._mapper.take_scan(to_seconds(message.header.stamp) or sample.stamp, message):
+        if self._mapper.take_scan(stamp or sample.stamp, message):
             self._first.take((True,))
             self._locate(sample)
 

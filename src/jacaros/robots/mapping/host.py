@@ -41,6 +41,7 @@ class Host(RosArtifact):
         self._reported: set[object] = set()
         self._notes: dict[str, tuple[object, ...]] = {}
         self._followers: dict[str, list[Callable[[Values], None]]] = {}
+        self._show_values = self._show_noted
 
     @property
     def robot_prefix(self) -> str:
@@ -80,7 +81,8 @@ class Host(RosArtifact):
         """Call *follower* with the values of the property *name* whenever it is shown."""
         self._followers.setdefault(name, []).append(follower)
 
-    def _show_values(self, name: str, values: Values) -> None:
+    def _show_noted(self, name: str, values: Values) -> None:
+        """Show values with the annotations of their property, and to its followers."""
         notes = self._notes.get(name)
         if self.has_property(name):
             self.update_property(name, *values, annotations=notes)

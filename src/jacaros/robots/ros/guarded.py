@@ -34,13 +34,6 @@ def velocity(publisher: Publisher, type_name: str, now: float, forward: float = 
     )
 
 
-def _moves(message: Any) -> bool:
-    twist = getattr(message, "twist", message)
-    return any(
-        number != 0.0 for vector in (twist.linear, twist.angular) for number in (vector.x, vector.y, vector.z)
-    )
-
-
 def guards_of(node: str) -> set[str]:
     """Return the names of the guards of a node: the one on the robot's computer, and the one that the run starts."""
     return {f"{node}_guard", f"{node}_local_guard"}
@@ -104,7 +97,10 @@ class Guarded:
         """Note the velocities that *publisher* sends."""
 
         def note(message: Any) -> None:
-            if not _moves(message):
+            twist = getattr(message, "twist", message)
+            ahead, turn = twist.linear, twist.angular
+            # NaN is true, too.
+            if not (ahead.x or ahead.y or ahead.z or turn.x or turn.y or turn.z):
                 self._moving.discard(publisher.topic)
             elif publisher.topic not in self._moving:
                 self._moving.add(publisher.topic)

@@ -7,7 +7,8 @@ on the client library). The differences are handled here: stamps, defaults and c
 
 import dataclasses
 from array import array
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,10 @@ class Schema:
     def new(self, type_name: str) -> Any:
         """Make a message with the family's own defaults. Raises `UnknownInterface`."""
         return self.message_class(type_name)()
+
+    def maker(self, type_name: str) -> Callable[[], Any]:
+        """Return a function that makes messages as `new` does. Raises `UnknownInterface`."""
+        return partial(self.new, type_name)
 
     def numbers(self, field: FieldType, values: Any) -> Any:
         """Convert the result of `array_of_numbers` to the form that the family stores in *field*."""

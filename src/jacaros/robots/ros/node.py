@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Generic, NoReturn, Protocol, TypeVar
 
@@ -469,6 +470,11 @@ class TopicPublisher(_TopicEnd[N]):
     def subscription_count(self) -> int:
         """Number of connected subscriptions."""
         raise NotImplementedError
+
+    @cached_property
+    def new(self) -> Callable[[], Any]:
+        """A function that makes a message of the topic's type with all defaults."""
+        return self._node.factory.maker(self.type_name)
 
     def message(self, **fields: Any) -> Any:
         """Make a message of the topic's type; see `Backend.message`."""

@@ -93,10 +93,13 @@ class DefinitionSchema(Schema):
 
     def new(self, type_name: str) -> Any:
         """Create a message with zeros, empty strings and empty sequences; raises `UnknownInterface`."""
+        return (self._makers.get(type_name) or self.maker(type_name))()
+
+    def maker(self, type_name: str) -> Callable[[], Any]:
         maker = self._makers.get(type_name)
         if maker is None:
             maker = self._makers[type_name] = self._compile(type_name)
-        return maker()
+        return maker
 
     def load(self, type_name: str) -> None:
         """Load the message types of a service or an action; raises `UnknownInterface`."""

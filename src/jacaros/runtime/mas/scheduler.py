@@ -166,7 +166,7 @@ class Scheduler:
 
     def _call_soon(self) -> None:
         self._due = True
-        self._loop_in_use().call_soon(self._turns, context=self._context)
+        (self._loop or self._loop_in_use()).call_soon(self._turns, context=self._context)
 
     def _loop_in_use(self) -> asyncio.AbstractEventLoop:
         if self._loop is None:

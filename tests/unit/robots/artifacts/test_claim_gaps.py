@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.motion_claim import Claim
+from jacaros.robots.artifacts.motion import Claim
 from jacaros.runtime.clock import VirtualClock, run
 
 

@@ -6,7 +6,6 @@ The functions for body formulae return the event to be handled by the same inten
 from collections.abc import Iterator
 from typing import Any
 
-from jacaros.agents.mind.rules import failure
 from jacaros.agents.mind.rules.pending import note_change, note_rule
 from jacaros.agents.mind.rules.searching import unify_rows
 from jacaros.agents.mind.state.act import Percept
@@ -302,19 +301,7 @@ Holder = tuple[Annotations, Any, Row, Row]
 """Of a property among several with the same values: its annotations, its entry, its row in the base, and as perceived."""
 
 
-def take_percepts(agent: Circumstance) -> None:
-    """Bring the belief base in line with what was noticed; a fault skips the rest of a step."""
-    while agent.incoming.percepts:
-        percepts = agent.incoming.percepts.popleft()
-        try:
-            _take(agent, percepts)
-        except InternalError:
-            raise
-        except Exception as fault:
-            failure.report_skipped(agent, "percepts", fault)
-
-
-def _take(agent: Circumstance, percepts: list[Percept]) -> None:
+def take_percepts(agent: Circumstance, percepts: list[Percept]) -> None:
     """Add or remove the beliefs of percepts, and raise their events.
 
     Raises:

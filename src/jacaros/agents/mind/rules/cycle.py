@@ -127,8 +127,13 @@ def look_around(agent: Circumstance, cycle: int) -> None:
     """Take in new input: percepts, ends of waits, one message."""
     incoming, waits = agent.incoming, agent.waits
     looks = agent.options.percept_interval == 1 or looks_now(agent, cycle)
-    if looks and incoming.percepts:
-        take_percepts(agent)
+    while looks and incoming.percepts:
+        try:
+            take_percepts(agent, incoming.percepts.popleft())
+        except InternalError:
+            raise
+        except Exception as fault:  # the rest of a step of an artifact is skipped
+            failure.report_skipped(agent, "percepts", fault)
     if incoming.tasks:
         do_tasks(agent)
     if waits.conditions:

@@ -216,7 +216,12 @@ class Table:
             del self.late[row]
             self._note_late(row, -1)
             return
-        discard(self.rows, row)
+        # The rows are read backwards: at their end no gaps are left, which would have to be passed over at every reading.
+        rows = self.rows
+        last, value = rows.popitem()
+        if last is not row and last != row:
+            rows[last] = value
+            del rows[row]
         if self.indexes and row.__class__ is tuple:
             self._remove_from_indexes(row)
         elif not self.plain and row.__class__ is not tuple:

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine, Sequence
+from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -67,6 +68,7 @@ class AgentHost:
         intercept_stop: the same for the end of the run.
         system: its run.
         verbose: the agent's option of this name.
+        ready: reports that the mind has something to do.
         send: delivers a message. Returns False if the receiver is unknown.
         run: runs up to this number of cycles of the mind. Returns whether there is more to do.
     """
@@ -84,6 +86,7 @@ class AgentHost:
         "make_body",
         "name",
         "queued",
+        "ready",
         "run",
         "send",
         "system",
@@ -102,6 +105,7 @@ class AgentHost:
         self._scheduler = run.scheduler
         # Bound directly, because they are called for every message and every turn.
         self.send: Callable[[SpeechAct], bool] = run.deliver
+        self.ready: Callable[[], None] = partial(run.scheduler.make_ready, self)  # pyright: ignore[reportArgumentType]
         self.run: Callable[[int], bool] = _no_turn
         self._seed = seed
         self._random: Random | None = None
@@ -167,11 +171,6 @@ class AgentHost:
         self._mind.shut_down_in(seconds * 1000)
 
     # ---- the port `jacaros.agents.mind.state.act.Architecture`
-
-    def ready(self) -> None:
-        """The mind has something to do."""
-        if not self.queued:
-            self._scheduler.make_ready(self)  # pyright: ignore[reportArgumentType]
 
     @property
     def random(self) -> Random:

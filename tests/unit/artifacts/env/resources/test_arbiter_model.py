@@ -7,7 +7,7 @@ from typing import TypeVar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jacaros.artifacts.env.arbiter import POLICIES, Arbiter, Claim, State
+from jacaros.artifacts.env.arbiter import HOLDING, POLICIES, Arbiter, Claim, State
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -116,7 +116,7 @@ class Schedule:
 
     def check(self) -> None:
         """No resource is held twice, and no claim waits for a free one."""
-        holders = [c for c in self.claims if c.holds]
+        holders = [c for c in self.claims if c.state in HOLDING]
         for name in NAMES:
             mine = [c for c in holders if name in c.uses]
             assert set(mine) == set(self.arbiter.holders(name)), "a death frees all, and nothing else does"
