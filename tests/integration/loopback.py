@@ -79,8 +79,6 @@ class Ids:
             return {"functor": value.functor, "arguments": self.encode(list(value.arguments), outs)}
         if isinstance(value, list):
             return [self.encode(each, outs) for each in value]
-        if isinstance(value, dict):
-            return {"map": [[self.encode(k), self.encode(v, outs)] for k, v in value.items()]}
         if isinstance(value, ArtifactId):
             return {"artifact": self.number(value)}
         if isinstance(value, Out):
@@ -103,8 +101,6 @@ class Ids:
             return Atom(value["atom"])
         if "functor" in value:
             return Structure(value["functor"], tuple(self.decode(value["arguments"], outs)))
-        if "map" in value:
-            return {self.decode(k): self.decode(v, outs) for k, v in value["map"]}
         if "artifact" in value:
             return self.find(value["artifact"])
         assert outs is not None
@@ -135,7 +131,6 @@ class WorkspaceServer:
         self._workspace, self._cable, self._ids = workspace, cable, ids
         self._calls: dict[int, UnderWay] = {}
         self._observers: dict[int, _Reporting] = {}
-        self._told: dict[ArtifactId, list[str]] = {}
         for artifact in workspace.artifacts():
             self._changed(artifact, True)
         workspace.watch(self._changed)
@@ -145,7 +140,7 @@ class WorkspaceServer:
         if not present:
             self._send("gone", number)
             return
-        self._told[artifact] = offers = list(self._workspace.offers(artifact))
+        offers = list(self._workspace.offers(artifact))
         self._send("present", number, artifact.name, artifact.type_name, artifact.creator, offers)
 
     def _send(self, kind: str, *data: Any) -> None:
@@ -168,10 +163,7 @@ class WorkspaceServer:
 
     def receive(self, kind: str, data: list[Any]) -> None:
         """Do what the other side asks for."""
-        try:
-            getattr(self, f"_on_{kind}")(*data)
-        except ports.OperationFailed as failure:
-            self._end(data[0], OperationOutcome(False, failure.message, failure.reason))
+        getattr(self, f"_on_{kind}")(*data)
 
     def _end(self, call: int, outcome: OperationOutcome, *more: Any) -> None:
         self._calls.pop(call, None)
@@ -185,11 +177,6 @@ class WorkspaceServer:
         artifact = self._ids.find(number)
 
         def done(outcome: OperationOutcome) -> None:
-            if artifact in self._told and artifact in self._workspace.artifacts():
-                offers = list(self._workspace.offers(artifact))
-                if offers != self._told[artifact]:
-                    self._told[artifact] = offers
-                    self._send("offers", number, offers)
             self._end(
                 call,
                 outcome,
@@ -278,13 +265,7 @@ class RemoteWorkspace(ports.Workspace):
         return tuple(artifact for artifact, offers in self._offers.items() if wanted.intersection(offers))
 
     def offers(self, artifact_id: ArtifactId) -> Collection[str]:
-        self._check(artifact_id)
         return self._offers[artifact_id]
-
-    def _check(self, artifact: ArtifactId) -> None:
-        if artifact not in self._offers:
-            reason = Structure("artifact_not_available", (artifact.name,))
-            raise UnknownArtifact(f"artifact {artifact.name} no longer exists", reason)
 
     # ---- asked for
 
@@ -316,7 +297,6 @@ class RemoteWorkspace(ports.Workspace):
         return self._ask(made, "create", name, type_name, self._ids.encode(list(args)), creator)
 
     def dispose_artifact(self, artifact_id: ArtifactId, on_done: OnOutcome = ignore_outcome) -> None:
-        self._check(artifact_id)
         self._ask(on_done, "dispose", self._ids.number(artifact_id))
 
     def execute(self, request: OperationRequest) -> UnderWay:
@@ -335,7 +315,6 @@ class RemoteWorkspace(ports.Workspace):
         )
 
     def focus(self, artifact_id: ArtifactId, observer: Observer, on_done: OnOutcome = ignore_outcome) -> None:
-        self._check(artifact_id)
         self._observers[id(observer)] = observer
         self._ask(on_done, "focus", self._ids.number(artifact_id), id(observer), observer.agent)
 
@@ -369,9 +348,6 @@ class RemoteWorkspace(ports.Workspace):
     def _tell(self, artifact: ArtifactId, present: bool) -> None:
         for watcher in tuple(self._watchers):
             watcher(artifact, present)
-
-    def _on_offers(self, number: list[Any], offers: list[str]) -> None:
-        self._offers[self._ids.find(number)] = offers
 
     def _on_ended(self, call: int, ok: bool, message: str | None, reason: Any, *more: Any) -> None:
         done = self._ends.pop(call, None)

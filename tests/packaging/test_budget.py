@@ -1,22 +1,14 @@
 """The size of the house is limited; see tools/budget.toml."""
 
-import importlib.util
-from pathlib import Path
 from typing import Any
 
 import pytest
-
-TOOL = Path(__file__).parents[2] / "tools" / "budget.py"
+from loading import loaded
 
 
 @pytest.fixture
 def budget() -> Any:
-    spec = importlib.util.spec_from_file_location("budget", TOOL)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return loaded("budget")
 
 
 def test_every_package_keeps_its_budget(budget: Any) -> None:

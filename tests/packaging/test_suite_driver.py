@@ -1,31 +1,18 @@
 """The driver of the suite: nothing that fails or cannot run gets lost."""
 
 import contextlib
-import importlib.util
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
-
-ROOT = Path(__file__).parents[2]
+from loading import loaded
 
 
 @pytest.fixture(scope="module")
 def driver() -> ModuleType:
     return loaded("test_all")
-
-
-def loaded(tool: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"{tool}_driver", ROOT / "tools" / f"{tool}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -65,17 +65,8 @@ def _single_to_json(node: Node, field: FieldType, value: Any, ros1: bool) -> Any
     return bool(value) if field.base == "bool" else int(value)
 
 
-TAGS = {
-    "uint16": 69,
-    "uint32": 70,
-    "uint64": 71,
-    "int8": 72,
-    "int16": 77,
-    "int32": 78,
-    "int64": 79,
-    "float32": 85,
-    "float64": 86,
-}
+TAGS = {"uint16": 69, "uint32": 70, "uint64": 71, "int8": 72, "int16": 77, "int32": 78, "int64": 79}
+TAGS |= {"float32": 85, "float64": 86}
 """Tags of typed arrays, all little-endian."""
 
 
@@ -130,10 +121,8 @@ def _message(node: Node, type_name: str, values: Any, ros1: bool, root: str, pat
         seconds, rest = ("secs", "nsecs") if ros1 else ("sec", "nanosec")
         # ROS 2's side reads the names of ROS 1 too; the other way round it does not work.
         if not ros1:
-            seconds, rest = (
-                ("sec" if "sec" in values else "secs"),
-                ("nanosec" if "nanosec" in values else "nsecs"),
-            )
+            seconds = "sec" if "sec" in values else "secs"
+            rest = "nanosec" if "nanosec" in values else "nsecs"
         return node.factory.make(type_name, {"sec": values.get(seconds, 0), "nanosec": values.get(rest, 0)})
     message = node.factory.new(type_name)
     fields = node.factory.fields(type_name)

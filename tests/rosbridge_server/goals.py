@@ -1,6 +1,7 @@
 """Actions of the bridge, both ways, as rosbridge for ROS 2 carries them."""
 
 import asyncio
+import base64
 import itertools
 import uuid
 from typing import TYPE_CHECKING, Any
@@ -41,16 +42,8 @@ class SentGoals:
 
         def fail(text: str) -> None:
             connection.status("error", f"send_action_goal Exception: {number}", number)
-            connection.send(
-                {
-                    "op": "action_result",
-                    "action": action,
-                    "values": text,
-                    "status": 0,
-                    "result": False,
-                    "id": number,
-                }
-            )
+            end = {"values": text, "status": 0, "result": False, "id": number}
+            connection.send({"op": "action_result", "action": action, **end})
 
         def feedback(given: Any) -> None:
             values = to_json(node, feedback_type(kind), given, False)
@@ -100,20 +93,12 @@ class SentGoals:
 
     def status_array(self, action: str) -> dict[str, Any]:
         """What the status topic of an action shows."""
-        import base64
-
-        return {
-            "status_list": [
-                {
-                    "goal_info": {
-                        "goal_id": {"uuid": base64.b64encode(bytes.fromhex(key)).decode()},
-                        "stamp": {"sec": 0, "nanosec": 0},
-                    },
-                    "status": number,
-                }
-                for key, number in self._statuses.get(action, {}).items()
-            ]
-        }
+        found = []
+        for key, number in self._statuses.get(action, {}).items():
+            name = base64.b64encode(bytes.fromhex(key)).decode()
+            info = {"goal_id": {"uuid": name}, "stamp": {"sec": 0, "nanosec": 0}}
+            found.append({"goal_info": info, "status": number})
+        return {"status_list": found}
 
 
 class AdvertisedAction:
@@ -133,16 +118,9 @@ class AdvertisedAction:
         number = f"action_goal:{self.name}:{next(self._numbers)}"
         future: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
         self._goals[number] = (goal, future)
-        self._connection.send(
-            {
-                "op": "send_action_goal",
-                "id": number,
-                "action": self.name,
-                "action_type": self._type,
-                "args": to_json(self._node, goal_type(self._type), goal.request, False),
-                "feedback": True,
-            }
-        )
+        arguments = to_json(self._node, goal_type(self._type), goal.request, False)
+        sent = {"op": "send_action_goal", "id": number, "action": self.name, "action_type": self._type}
+        self._connection.send({**sent, "args": arguments, "feedback": True})
         try:
             message = await self._end(goal, future, number)
         finally:

@@ -53,9 +53,7 @@ class RosApi:
             self._services["get_ros_version"] = lambda: {"version": 2, "distro": "jazzy"}
             for name in (
                 "action_type",
-                "action_goal_details",
-                "action_result_details",
-                "action_feedback_details",
+                *(f"action_{part}_details" for part in ("goal", "result", "feedback")),
             ):
                 self._services[name] = getattr(self, f"_{name}")
 
@@ -237,12 +235,8 @@ def write_ros1_types(folder: Path) -> None:
         }
         for message, text in texts.items():
             _write(folder, f"{package}/{message}", text)
-    _write(
-        folder,
-        "rosgraph_msgs/Log",
-        "byte INFO=2\nstd_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
-        "string function\nuint32 line\nstring[] topics\n",
-    )
+    log = "byte INFO=2\nstd_msgs/Header header\nbyte level\nstring name\nstring msg\nstring file\n"
+    _write(folder, "rosgraph_msgs/Log", f"{log}string function\nuint32 line\nstring[] topics\n")
 
 
 def _write(folder: Path, name: str, text: str) -> None:

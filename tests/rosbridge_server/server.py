@@ -207,12 +207,8 @@ async def serve(port: int, make: Callable[[], Bridge]) -> None:
         try:
             reply({"id": command["id"], "result": await obey(bridge, command, peers)})
         except Exception as problem:
-            error = {
-                "error": type(problem).__name__,
-                "text": str(problem),
-                "reason": getattr(problem, "reason", None),
-            }
-            reply({"id": command["id"], **error})
+            error = {"error": type(problem).__name__, "reason": getattr(problem, "reason", None)}
+            reply({"id": command["id"], "text": str(problem), **error})
 
     threading.Thread(target=read, daemon=True).start()
     while (command := await commands.get()) is not None:
@@ -228,13 +224,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="A rosbridge server for tests.")
     parser.add_argument("--port", type=int, default=0)
     parser.add_argument("--flavour", choices=("ros1", "ros2"), default="ros2")
+    parser.add_argument("--interfaces", type=Path, action="append", default=[])  # folders with definitions
     parser.add_argument(
-        "--interfaces", type=Path, action="append", default=[], help="a folder with definitions"
-    )
-    parser.add_argument(
-        "--talkative", action="store_true", help="tell clients of refusals, as some other servers do"
-    )
-    parser.add_argument("--without-actions", action="store_true", help="be one of before actions")
+        "--talkative", action="store_true"
+    )  # tell clients of refusals, as some other servers do
+    parser.add_argument("--without-actions", action="store_true")  # be one of before actions
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         if options.flavour == "ros1":

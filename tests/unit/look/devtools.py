@@ -59,11 +59,10 @@ class Page:
 
     Attributes:
         errors: uncaught exceptions, errors on its console, and requests that failed, in words.
-        mas, address: the system whose page this is, and where: for tests that open it.
+        mas: the system whose page this is, in `browsed`.
     """
 
     mas: Mas
-    address: str
 
     def __init__(self, socket: Any, session: str) -> None:
         self.errors: list[str] = []

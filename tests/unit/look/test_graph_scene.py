@@ -108,7 +108,7 @@ async def test_robots_are_shown_at_their_estimated_poses(lab) -> None:
 
 
 def odometry(lab: Any) -> Callable[..., None]:
-    """Publish odometry; the numbers that are left out are zero, and the rotation is none."""
+    """Publish odometry; numbers that are left out are those of a robot at rest that looks along x."""
     publisher = lab.backend.publisher("/odom", "nav_msgs/msg/Odometry")
 
     def publish(x: float, z: float = 0.0, w: float = 1.0) -> None:
