@@ -180,9 +180,7 @@ def test_unusual_file_names_are_quoted_in_uris(folder: Path, outcome: Outcome) -
         assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
 
 
-def test_output_is_coloured_only_on_terminals(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_output_is_coloured_only_on_terminals(folder: Path, outcome, monkeypatch):
     assert "\x1b[" not in outcome("warned.asl")[1]
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
@@ -240,9 +238,7 @@ def test_a_program_is_checked_against_its_mapping_files(folder: Path, outcome: O
     assert found(outcome, "go.asl", *both) == expected[1:]
 
 
-def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_program(
-    folder: Path, outcome: Outcome
-) -> None:
+def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_program(folder: Path, outcome):
     (folder / "wrong.yaml").write_text("propertys: {}\n", encoding="utf-8")
     assert found(outcome, "good.asl", "--mapping", "wrong.yaml") == [("wrong.yaml", 1, "wrong-mapping")]
     code, output, _ = outcome("good.asl", "--mapping", "nav3.yaml")

@@ -65,9 +65,7 @@ def test_recordings_and_pages_are_overwritten(folder: Path) -> None:
         assert call(["run", "agent.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]) == 0
 
 
-def test_the_older_part_of_a_recording_overwrites_no_other_file(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_older_part_of_a_recording_overwrites_no_other_file(folder: Path, capsys):
     (folder / "x.jsonl.1").write_text(PROGRAM, encoding="utf-8")
     assert call(["run", "agent.asl", "--clock", "fast", "--record", "x.jsonl"]) == 2
     assert capsys.readouterr().err.startswith("error: `x.jsonl.1` exists and is not a recording\n")

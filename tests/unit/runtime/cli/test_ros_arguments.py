@@ -113,9 +113,7 @@ def test_mistakes_are_reported(written: tuple[str, ...], told: str) -> None:
         options("run", "a.asl", *written)
 
 
-def test_a_run_accepts_ros_arguments(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_accepts_ros_arguments(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "who.asl").write_text(
         '!go. +!go <- makeArtifact(r, "ArtRos", [], I); focus(I); ?node(N); .print(N); .stopMAS.',

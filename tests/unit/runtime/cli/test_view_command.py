@@ -56,9 +56,7 @@ def test_other_machines_need_a_token(program: Path, monkeypatch: pytest.MonkeyPa
     assert "invalid view token" in refused(run_command, str(program), "--view", "--view-token", "short")
 
 
-def test_a_missing_websockets_library_is_reported_before_the_run(
-    program: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_websockets_library_is_reported_before_the_run(program: Path, monkeypatch):
     monkeypatch.setitem(sys.modules, "websockets.asyncio", None)
     told = refused(run_command, str(program), "--view")
     assert "pip install 'websockets>=15'" in told
@@ -94,9 +92,7 @@ def test_the_page_is_written_to_a_file(program: Path, tmp_path: Path) -> None:
     assert page.read_text().lower().startswith("<!doctype html>")
 
 
-def test_the_list_of_commands_contains_view(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_list_of_commands_contains_view(capsys, monkeypatch):
     monkeypatch.setattr("sys.argv", ["jacaros", "--help"])
     with pytest.raises(SystemExit):
         jacaros_main()

@@ -68,9 +68,7 @@ def test_a_project_below_the_working_folder_uses_the_folders_below_it(
     assert ann.source_path == Path("src/agt/ann.asl")
 
 
-def test_a_file_in_a_folder_of_strategies_includes_files_of_the_source_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_in_a_folder_of_strategies_includes_files_of_the_source_folder(tmp_path, monkeypatch):
     write(tmp_path, "src/agt/tasks/x.asl", "src/agt/strategies/s.asl")
     monkeypatch.chdir(tmp_path)
     path = SourcePath(source_folders(Path("src/agt/strategies")))
