@@ -1,5 +1,6 @@
 """The plans of ``$jacaros/artifacts.asl``."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,8 @@ import pytest
 from jacaros.testing import RunResult, run_project
 
 INCLUDE = '{ include("$jacaros/artifacts.asl") }\n'
+
+Run = Callable[..., RunResult]
 
 THESIS = {
     "create_odom": "toolOdom",
@@ -18,98 +21,65 @@ THESIS = {
 }
 
 
-def run(folder: Path, **programs: str) -> RunResult:
-    """Run agents with these programs, with the library included in each."""
-    for name, program in programs.items():
-        (folder / f"{name}.asl").write_text(INCLUDE + program, encoding="utf-8")
-    project = folder / "system.jcm"
-    agents = "".join(f"agent {name}\n" for name in programs)
-    project.write_text(f"mas system {{\n{agents}}}\n", encoding="utf-8")
-    return run_project(project, seconds=30)
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    """Runs agents with these programs, with the library included in each; `start` is the only plan of an agent a."""
+
+    def run(start: str = "", **programs: str) -> RunResult:
+        if start:
+            programs["a"] = f"!start. +!start <- {start}; .stopMAS."
+        for name, program in programs.items():
+            (tmp_path / f"{name}.asl").write_text(INCLUDE + program, encoding="utf-8")
+        project = tmp_path / "system.jcm"
+        agents = "".join(f"agent {name}\n" for name in programs)
+        project.write_text(f"mas system {{\n{agents}}}\n", encoding="utf-8")
+        return run_project(project, seconds=30)
+
+    return run
 
 
-def test_an_artifact_in_use_shows_its_properties(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        robot="""
-        !start.
-        +!start <- !use_artifact("b", "ArtSimBattery", [level(30)]); ?battery(N); .print(N); .stopMAS.
-        """,
-    )
-    assert (result.lines, result.errors) == (["[robot] 30"], [])
+def test_an_artifact_in_use_shows_its_properties(run: Run) -> None:
+    result = run('!use_artifact("b", "ArtSimBattery", [level(30)]); ?battery(N); .print(N)')
+    assert (result.lines, result.errors) == (["[a] 30"], [])
 
 
-def test_two_agents_use_one_artifact(tmp_path: Path) -> None:
-    program = """
-        !start.
-        +!start <- !use_artifact("b", "ArtSimBattery"); ?battery(N); .print(N).
-        """
-    result = run(tmp_path, one=program, two=program)
+def test_two_agents_use_one_artifact(run: Run) -> None:
+    program = '!start. +!start <- !use_artifact("b", "ArtSimBattery"); ?battery(N); .print(N).'
+    result = run(one=program, two=program)
     assert (sorted(result.lines), result.errors) == (["[one] 100", "[two] 100"], [])
 
 
-def test_an_agent_waits_for_an_artifact_that_is_created_later(tmp_path: Path) -> None:
+def test_an_agent_waits_for_an_artifact_that_is_created_later(run: Run) -> None:
     result = run(
-        tmp_path,
-        early="""
-        !start.
-        +!start <- ?artifact("b", Id); focus(Id); ?battery(N); .print(N); .stopMAS.
-        """,
-        late="""
-        !start.
-        +!start <- .wait(3000); .print(now); !create_artifact("b", "ArtSimBattery", []).
-        """,
+        early='!start. +!start <- ?artifact("b", Id); focus(Id); ?battery(N); .print(N); .stopMAS.',
+        late='!start. +!start <- .wait(3000); .print(now); !create_artifact("b", "ArtSimBattery", []).',
     )
     assert (result.lines, result.errors) == (["[late] now", "[early] 100"], [])
     assert 3.0 <= result.seconds <= 3.2
 
 
-def test_a_missing_artifact_is_logged_after_five_seconds(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        robot="""
-        !start.
-        +!start <- ?artifact("b", Id); .print(never).
-        -!start[error_msg(Text)] <- .print("failed: ", Text); .stopMAS.
-        """,
-    )
+def test_a_missing_artifact_is_logged_after_five_seconds(run: Run) -> None:
+    fails = '-!start[error_msg(Text)] <- .print("failed: ", Text); .stopMAS.'
+    result = run(robot=f'!start. +!start <- ?artifact("b", Id); .print(never). {fails}')
     assert len(result.lines) == 1
     assert result.lines[0].startswith("[robot] failed: ")
     assert "b" in result.lines[0]
     assert result.seconds == pytest.approx(5.0, abs=0.3)
 
 
-def test_a_failed_creation_is_logged_with_its_reason(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        robot="""
-        !start.
-        +!start <- !use_artifact("b", "ArtBatery").
-        -!start[env_failure_reason(R), error_msg(Text)] <- .print(R); .print(Text); .stopMAS.
-        """,
-    )
+def test_a_failed_creation_is_logged_with_its_reason(run: Run) -> None:
+    fails = "-!start[env_failure_reason(R), error_msg(Text)] <- .print(R); .print(Text); .stopMAS."
+    result = run(robot=f'!start. +!start <- !use_artifact("b", "ArtBatery"). {fails}')
     assert result.lines[0] == '[robot] makeArtifactFailure("unknown_artifact_template","ArtBatery")'
     assert "ArtBatery" in result.lines[1]
 
 
 @pytest.mark.parametrize(("create", "tool"), THESIS.items())
-def test_the_plans_of_the_thesis_make_and_find(create: str, tool: str, tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        robot=f"""
-        !start.
-        +!start <- !{create}; ?{tool}(Id); focus(Id); .print(done); .stopMAS.
-        """,
-    )
-    assert (result.lines, result.errors) == (["[robot] done"], [])
+def test_the_plans_of_the_thesis_make_and_find(create: str, tool: str, run: Run) -> None:
+    result = run(f"!{create}; ?{tool}(Id); focus(Id); .print(done)")
+    assert (result.lines, result.errors) == (["[a] done"], [])
 
 
-def test_odometry_of_a_robot_with_a_name(tmp_path: Path) -> None:
-    result = run(
-        tmp_path,
-        robot="""
-        !start.
-        +!start <- !create_odom("robot_0"); ?toolOdom("robot_0", Id); focus(Id); .print(done); .stopMAS.
-        """,
-    )
-    assert (result.lines, result.errors) == (["[robot] done"], [])
+def test_odometry_of_a_robot_with_a_name(run: Run) -> None:
+    result = run('!create_odom("robot_0"); ?toolOdom("robot_0", Id); focus(Id); .print(done)')
+    assert (result.lines, result.errors) == (["[a] done"], [])

@@ -1,7 +1,5 @@
 """Three robots share a passage that fits only one. The most urgent goes first."""
 
-from pathlib import Path
-
 import pytest
 from examples_lab import LONGEST, checker, falsified, run, run_of, spoilt
 
@@ -16,13 +14,6 @@ check = module.check
 def truth_of_example() -> GroundTruth:
     truth: GroundTruth = run_of(PROJECT).ground_truth
     return truth
-
-
-def complaints_of_spoilt(folder: Path, old: str, new: str) -> list[str]:
-    """Return the verdict of the checker on a run of a changed program."""
-    result = run_project(spoilt(folder, PROJECT, old, new), seed=0, seconds=LONGEST)
-    complaints: list[str] = check(result.ground_truth).complaints
-    return complaints
 
 
 @pytest.mark.parametrize(
@@ -46,32 +37,33 @@ def test_what_the_robots_print() -> None:
 
 
 @pytest.mark.slow
-def test_without_the_need_two_robots_meet_in_the_passage(tmp_path: Path) -> None:
-    complaints = complaints_of_spoilt(tmp_path, "@cross[atomic, needs(passage)]", "@cross[atomic]")
-    assert "two robots were in the passage at the same time" in complaints
-
-
-@pytest.mark.slow
-def test_a_crossing_that_can_be_preempted_stops_in_the_passage(tmp_path: Path) -> None:
-    complaints = complaints_of_spoilt(tmp_path, "@cross[atomic, needs(passage)]", "@cross[needs(passage)]")
-    assert "robot_3 brought 1 loads, not 3" in complaints
-
-
-@pytest.mark.slow
-def test_without_urgency_the_medicine_waits_for_its_turn(tmp_path: Path) -> None:
-    complaints = complaints_of_spoilt(tmp_path, "@medicine[urgency(10)]", "@medicine")
-    assert complaints == ["others went before the waiting medicine (5 times)"]
+@pytest.mark.parametrize(
+    ("old", "new", "complaint", "alone"),
+    [
+        (
+            "@cross[atomic, needs(passage)]",
+            "@cross[atomic]",
+            "two robots were in the passage at the same time",
+            False,
+        ),
+        ("@cross[atomic, needs(passage)]", "@cross[needs(passage)]", "robot_3 brought 1 loads, not 3", False),
+        ("@medicine[urgency(10)]", "@medicine", "others went before the waiting medicine (5 times)", True),
+    ],
+    ids=["two robots meet", "a crossing is preempted", "the medicine waits"],
+)
+def test_each_annotation_of_the_program_is_needed(tmp_path, old: str, new: str, complaint: str, alone: bool):
+    result = run_project(spoilt(tmp_path, PROJECT, old, new), seed=0, seconds=LONGEST)
+    complaints = check(result.ground_truth).complaints
+    assert complaint in complaints
+    assert not alone or complaints == [complaint]
 
 
 # The checker on runs that went otherwise.
 
 
-def test_the_checker_sees_a_bump() -> None:
+def test_the_checker_sees_a_bump_a_second_robot_in_the_passage_and_too_few_loads() -> None:
     bump = Event(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
     assert check(falsified(truth_of_example(), more=[bump])).complaints == ["a robot bumped into something"]
-
-
-def test_the_checker_sees_a_second_robot_in_the_passage() -> None:
     truth = truth_of_example()
     first = module.crossings(truth, "robot_1")[0]
 
@@ -82,8 +74,5 @@ def test_the_checker_sees_a_second_robot_in_the_passage() -> None:
 
     found = check(falsified(truth, sample=moved)).complaints
     assert "two robots were in the passage at the same time" in found
-
-
-def test_the_checker_sees_too_few_loads() -> None:
     complaints = check(truth_of_example(), loads=4).complaints
     assert complaints == [f"robot_{number} brought 3 loads, not 4" for number in (1, 2, 3)]

@@ -106,20 +106,7 @@ def test_a_patrol_that_is_dropped_stops_the_robot(tmp_path: Path) -> None:
 
 def test_the_namespace_of_the_command_line_is_that_of_names_and_frames() -> None:
     program = Path(__file__).parents[1] / "integration/ros/programs/two_stops.asl"
-    words = [
-        "run",
-        str(program),
-        "--mapping",
-        "nav2.yaml",
-        "--world",
-        "three_robots",
-        "--namespace",
-        "robot_2",
-    ]
-    told = subprocess.run(
-        [sys.executable, "-m", "jacaros", *words, "--clock", "fast", "--for", "60"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    words = [sys.executable, "-m", "jacaros", "run", str(program), "--mapping", "nav2.yaml"]
+    words += ["--world", "three_robots", "--namespace", "robot_2", "--clock", "fast", "--for", "60"]
+    told = subprocess.run(words, capture_output=True, text=True, check=True)
     assert (told.stdout, told.stderr) == ("[two_stops] is there\n", "")

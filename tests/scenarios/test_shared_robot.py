@@ -35,26 +35,11 @@ def test_both_drive_the_robot_and_nothing_goes_wrong() -> None:
 def test_one_command_runs_it_and_one_judges_it(tmp_path: Path) -> None:
     truth = tmp_path / "truth.jsonl"
     project = str(EXAMPLES / PROJECT)
-    command = [
-        sys.executable,
-        "-m",
-        "jacaros",
-        "run",
-        project,
-        "--clock",
-        "fast",
-        "--ground-truth",
-        str(truth),
-    ]
-    ran = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    run = [sys.executable, "-m", "jacaros", "run", project, "--clock", "fast", "--ground-truth", str(truth)]
+    ran = subprocess.run(run, capture_output=True, text=True, timeout=120, check=False)
     assert (ran.returncode, ran.stderr) == (0, "")
-    judged = subprocess.run(
-        [sys.executable, str(EXAMPLES / "07_shared_robot/check.py"), str(truth)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    judge = [sys.executable, str(EXAMPLES / "07_shared_robot/check.py"), str(truth)]
+    judged = subprocess.run(judge, capture_output=True, text=True, timeout=60, check=False)
     assert judged.stdout.splitlines()[-1] == "passed"
     assert judged.returncode == 0
 
@@ -113,9 +98,7 @@ def test_only_the_holder_of_the_robot_can_release_it() -> None:
         ("supervisor.asl", "dock(1, 1).", "dock(1, 0.3).", "recharges"),
     ],
 )  # fmt: skip
-def test_the_checker_sees_a_program_that_is_wrong(
-    program: str, old: str, new: str, complaint: str, tmp_path: Path
-) -> None:
+def test_the_checker_sees_a_program_that_is_wrong(program: str, old: str, new: str, complaint: str, tmp_path):
     result = run_project(spoilt(tmp_path, PROJECT, old, new, program), seconds=200)
     assert any(complaint in each for each in check(result.ground_truth).complaints)
 
@@ -123,10 +106,8 @@ def test_the_checker_sees_a_program_that_is_wrong(
 def test_when_the_tree_dies_the_robot_stops(tmp_path: Path) -> None:
     wrong = spoilt(tmp_path, PROJECT, "next(self._corners)", "next(self._corners)[9]", "driver.py")
     program = wrong.parent / "driver.py"
-    text = program.read_text(encoding="utf-8").replace(
-        "        self.update()\n", "        self._board.corner = ROUTE[0]\n"
-    )
-    program.write_text(text, encoding="utf-8")
+    text, stays = program.read_text(encoding="utf-8"), "        self._board.corner = ROUTE[0]\n"
+    program.write_text(text.replace("        self.update()\n", stays), encoding="utf-8")
     result = run_project(wrong, seconds=30)
     assert any("IndexError" in line for line in result.errors)
     assert module.corners_of(result.ground_truth.path("turtlebot")) == [3, 0]
@@ -136,32 +117,20 @@ def test_when_the_tree_dies_the_robot_stops(tmp_path: Path) -> None:
 # The checker on runs that went otherwise.
 
 
-def test_the_checker_sees_too_few_recharges() -> None:
+def test_the_checker_sees_too_few_recharges_or_rounds_and_a_bump() -> None:
     assert check(truth_of_example(), recharges=3).complaints == ["2 recharges, not 3"]
-
-
-def test_the_checker_sees_too_few_rounds() -> None:
     assert "in the order" in check(truth_of_example(), rounds=5).complaints[0]
-
-
-def test_the_checker_sees_a_bump() -> None:
     bump = Event(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
     complaints = check(falsified(truth_of_example(), more=[bump])).complaints
     assert complaints == ["the robot bumped into something"]
 
 
-def test_the_checker_sees_a_robot_that_comes_too_near_to_the_visitor() -> None:
+def test_the_checker_sees_a_robot_near_the_visitor_or_moving_at_the_end() -> None:
     def nearer(sample: Sample) -> Sample:
-        return (
-            sample._replace(x=sample.x - 0.3)
-            if abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
-            else sample
-        )
+        beside = abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
+        return sample._replace(x=sample.x - 0.3) if beside else sample
 
     assert any("m of the visitor" in each for each in check(falsified(truth_of_example(), nearer)).complaints)
-
-
-def test_the_checker_sees_a_robot_that_still_moves_at_the_end() -> None:
     truth = truth_of_example()
     end = truth.latest("turtlebot").time
 

@@ -87,18 +87,14 @@ def test_a_base_without_a_timeout_is_an_error_and_is_stopped(hall: Callable[[str
     assert lab.speed == 0.0
 
 
-def test_the_exit_code_is_1_if_the_base_keeps_driving(
-    hall: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_exit_code_is_1_if_the_base_keeps_driving(hall: Callable[[str], Path], capsys):
     assert call(["ros", "check", "--base-timeout", "--world", str(hall(STUBBORN))]) == 1
     output = capsys.readouterr().out
     assert "error: the base was still driving 3 s after the last command" in output
     assert "start `jacaros guard` on the robot's computer" in output
 
 
-def test_a_mapping_file_is_checked_too_and_names_the_topics(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_mapping_file_is_checked_too_and_names_the_topics(tmp_path, capsys):
     file = tmp_path / "robot.yaml"
     file.write_text(
         "properties:\n  pose: {topic: robot_1/odom}\n"

@@ -30,8 +30,16 @@ def found(outcome: Outcome, *arguments: str) -> list[tuple[str, int, str]]:
     return [(each["file"], each["line"], each["code"]) for each in json.loads(output)["diagnostics"]]
 
 
-def test_a_correct_program_has_no_problems(folder: Path, outcome: Outcome) -> None:
+def test_a_correct_program_has_no_problems_and_a_wrong_one_all_in_one_pass(
+    folder: Path, outcome: Outcome
+) -> None:
     assert outcome("good.asl", "--strict") == (0, "", "nothing wrong in 1 file\n")
+    assert outcome("wrong.asl")[0] == 1
+    assert found(outcome, "wrong.asl") == [
+        ("wrong.asl", 2, "unexpected-token"),
+        ("wrong.asl", 2, "missing-semicolon"),
+        ("wrong.asl", 3, "singleton-variable"),
+    ]
 
 
 def test_warnings_are_reported_and_fail_only_with_strict(folder: Path, outcome: Outcome) -> None:
@@ -49,21 +57,11 @@ def test_warnings_are_reported_and_fail_only_with_strict(folder: Path, outcome: 
     assert outcome("warned.asl", "--strict", *ignored)[0] == 0
 
 
-def test_all_problems_are_reported_in_one_pass(folder: Path, outcome: Outcome) -> None:
-    assert outcome("wrong.asl")[0] == 1
-    assert found(outcome, "wrong.asl") == [
-        ("wrong.asl", 2, "unexpected-token"),
-        ("wrong.asl", 2, "missing-semicolon"),
-        ("wrong.asl", 3, "singleton-variable"),
-    ]
-
-
 def test_a_folder_is_checked_with_its_projects(folder: Path, outcome: Outcome) -> None:
     (folder / "p.mas2j").write_text('MAS p { agents: bob good.asl [goals="fly"]; }', encoding="utf-8")
     (folder / "part.asl").write_text("+!part <- !defined_elsewhere.", encoding="utf-8")
-    (folder / "whole.asl").write_text(
-        '{ include("part.asl") }\n!part. +!defined_elsewhere.', encoding="utf-8"
-    )
+    whole = '{ include("part.asl") }\n!part. +!defined_elsewhere.'
+    (folder / "whole.asl").write_text(whole, encoding="utf-8")
     (folder / ".hidden").mkdir()
     (folder / ".hidden" / "x.asl").write_text("(", encoding="utf-8")
     assert {code for file, _, code in found(outcome, ".") if file == "part.asl"} == set()
@@ -180,9 +178,7 @@ def test_unusual_file_names_are_quoted_in_uris(folder: Path, outcome: Outcome) -
         assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
 
 
-def test_output_is_coloured_only_on_terminals(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_output_is_coloured_only_on_terminals(folder: Path, outcome, monkeypatch):
     assert "\x1b[" not in outcome("warned.asl")[1]
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
@@ -240,9 +236,7 @@ def test_a_program_is_checked_against_its_mapping_files(folder: Path, outcome: O
     assert found(outcome, "go.asl", *both) == expected[1:]
 
 
-def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_program(
-    folder: Path, outcome: Outcome
-) -> None:
+def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_program(folder: Path, outcome):
     (folder / "wrong.yaml").write_text("propertys: {}\n", encoding="utf-8")
     assert found(outcome, "good.asl", "--mapping", "wrong.yaml") == [("wrong.yaml", 1, "wrong-mapping")]
     code, output, _ = outcome("good.asl", "--mapping", "nav3.yaml")
@@ -252,12 +246,10 @@ def test_mistakes_in_a_mapping_file_are_reported_once_before_those_of_the_progra
 
 
 def test_a_world_file_is_checked_as_a_world(folder: Path, outcome: Outcome) -> None:
-    (folder / "flat.yaml").write_text(
-        "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r}\n", encoding="utf-8"
-    )
+    head = "size: [4, 4]\nborder: walls\nrobots:\n"
+    (folder / "flat.yaml").write_text(f"{head}  - {{name: r}}\n", encoding="utf-8")
     assert found(outcome, "flat.yaml") == []
-    text = "size: [4, 4]\nborder: walls\nrobots:\n  - {name: r, pose: {x: 9}, colour: red}\n"
-    text += "  - {namespace: b, pose: {x: 9}}\n"
+    text = head + "  - {name: r, pose: {x: 9}, colour: red}\n  - {namespace: b, pose: {x: 9}}\n"
     (folder / "flat.yaml").write_text(text, encoding="utf-8")
     assert found(outcome, "flat.yaml") == [("flat.yaml", 4, "wrong-world")]
     (folder / "flat.yaml").write_text(text.replace(", colour: red", ""), encoding="utf-8")
@@ -273,11 +265,8 @@ def test_a_folder_is_checked_with_its_worlds_and_mappings(folder: Path, outcome:
     ):
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     codes = {(file, code) for file, _, code in found(outcome, ".") if str(file).endswith(".yaml")}
-    assert codes == {
-        ("flat.yaml", "wrong-world"),
-        ("half.yaml", "wrong-world"),
-        ("robot.yaml", "wrong-mapping"),
-    }
+    worlds = {("flat.yaml", "wrong-world"), ("half.yaml", "wrong-world")}
+    assert codes == {*worlds, ("robot.yaml", "wrong-mapping")}
 
 
 def test_unsupported_files_are_skipped_next_to_supported_ones(folder: Path, outcome: Outcome) -> None:

@@ -21,9 +21,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_program_prints_sets_the_exit_code_and_restores_signal_handlers(
-    folder: Path, outcome: Outcome
-) -> None:
+def test_a_program_prints_sets_the_exit_code_and_restores_signal_handlers(folder: Path, outcome: Outcome):
     before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)]
     assert outcome("run", "hello.asl", "--clock", "fast") == (3, "[hello] hi\n", "")
     assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM, clock.SIGNAL)] == before
@@ -64,9 +62,7 @@ def test_run_is_the_default_command(folder: Path, outcome: Outcome) -> None:
         (["run", "hello.asl", "--maping", "robot.yaml"], "= help: did you mean `--mapping` or"),
     ],
 )
-def test_wrong_usage_exits_with_code_2(
-    folder: Path, outcome: Outcome, arguments: list[str], told: str
-) -> None:
+def test_wrong_usage_exits_with_code_2(folder: Path, outcome: Outcome, arguments: list[str], told: str):
     code, output, errors = outcome(*arguments)
     assert (code, output) == (2, "")
     assert told in errors
@@ -81,9 +77,7 @@ def test_wrong_usage_exits_with_code_2(
         ("wrong.txt", "", "unsupported file type: wrong.txt (expected .mas2j, .jcm, .asl or .py)"),
     ],
 )
-def test_an_error_in_a_project_exits_with_code_1(
-    folder: Path, outcome: Outcome, name: str, text: str, told: str
-) -> None:
+def test_an_error_in_a_project_exits_with_code_1(folder: Path, outcome, name: str, text: str, told: str):
     (folder / name).write_text(text, encoding="utf-8")
     code, output, errors = outcome("run", name)
     assert (code, output) == (1, "")
@@ -155,9 +149,7 @@ def test_version_and_help_are_printed(outcome: Outcome) -> None:
     assert "Run an agent program or a project." in output
 
 
-def test_an_internal_error_prints_a_traceback_and_the_command(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_internal_error_prints_a_traceback_and_the_command(folder: Path, outcome, monkeypatch):
     def broken(*_: object) -> int:
         raise ZeroDivisionError("oh")
 

@@ -80,30 +80,21 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_type_of_the_project_is_described(folder: Path, told: Told) -> None:
+def test_a_type_and_all_types_of_a_file_are_described_without_backquotes(folder: Path, told: Told) -> None:
     assert told("Lamp") == LAMP
     assert told("Lamp", "--project", str(folder)) == LAMP
-
-
-def test_descriptions_have_no_backquotes(folder: Path, told: Told) -> None:
+    assert told("artifacts.py") == f"{LAMP}\n{BARE}"
     said = told("nav2.yaml")
     assert 'such as "robot_1", rate(5)' in said
     assert "`" not in said
 
 
-def test_all_types_of_a_file_are_described(folder: Path, told: Told) -> None:
-    assert told("artifacts.py") == f"{LAMP}\n{BARE}"
-
-
-def test_a_project_is_described_with_its_types(folder: Path, told: Told) -> None:
+def test_a_project_and_a_program_are_described_with_their_types(folder: Path, told: Told) -> None:
     output = told("house.jcm")
     assert "  workspace w\n    artifact lamp: Lamp\n" in output
     assert "    artifact odd: Lump (unknown artifact type `Lump`; did you mean `Lamp`?)\n" in output
     assert f"\n\n{LAMP}\nBlackboard\n  A tuple space" in output
     assert output.endswith(f"\n{BARE}")
-
-
-def test_a_program_without_a_project_is_described_with_neighbouring_types(folder: Path, told: Told) -> None:
     output = told("bob.asl")
     assert "  agent bob: bob.asl\n" in output
     assert LAMP in output

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_lab import Outcome
 
 from jacaros.runtime.cli.main import call
 
@@ -19,44 +20,39 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+TAKEN = "`agent.asl` exists and is not"
+OTHER = "name another file, or delete it"
+
+
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("arguments", "error", "help"),
     [
+        ("--replay no/such/page.html", "folder does not exist: `no/such`", "mkdir -p no/such"),
+        ("--record .", "`.` is a folder", "name a file in it for the recording"),
+        ("--record agent.asl", f"{TAKEN} a recording", OTHER),
+        ("--ground-truth agent.asl", f"{TAKEN} a ground truth", OTHER),
         (
-            ["--replay", "no/such/page.html"],
-            "error: folder does not exist: `no/such`\n  = help: mkdir -p no/such\n",
-        ),
-        (["--record", "."], "error: `.` is a folder\n  = help: name a file in it for the recording\n"),
-        (
-            ["--record", "agent.asl"],
-            "error: `agent.asl` exists and is not a recording\n  = help: name another file, or delete it\n",
-        ),
-        (
-            ["--ground-truth", "agent.asl"],
-            "error: `agent.asl` exists and is not a ground truth\n  = help: name another file, or delete it\n",
+            "--replay page.jsonl",
+            "expected a file name with the suffix .html, found `page.jsonl`",
+            "--replay page.html",
         ),
         (
-            ["--replay", "page.jsonl"],
-            "error: expected a file name with the suffix .html, found `page.jsonl`\n  = help: --replay page.html\n",
+            "--record x.jsonl --ground-truth x.jsonl",
+            "`x.jsonl` cannot be both recording and ground truth",
+            "name two files",
         ),
         (
-            ["--record", "x.jsonl", "--ground-truth", "x.jsonl"],
-            "error: `x.jsonl` cannot be both recording and ground truth\n  = help: name two files\n",
-        ),
-        (
-            ["--record", "x.jsonl", "--ground-truth", "x.jsonl.1"],
-            (
-                "error: `x.jsonl.1` cannot be both older part of the recording and ground truth\n"
-                "  = help: name two files\n"
-            ),
+            "--record x.jsonl --ground-truth x.jsonl.1",
+            "`x.jsonl.1` cannot be both older part of the recording and ground truth",
+            "name two files",
         ),
     ],
 )
 def test_an_unwritable_output_is_reported_before_the_run(
-    folder: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+    folder: Path, outcome: Outcome, arguments: str, error: str, help: str
 ) -> None:
-    assert call(["run", "agent.asl", "--clock", "fast", *arguments]) == 2
-    assert capsys.readouterr() == ("", message)
+    told = outcome("run", "agent.asl", "--clock", "fast", *arguments.split())
+    assert told == (2, "", f"error: {error}\n  = help: {help}\n")
     assert (folder / "agent.asl").read_text(encoding="utf-8") == PROGRAM
 
 
@@ -65,9 +61,7 @@ def test_recordings_and_pages_are_overwritten(folder: Path) -> None:
         assert call(["run", "agent.asl", "--clock", "fast", "--record", "r.jsonl", "--replay", "r.html"]) == 0
 
 
-def test_the_older_part_of_a_recording_overwrites_no_other_file(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_older_part_of_a_recording_overwrites_no_other_file(folder: Path, capsys):
     (folder / "x.jsonl.1").write_text(PROGRAM, encoding="utf-8")
     assert call(["run", "agent.asl", "--clock", "fast", "--record", "x.jsonl"]) == 2
     assert capsys.readouterr().err.startswith("error: `x.jsonl.1` exists and is not a recording\n")

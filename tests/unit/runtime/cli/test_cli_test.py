@@ -46,20 +46,16 @@ tests/sums.asl::breaks
     )
 
 
-def test_the_exit_code_is_0_when_all_tests_pass(folder: Path, outcome: Outcome) -> None:
+def test_tests_that_pass_are_selected_by_file_and_pattern_or_in_the_current_folder(
+    folder: Path, outcome: Outcome
+) -> None:
     code, output, errors = outcome("tests/sums.asl", "-k", "sums.asl::*s", "-k", "adds")
     assert (code, errors) == (0, "")
     assert output.endswith("1 passed; 1 assertions, seed 0\n")
     assert "quiet" not in output
-
-
-def test_the_default_is_the_current_folder(folder: Path, outcome: Outcome) -> None:
     code, output, _ = outcome("-k", "END")
     assert code == 0
     assert output.startswith("tests/sums.asl\n  ok      ends\n")
-
-
-def test_verbose_shows_the_output_of_passed_tests(folder: Path, outcome: Outcome) -> None:
     assert "[sums] quiet" in outcome("-v")[1]
 
 

@@ -39,9 +39,7 @@ def test_check_and_diff_show_the_difference_and_change_nothing(folder: Path, out
     assert (folder / "a.asl").read_text(encoding="utf-8") == UGLY
 
 
-def test_the_standard_input_goes_to_the_standard_output(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_standard_input_goes_to_the_standard_output(folder: Path, outcome, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(UGLY.encode())))
     assert outcome("-") == (0, NICE, "")
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"p(")))
@@ -61,9 +59,7 @@ def test_a_program_with_errors_is_kept_and_the_others_are_formatted(folder: Path
     assert (folder / "0.asl").read_text(encoding="utf-8") == "p( "
 
 
-def test_a_program_whose_meaning_would_change_is_kept(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_program_whose_meaning_would_change_is_kept(folder: Path, outcome, monkeypatch):
     monkeypatch.setattr("jacaros.agents.language.formatting._laid_out", lambda text: "p.")
     code, output, errors = outcome(".")
     assert (code, output) == (1, "")
@@ -94,9 +90,7 @@ def test_the_programs_of_the_repository_are_formatted(outcome: Outcome) -> None:
 
 
 @pytest.mark.parametrize("command", ["fmt", "check"])
-def test_a_folder_without_programs_is_wrong_usage(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_without_programs_is_wrong_usage(command: str, tmp_path, capsys):
     assert call([command, str(tmp_path)]) == 2
     assert capsys.readouterr().err == f"error: no agent programs in `{tmp_path}`\n"
 

@@ -84,9 +84,7 @@ def test_nested_mappings_are_flattened() -> None:
         ((), ("latin.yaml",), "not UTF-8; save the file as UTF-8"),
     ],
 )
-def test_mistakes_are_reported(
-    tmp_path: Path, written: tuple[str, ...], files: tuple[str, ...], told: str
-) -> None:
+def test_mistakes_are_reported(tmp_path: Path, written: tuple[str, ...], files: tuple[str, ...], told: str):
     (tmp_path / "list.yaml").write_text("- a", encoding="utf-8")
     (tmp_path / "deep.yaml").write_text(f"/**: {{ros__parameters: {{x: {'[' * 100_000}", encoding="utf-8")
     (tmp_path / "latin.yaml").write_bytes(b"a: \xe4")
@@ -118,18 +116,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_parameters_of_a_launch_file_reach_the_agent(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_parameters_of_a_launch_file_reach_the_agent(folder: Path, capsys: pytest.CaptureFixture[str]):
     (folder / "launch_params").write_text("guard: {ros__parameters: {speed: 0.7}}", encoding="utf-8")
     given = ("--ros-args", "--params-file", "launch_params", "-p", "places:=[attic, hall]")
     assert run(folder, "--ros", "memory", *given) == 0
     assert capsys.readouterr() == ("[guard] 0.7 [attic,hall]\n", "")
 
 
-def test_parameter_files_are_read_for_the_node_of_the_run(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_parameter_files_are_read_for_the_node_of_the_run(folder: Path, capsys: pytest.CaptureFixture[str]):
     (folder / "p.yaml").write_text("r1: {left: {ros__parameters: {speed: 0.9}}}", encoding="utf-8")
     assert run(folder, "--params-file", "p.yaml", "--node-name", "left", "--namespace", "r1") == 0
     assert capsys.readouterr().out == "[guard] 0.9 [hall]\n"
@@ -142,9 +136,7 @@ def test_an_undeclared_parameter_is_reported_once(folder: Path, capsys: pytest.C
     assert told == ("[ros] parameter spede has no effect: nothing declares it; did you mean `speed`?\n")
 
 
-def test_all_invalid_values_are_reported_in_one_pass(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_all_invalid_values_are_reported_in_one_pass(folder: Path, capsys: pytest.CaptureFixture[str]):
     assert run(folder, "--param", "speed:=1", "--param", "places:=1") == 1
     told = capsys.readouterr().err
     assert (
@@ -159,9 +151,7 @@ def test_all_invalid_values_are_reported_in_one_pass(
     assert "has no effect" not in told
 
 
-def test_unsupported_values_and_graphs_without_parameters_are_reported(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_unsupported_values_and_graphs_without_parameters_are_reported(folder: Path, capsys):
     assert run(folder, "--param", "speed:=[1, a]") == 2
     assert "--param speed: expected a bool" in capsys.readouterr().err
     arguments = ["guard.asl", "--ros", "rosbridge", "--param", "speed:=0.5"]

@@ -56,9 +56,7 @@ def terminal() -> Iterator[Terminal]:
     ("keys", "cancel"),
     [("\n", True), ("y\n", True), ("Yes\n", True), ("n\n", False), ("maybe\n", False), ("\x04", False)],
 )
-def test_an_answer_decides_about_the_goal(
-    terminal: Terminal, monkeypatch: pytest.MonkeyPatch, keys: str, cancel: bool
-) -> None:
+def test_an_answer_decides_about_the_goal(terminal: Terminal, monkeypatch, keys: str, cancel: bool):
     terminal.attach(monkeypatch)
 
     async def body() -> bool:
@@ -72,9 +70,7 @@ def test_an_answer_decides_about_the_goal(
     assert asyncio.run(body()) is cancel
 
 
-def test_the_second_question_waits_for_the_first_answer(
-    terminal: Terminal, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_second_question_waits_for_the_first_answer(terminal: Terminal, monkeypatch: pytest.MonkeyPatch):
     terminal.attach(monkeypatch)
 
     async def body() -> list[bool]:

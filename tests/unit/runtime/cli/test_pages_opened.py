@@ -32,9 +32,7 @@ def test_the_page_is_opened_where_there_is_a_display(opened: list[str]) -> None:
 
 
 @pytest.mark.parametrize("lacking", ["display", "terminal", "errors"])
-def test_no_page_is_opened_without_a_display(
-    opened: list[str], monkeypatch: pytest.MonkeyPatch, lacking: str
-) -> None:
+def test_no_page_is_opened_without_a_display(opened: list[str], monkeypatch, lacking: str):
     if lacking == "display":
         monkeypatch.delenv("DISPLAY")
     elif lacking == "terminal":
@@ -45,9 +43,7 @@ def test_no_page_is_opened_without_a_display(
     assert opened == []
 
 
-def test_a_remote_shell_of_another_system_has_no_display(
-    opened: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_remote_shell_of_another_system_has_no_display(opened: list[str], monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(sys, "platform", "darwin")
     assert has_display()
     monkeypatch.setenv("SSH_CONNECTION", "1.2.3.4 1 2")

@@ -24,9 +24,7 @@ def written(path: Path, world: dict[str, object] = WORLD) -> Path:
 
 
 @pytest.mark.parametrize("command", ["why", "view"])
-def test_a_recording_of_a_newer_version_is_read_with_a_warning(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_of_a_newer_version_is_read_with_a_warning(command: str, tmp_path, capsys):
     run = str(written(tmp_path / "run.jsonl", {**WORLD, "version": 99}))
     more = {"why": ["nothing"], "view": ["--output", str(tmp_path / "run.html")]}
     assert call([command, run, *more[command]]) == 0
@@ -34,9 +32,7 @@ def test_a_recording_of_a_newer_version_is_read_with_a_warning(
     assert "version 99" in told
 
 
-def test_a_truncated_compressed_recording_is_read_to_its_last_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_truncated_compressed_recording_is_read_to_its_last_line(tmp_path, capsys):
     run = written(tmp_path / "run.jsonl.gz")
     run.write_bytes(run.read_bytes()[:-8])
     assert call(["why", str(run), "nothing"]) == 0  # the sum at its end is missing

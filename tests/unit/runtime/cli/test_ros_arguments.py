@@ -39,21 +39,18 @@ def test_arguments_of_ros2_become_options(written: tuple[str, ...], read: list[s
     assert options(*LAUNCHED, *written) == (["run", "guard.asl", *read, "--ros", "ros2"], [])
 
 
-def test_arguments_after_two_dashes_are_ours() -> None:
+def test_arguments_after_two_dashes_and_options_of_our_own_win(monkeypatch: pytest.MonkeyPatch) -> None:
     assert options("guard.asl", "--ros-args", "-r", "a:=b", "--", "--mapping", "robot.yaml") == (
         ["guard.asl", "--mapping", "robot.yaml", "--remap", "a:=b", "--ros", "ros2"],
         [],
     )
-
-
-def test_our_own_options_win(monkeypatch: pytest.MonkeyPatch) -> None:
     own = ("run", "a.asl", "--ros", "memory", "--param", "speed:=1")
     assert options(*own, "--ros-args") == (list(own), [])
     monkeypatch.setenv("JACAROS_ROS", "rosbridge")
     assert options("run", "a.asl", "--ros-args") == (["run", "a.asl", "--ros", "rosbridge"], [])
 
 
-def test_sim_drops_parameters(tmp_path: Path) -> None:
+def test_sim_drops_parameters_and_keeps_an_empty_namespace(tmp_path: Path) -> None:
     file = tmp_path / "parameters.yaml"
     file.write_text(
         "/**: {ros__parameters: {use_sim_time: true}}\nhouse: {ros__parameters: {b: {c: 1}}}",
@@ -63,25 +60,13 @@ def test_sim_drops_parameters(tmp_path: Path) -> None:
     read, told = options("sim", "house", "--ros-args", "--enable-rosout-logs", *given)
     assert read == ["sim", "house", "--rosout", "--node-name", "house", "--ros", "ros2"]
     assert [line.split(" has ")[0] for line in told] == ["parameter `b.c`", "parameter `a`"]
-
-
-def test_an_empty_namespace_is_kept() -> None:
     read, _ = options("sim", "house", "--ros-args", "-r", "__ns:=")
     assert read == ["sim", "house", "--namespace", "", "--ros", "ros2"]
 
 
 def test_arguments_of_ros1_become_options() -> None:
-    written = (
-        "run",
-        "a.asl",
-        "--remap",
-        "x:=y",
-        "odom:=/odometry",
-        "__name:=guard",
-        "__log:=/tmp/log",
-        "_speed:=1",
-    )
-    read, told = options(*written)
+    names = ("odom:=/odometry", "__name:=guard", "__log:=/tmp/log", "_speed:=1")
+    read, told = options("run", "a.asl", "--remap", "x:=y", *names)
     assert read == [
         *("run", "a.asl", "--remap", "x:=y", "--remap", "odom:=/odometry", "--node-name", "guard"),
         *("--param", "speed:=1", "--ros", "ros1"),
@@ -113,9 +98,7 @@ def test_mistakes_are_reported(written: tuple[str, ...], told: str) -> None:
         options("run", "a.asl", *written)
 
 
-def test_a_run_accepts_ros_arguments(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_accepts_ros_arguments(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "who.asl").write_text(
         '!go. +!go <- makeArtifact(r, "ArtRos", [], I); focus(I); ?node(N); .print(N); .stopMAS.',

@@ -26,10 +26,18 @@ def checked(outcome: Outcome, tmp_path: Path) -> Checked:
     return check
 
 
-def test_an_unknown_type_is_reported_once(tmp_path: Path, checked: Checked) -> None:
+def test_problems_are_reported_once_in_line_order_and_names_suggested(
+    tmp_path: Path, checked: Checked
+) -> None:
     told = checked("properties:\n  a: {topic: odom, type: nav_msgs/msg/Odometri}\n")
     assert "expected the type `nav_msgs/msg/Odometry`, found `nav_msgs/msg/Odometri`" in told
     assert "is not known here" not in told
+    told = checked("namespace: r1\nproperties:\n  pose: {topic: odom}\n")
+    assert "no node publishes `/r1/odom`" in told
+    assert "did you mean `/odom`?" in told
+    told = checked("properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
+    assert told.index("robot.yaml:2:") < told.index("robot.yaml:3:")
+    assert "robot.yaml:4:" not in told
 
 
 @pytest.mark.parametrize(
@@ -118,18 +126,6 @@ def test_each_problem_has_a_location_and_a_suggested_fix(
     told = checked(text)
     assert problem in told
     assert help in told
-
-
-def test_names_without_namespace_are_suggested(tmp_path: Path, checked: Checked) -> None:
-    told = checked("namespace: r1\nproperties:\n  pose: {topic: odom}\n")
-    assert "no node publishes `/r1/odom`" in told
-    assert "did you mean `/odom`?" in told
-
-
-def test_all_problems_are_reported_in_line_order(tmp_path: Path, checked: Checked) -> None:
-    told = checked("properties:\n  a: {topic: aa}\n  b: {topic: bb}\n  c: odom\n")
-    assert told.index("robot.yaml:2:") < told.index("robot.yaml:3:")
-    assert "robot.yaml:4:" not in told
 
 
 def test_mistakes_in_the_mapping_file_itself_are_reported(tmp_path: Path, outcome: Outcome) -> None:

@@ -11,9 +11,7 @@ from jacaros.runtime.cli.main import call
 COMMAND = ("ros",)
 
 
-def test_types_are_defined_in_folders_that_the_command_names(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: Told
-) -> None:
+def test_types_are_defined_in_folders_that_the_command_names(tmp_path, monkeypatch, told: Told):
     monkeypatch.chdir(tmp_path)
     definition = tmp_path / "types" / "arm_msgs" / "msg" / "Thing.msg"
     definition.parent.mkdir(parents=True)
@@ -34,9 +32,7 @@ def test_each_entry_is_listed_on_one_line(told: Told) -> None:
     assert not any("jacaros_ros" in line for line in lines), "our own node is there for the look alone"
 
 
-def test_environment_variables_select_the_graph(
-    monkeypatch: pytest.MonkeyPatch, outcome: Outcome, told: Told
-) -> None:
+def test_environment_variables_select_the_graph(monkeypatch, outcome, told: Told):
     monkeypatch.setenv("JACAROS_WORLD", "two_robots")
     assert "action /robot_1/dock irobot_create_msgs/action/Dock" in told("list").splitlines()
     monkeypatch.setenv("JACAROS_ROS", "ros3")

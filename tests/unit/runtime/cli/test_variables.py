@@ -37,9 +37,7 @@ def world_of(outcome: Outcome) -> WorldOf:
     return run
 
 
-def test_a_project_overrides_the_world_of_the_environment(
-    monkeypatch: pytest.MonkeyPatch, world_of: WorldOf
-) -> None:
+def test_a_project_overrides_the_world_of_the_environment(monkeypatch: pytest.MonkeyPatch, world_of: WorldOf):
     monkeypatch.setenv("JACAROS_WORLD", "house")
     world, errors = world_of("patrol.jcm")
     assert world == "patrol"
@@ -59,9 +57,7 @@ def test_a_world_is_not_sent_to_the_graph_of_the_environment(
     assert "JACAROS_ROS=rosbridge is ignored (to use it: --ros rosbridge)" in errors
 
 
-def test_the_world_of_the_environment_is_not_simulated_in_a_real_graph(
-    monkeypatch: pytest.MonkeyPatch, outcome: Outcome
-) -> None:
+def test_the_world_of_the_environment_is_not_simulated_in_a_real_graph(monkeypatch, outcome):
     monkeypatch.setenv("JACAROS_WORLD", "house")
     closed = ("--ros", "rosbridge", "--bridge", "ws://127.0.0.1:9")
     for arguments in (["run", "hello.asl", *closed], ["ros", "list", *closed, "--timeout", "0.1"]):
@@ -94,9 +90,7 @@ def test_an_error_in_a_variable_names_it(
     assert "short" not in errors, "a token is a secret"
 
 
-def test_an_error_of_something_else_does_not_name_the_variables(
-    monkeypatch: pytest.MonkeyPatch, outcome: Outcome
-) -> None:
+def test_an_error_of_something_else_does_not_name_the_variables(monkeypatch, outcome):
     monkeypatch.setenv("JACAROS_WORLD", "house")
     (Path("wrong.asl")).write_text("!start.\n+!start <- .print(\n")
     assert "JACAROS_WORLD" not in outcome("run", "wrong.asl")[2]

@@ -48,29 +48,26 @@ def test_view_in_the_terminal(program: Path) -> None:
     assert "view: " not in result.stderr
 
 
-def test_other_machines_need_a_token(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_machines_need_a_token_and_their_rights_are_logged(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("JACAROS_VIEW_TOKEN", raising=False)
     told = refused(run_command, str(program), "--view", "--view-address", "0.0.0.0")
     assert "needs a token" in told
     assert "JACAROS_VIEW_TOKEN" in told
     assert "invalid view token" in refused(run_command, str(program), "--view", "--view-token", "short")
-
-
-def test_a_missing_websockets_library_is_reported_before_the_run(
-    program: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "websockets.asyncio", None)
-    told = refused(run_command, str(program), "--view")
-    assert "pip install 'websockets>=15'" in told
-    assert "[hello] hello" in run(str(program), "--view=terminal").stdout
-
-
-def test_the_rights_of_other_machines_are_logged(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JACAROS_VIEW_TOKEN", "a-token-that-tests-know")
     result = run(str(program), "--view", "--view-address", "0.0.0.0")
     assert "/a-token-that-tests-know/" in result.stderr
     assert "can command its agents and robots" in result.stderr
     assert "not encrypted" in result.stderr
+
+
+def test_a_missing_websockets_library_is_reported_before_the_run(program: Path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "websockets.asyncio", None)
+    told = refused(run_command, str(program), "--view")
+    assert "pip install 'websockets>=15'" in told
+    assert "[hello] hello" in run(str(program), "--view=terminal").stdout
 
 
 def test_a_missing_recording_suggests_a_command(tmp_path: Path) -> None:
@@ -79,14 +76,11 @@ def test_a_missing_recording_suggests_a_command(tmp_path: Path) -> None:
     assert "= help: jacaros run FILE --record" in told
 
 
-def test_a_file_that_is_not_a_page_is_not_overwritten(program: Path, tmp_path: Path) -> None:
+def test_the_page_is_written_to_a_file_but_not_over_another(program: Path, tmp_path: Path) -> None:
     record = tmp_path / "run.jsonl"
     run(str(program), "--record", str(record))
     assert "exists and is not a replay page" in refused(view_command, str(record), "--output", str(program))
     assert program.read_text() == PROGRAM
-
-
-def test_the_page_is_written_to_a_file(program: Path, tmp_path: Path) -> None:
     record, page = tmp_path / "run.jsonl", tmp_path / "run.html"
     run(str(program), "--record", str(record))
     result = CliRunner().invoke(view_command, [str(record), "--output", str(page)], catch_exceptions=False)
@@ -94,9 +88,7 @@ def test_the_page_is_written_to_a_file(program: Path, tmp_path: Path) -> None:
     assert page.read_text().lower().startswith("<!doctype html>")
 
 
-def test_the_list_of_commands_contains_view(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_list_of_commands_contains_view(capsys, monkeypatch):
     monkeypatch.setattr("sys.argv", ["jacaros", "--help"])
     with pytest.raises(SystemExit):
         jacaros_main()

@@ -71,9 +71,7 @@ def test_a_picture_of_a_world_is_written_as_png(folder: Path, outcome: Outcome) 
     assert int.from_bytes(picture[16:20], "big") == 300
 
 
-def test_a_missing_png_library_suggests_what_to_install(
-    folder: Path, outcome: Outcome, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_png_library_suggests_what_to_install(folder: Path, outcome, monkeypatch):
     monkeypatch.setitem(sys.modules, "resvg_py", None)
     code, _, errors = outcome("show", "house", "--output", "house.png")
     assert code == 2
@@ -142,9 +140,7 @@ def test_an_image_gets_a_map_file(folder: Path, outcome: Outcome) -> None:
         (("new", "a.yaml", "--map", "missing.yaml"), 1, "missing.yaml:1:1: error: cannot read the file"),
     ],
 )
-def test_wrong_usage_suggests_a_fix(
-    folder: Path, outcome: Outcome, arguments: tuple[str, ...], code: int, told: str
-) -> None:
+def test_wrong_usage_suggests_a_fix(folder: Path, outcome, arguments: tuple[str, ...], code: int, told: str):
     for name in ("notes.svg", "notes.yaml"):
         Path(name).write_text("my notes")
     Path("broken.yaml").write_text("image: h.pgm\nresolution: 0.1\n")

@@ -35,31 +35,20 @@ class Mind:
         self.log.append("perceive")
 
     def complete(self, act_id: int, completion: Completion) -> None:
-        self.log.append(
-            f"complete {act_id} {completion.success} {' '.join(map(text, completion.annotations))}"
-        )
+        why = " ".join(map(text, completion.annotations))
+        self.log.append(f"complete {act_id} {completion.success} {why}")
 
 
 class Body:
     """Takes notes."""
 
     def __init__(self, log: list[str]) -> None:
-        self.log = log
 
-    def act(self, act: Act) -> None:
-        self.log.append(f"act {act.id}")
-
-    def cancel_act(self, act_id: int) -> None:
-        self.log.append(f"cancel {act_id}")
-
-    def suspend_act(self, act_id: int) -> None:
-        self.log.append(f"suspend {act_id}")
-
-    def resume_act(self, act_id: int) -> None:
-        self.log.append(f"resume {act_id}")
-
-    def close(self) -> None:
-        self.log.append("close")
+        self.act = lambda act: log.append(f"act {act.id}")
+        self.cancel_act = lambda act_id: log.append(f"cancel {act_id}")
+        self.suspend_act = lambda act_id: log.append(f"suspend {act_id}")
+        self.resume_act = lambda act_id: log.append(f"resume {act_id}")
+        self.close = lambda: log.append("close")
 
 
 class FakeRun:

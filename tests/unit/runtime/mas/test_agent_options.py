@@ -35,9 +35,7 @@ FOCUS = "!go. +!go <- +b; .print(go). +b <- .print(first); .print(second)."
     ("option", "lines"),
     [("sameFocus", ["first", "second", "go"]), ("newFocus", ["go", "first", "second"])],
 )
-def test_belief_events_can_have_intentions_of_their_own(
-    tmp_path: Path, option: str, lines: list[str]
-) -> None:
+def test_belief_events_can_have_intentions_of_their_own(tmp_path: Path, option: str, lines: list[str]):
     assert run(tmp_path, f"intBels={option}", FOCUS).of("a") == lines
 
 

@@ -21,9 +21,7 @@ class Console:
 
 
 @pytest.mark.parametrize(("variable", "plain"), [("1", True), ("0", False), ("", False)])
-def test_the_environment_names_the_default(
-    variable: str, plain: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_environment_names_the_default(variable: str, plain: bool, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("JACAROS_PLAIN", variable)
     assert RunOptions().plain is plain
     assert not RunOptions(plain=False).plain

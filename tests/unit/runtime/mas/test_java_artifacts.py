@@ -1,5 +1,6 @@
 """Projects of JaCaMo whose artifacts are in Java."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -7,10 +8,7 @@ import pytest
 from jacaros.runtime.cli.main import call
 
 PROJECT = """mas room {
-    agent ann : ann.asl {
-        ag-arch: devices.SlowArch
-        focus: hall.heater
-    }
+    agent ann : ann.asl { ag-arch: devices.SlowArch focus: hall.heater }
     workspace hall { artifact heater: TYPE(30) }
 }
 """
@@ -24,6 +22,9 @@ class Heater(Artifact):
 """
 
 
+Outcome = Callable[..., tuple[int, str]]
+
+
 @pytest.fixture
 def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
@@ -33,35 +34,35 @@ def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def outcome(
-    room: Path, capsys: pytest.CaptureFixture[str], type_name: str, command: str = "check"
-) -> tuple[int, str]:
+@pytest.fixture
+def outcome(room: Path, capsys: pytest.CaptureFixture[str]) -> Outcome:
     """Exit code and output of a command with the project."""
-    (room / "room.jcm").write_text(PROJECT.replace("TYPE", type_name))
-    code = call([command, "room.jcm"])
-    captured = capsys.readouterr()
-    return code, captured.out + captured.err
+
+    def run(type_name: str, command: str = "check") -> tuple[int, str]:
+        (room / "room.jcm").write_text(PROJECT.replace("TYPE", type_name))
+        code = call([command, "room.jcm"])
+        captured = capsys.readouterr()
+        return code, captured.out + captured.err
+
+    return run
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
-def test_an_artifact_in_java_is_named_with_the_page_to_read(
-    command: str, room: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, told = outcome(room, capsys, "devices.Heater", command)
+def test_an_artifact_in_java_is_named_with_the_page_to_read(command: str, outcome: Outcome) -> None:
+    code, told = outcome("devices.Heater", command)
     assert code == 1
     assert "artifact type `devices.Heater` is in Java (src/env/devices/Heater.java)" in told
-    assert (
-        "port it to `class Heater(Artifact)` in devices.py, as docs/how-to/come_from_cartago.md shows" in told
-    )
+    page = "docs/how-to/come_from_cartago.md"
+    assert f"port it to `class Heater(Artifact)` in devices.py, as {page} shows" in told
     assert "did you mean" not in told
 
 
-def test_the_port_turns_no_warning_into_an_error(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_port_turns_no_warning_into_an_error(room: Path, outcome: Outcome) -> None:
     (room / "devices.py").write_text(PORTED)
-    code, told = outcome(room, capsys, "devices.Heater")
+    code, told = outcome("devices.Heater")
     assert code == 0
     assert "warning: the architecture `devices.SlowArch` has no effect" in told
-    code, told = outcome(room, capsys, "devices.Heater", "run")
+    code, told = outcome("devices.Heater", "run")
     assert code == 0
     assert "[ann] 30" in told
 
@@ -74,15 +75,13 @@ def test_the_port_turns_no_warning_into_an_error(room: Path, capsys: pytest.Capt
         ("Blackbord", "Blackboard"),
     ],
 )
-def test_a_suggested_type_exists(
-    written: str, meant: str, room: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_suggested_type_exists(written: str, meant: str, room: Path, outcome: Outcome) -> None:
     (room / "devices.py").write_text(PORTED)
-    assert f"unknown artifact type `{written}`; did you mean `{meant}`?" in outcome(room, capsys, written)[1]
-    assert "unknown artifact type" not in outcome(room, capsys, meant)[1]
+    assert f"unknown artifact type `{written}`; did you mean `{meant}`?" in outcome(written)[1]
+    assert "unknown artifact type" not in outcome(meant)[1]
 
 
-def test_an_unrelated_type_is_not_suggested(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    told = outcome(room, capsys, "devices.Cooker")[1]
+def test_an_unrelated_type_is_not_suggested(room: Path, outcome: Outcome) -> None:
+    told = outcome("devices.Cooker")[1]
     assert "did you mean" not in told
     assert "write `class Cooker(Artifact)` in devices.py or artifacts.py beside the project file" in told

@@ -4,6 +4,8 @@ import gc
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from jacaros.agents.mind.state.act import Percept
 from jacaros.agents.terms.values import Reference
 from jacaros.artifacts.env.errors import ArtifactId
@@ -87,24 +89,22 @@ def objects() -> dict[str, int]:
     return counts
 
 
-def check_flat(folder: Path, program: str, few: int, many: int) -> None:
+FOCUSES = "stopFocus(Id); focus(Id); stopFocus(Id);"
+
+
+@pytest.mark.parametrize(
+    ("program", "many"),
+    [
+        (COMES_AND_GOES.replace("TEST", "?lit(_);"), 520),
+        (CHANGES, 2020),
+        (COMES_AND_GOES.replace("TEST", FOCUSES), 520),
+    ],
+    ids=["created and disposed artifacts", "updates", "focusing and stopping"],
+)
+def test_a_long_run_leaves_nothing_behind(tmp_path: Path, program: str, many: int) -> None:
     """A long run keeps as much as a short one; what earlier tests have left may go meanwhile."""
-    objects_of_few, entries_of_few = kept(folder, program, few)
-    objects_of_many, entries_of_many = kept(folder, program, many)
+    objects_of_few, entries_of_few = kept(tmp_path, program, 20)
+    objects_of_many, entries_of_many = kept(tmp_path, program, many)
     assert entries_of_many == entries_of_few
     for kind, number in objects_of_many.items():
-        assert number - max(objects_of_few[kind], 0) < (many - few) / 10, kind
-
-
-def test_created_and_disposed_artifacts_leave_nothing_behind(tmp_path: Path) -> None:
-    program = COMES_AND_GOES.replace("TEST", "?lit(_);")
-    check_flat(tmp_path, program, 20, 520)
-
-
-def test_updates_leave_nothing_behind(tmp_path: Path) -> None:
-    check_flat(tmp_path, CHANGES, 20, 2020)
-
-
-def test_focusing_and_stopping_leaves_nothing_behind(tmp_path: Path) -> None:
-    program = COMES_AND_GOES.replace("TEST", "stopFocus(Id); focus(Id); stopFocus(Id);")
-    check_flat(tmp_path, program, 20, 520)
+        assert number - max(objects_of_few[kind], 0) < (many - 20) / 10, kind

@@ -28,9 +28,7 @@ def run(folder: Path, capsys: pytest.CaptureFixture[str], step: str, *options: s
         'cartago.invoke_obj("math", sqrt(4), R)',
     ],
 )
-def test_a_forbidden_step_fails_with_the_reason(
-    step: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_forbidden_step_fails_with_the_reason(step: str, tmp_path, capsys):
     name = step.partition("(")[0]
     told = f"[a] internal_action: {name} is forbidden: this run is restricted (--restrict)\n"
     assert run(tmp_path, capsys, step, "--restrict")[0] == told
@@ -39,9 +37,7 @@ def test_a_forbidden_step_fails_with_the_reason(
 
 
 @pytest.mark.parametrize("step", ["saveMap", "loadMap"])
-def test_a_map_is_neither_written_nor_read(
-    step: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_map_is_neither_written_nor_read(step: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     file = tmp_path / "map.yaml"
     steps = f'makeArtifact("m", "ArtSlamData", [], M); focus(M); {step}("{file}")'
     told = f"[a] action_failed: {step} is forbidden: this run is restricted (--restrict)\n"

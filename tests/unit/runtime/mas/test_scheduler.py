@@ -120,9 +120,7 @@ async def test_timers_and_virtual_time_advance_during_endless_cycles(
     assert 10**9 - endless.cycles >= 10 * VirtualClock.CYCLES_PER_MILLISECOND
 
 
-async def test_virtual_time_advances_during_endless_short_turns(
-    scheduler: Scheduler, clock: VirtualClock
-) -> None:
+async def test_virtual_time_advances_during_endless_short_turns(scheduler: Scheduler, clock: VirtualClock):
     class Chatter(Worker):
         def run(self, fuel: int) -> bool:
             scheduler.make_ready(self)
@@ -177,9 +175,7 @@ async def test_no_agent_has_a_turn_within_the_turn_of_another(
     assert log == ["begin", "end", "other"]
 
 
-async def test_on_the_virtual_clock_an_action_does_not_end_the_round(
-    scheduler: Scheduler, log: list[str]
-) -> None:
+async def test_on_the_virtual_clock_an_action_does_not_end_the_round(scheduler: Scheduler, log: list[str]):
     class Acting(Worker):
         def run(self, fuel: int) -> bool:
             scheduler.poll_soon()

@@ -17,9 +17,8 @@ def write(folder: Path, *names: str, text: str = "p.") -> None:
 def test_a_program_is_found_with_and_without_its_suffix(tmp_path: Path) -> None:
     write(tmp_path, "agt/bob.asl")
     path = SourcePath((tmp_path, tmp_path / "agt"))
-    assert (
-        path.find("bob") == path.find("bob.asl") == path.find("file:bob.asl") == tmp_path / "agt" / "bob.asl"
-    )
+    found = {path.find(name) for name in ("bob", "bob.asl", "file:bob.asl")}
+    assert found == {tmp_path / "agt" / "bob.asl"}
 
 
 def test_a_missing_program_names_all_folders_that_were_searched(tmp_path: Path) -> None:
@@ -49,31 +48,27 @@ def test_files_of_the_library_are_found_by_their_path_and_the_projects_own_come_
         path.find("$jacaros/nothing.asl")
 
 
-@pytest.mark.parametrize("declared", ["agents: ann;", 'agents: ann; aslSourcePath: "src/agt";'])
-def test_a_mas2j_file_below_the_working_folder_uses_the_folders_below_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, declared: str
+@pytest.mark.parametrize(
+    ("project", "text"),
+    [
+        ("src/mas/house.mas2j", "MAS house { agents: ann; }"),
+        ("src/mas/house.mas2j", 'MAS house { agents: ann; aslSourcePath: "src/agt"; }'),
+        ("src/jcm/house.jcm", "mas house { agent ann }"),
+        ("src/jcm/house.jcm", "mas house { agent ann asl-path: src/agt }"),
+        ("src/jcm/house.jcm", "mas house { agent ann: ann.asl }"),
+    ],
+)
+def test_a_project_below_the_working_folder_uses_the_folders_below_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, project: str, text: str
 ) -> None:
     write(tmp_path, "src/agt/ann.asl")
-    write(tmp_path, "src/mas/house.mas2j", text=f"MAS house {{ {declared} }}")
+    write(tmp_path, project, text=text)
     monkeypatch.chdir(tmp_path)
-    (ann,) = load_deployment("src/mas/house.mas2j").agents
+    (ann,) = load_deployment(project).agents
     assert ann.source_path == Path("src/agt/ann.asl")
 
 
-@pytest.mark.parametrize("declared", ["agent ann", "agent ann asl-path: src/agt", "agent ann: ann.asl"])
-def test_a_jcm_file_below_the_working_folder_uses_the_folders_below_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, declared: str
-) -> None:
-    write(tmp_path, "src/agt/ann.asl")
-    write(tmp_path, "src/jcm/house.jcm", text=f"mas house {{ {declared} }}")
-    monkeypatch.chdir(tmp_path)
-    (ann,) = load_deployment("src/jcm/house.jcm").agents
-    assert ann.source_path == Path("src/agt/ann.asl")
-
-
-def test_a_file_in_a_folder_of_strategies_includes_files_of_the_source_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_in_a_folder_of_strategies_includes_files_of_the_source_folder(tmp_path, monkeypatch):
     write(tmp_path, "src/agt/tasks/x.asl", "src/agt/strategies/s.asl")
     monkeypatch.chdir(tmp_path)
     path = SourcePath(source_folders(Path("src/agt/strategies")))
@@ -84,7 +79,5 @@ def test_a_file_in_a_folder_of_strategies_includes_files_of_the_source_folder(
 def test_a_project_comes_before_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, "here/agents/ann.asl", "there/agents/ann.asl")
     monkeypatch.chdir(tmp_path / "here")
-    assert (
-        SourcePath(source_folders(tmp_path / "there")).find("ann")
-        == tmp_path / "there" / "agents" / "ann.asl"
-    )
+    found = SourcePath(source_folders(tmp_path / "there")).find("ann")
+    assert found == tmp_path / "there" / "agents" / "ann.asl"

@@ -110,9 +110,7 @@ def test_a_defect_ends_the_run(ran: Ran) -> None:
         ran(LATE, when_started=break_it)
 
 
-def test_the_graph_is_left_in_order_even_if_the_end_of_an_agent_fails(
-    ran: Ran, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_graph_is_left_in_order_even_if_the_end_of_an_agent_fails(ran: Ran, monkeypatch):
     """Robots are stopped when the graph is left."""
     stopped: list[str] = []
 

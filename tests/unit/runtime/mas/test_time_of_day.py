@@ -37,9 +37,7 @@ def errors_of(
         ("import time", "time.sleep(0.0)", "sleep"),
     ],
 )
-def test_a_run_on_the_virtual_clock_warns(
-    imports: str, written: str, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_on_the_virtual_clock_warns(imports: str, written: str, name: str, tmp_path, capsys):
     errors = errors_of(tmp_path, capsys, imports, written, "fast")
     assert f"artifacts.py:7:22: warning: `time.{name}` follows the time of day" in errors
     assert "= help: use `" in errors

@@ -120,9 +120,7 @@ def test_a_condition_stops_the_run_when_it_becomes_true_and_not_while_it_stays_t
 
 
 @pytest.mark.program("ready.")
-async def test_a_condition_becomes_true_by_a_percept_that_no_plan_handles(
-    mas: Mas, debugger: Debugger
-) -> None:
+async def test_a_condition_becomes_true_by_a_percept_that_no_plan_handles(mas: Mas, debugger: Debugger):
     debugger.add_breakpoint({"condition": "battery(B) & B < 20", "agent": "bob"})
     bob = mas.agent("bob")
     bob.perceive("battery(50)")
@@ -138,9 +136,7 @@ def test_an_endless_condition_does_not_block_the_run() -> None:
     assert stops({"condition": "p(1)", "agent": "bob"}, program) == []
 
 
-async def test_breakpoints_apply_to_agents_created_later(
-    mas: Mas, debugger: Debugger, lines: list[str]
-) -> None:
+async def test_breakpoints_apply_to_agents_created_later(mas: Mas, debugger: Debugger, lines: list[str]):
     debugger.add_breakpoint({"event": "+!later(_)"})
     await mas.sleep(5.0)
     mas.add_agent("ann", "!later(1). +!later(X) <- .print(later, X).")
@@ -224,9 +220,7 @@ async def test_records_show_the_step_before_which_an_agent_is_held(mas: Mas, deb
 @pytest.mark.parametrize(
     ("pattern", "times"), [("+count(_)", 3), ("-count(_)", 3), ("+count(2)", 1), ("-count(9)", 0)]
 )
-def test_a_belief_change_that_no_plan_handles_stops_the_run_before_the_next_step(
-    pattern: str, times: int
-) -> None:
+def test_a_belief_change_that_no_plan_handles_stops_the_run_before_the_next_step(pattern: str, times: int):
     found = stops({"event": pattern})
     assert [why for why, _, _ in found] == [f"breakpoint {pattern}"] * times
     if pattern == "+count(2)":

@@ -108,9 +108,7 @@ ABC = "@a +!a <- .print(a). @b +!b <- .print(b). +!c <- .print(c)."
 
 
 @pytest.mark.program(ABC)
-async def test_plans_of_run_time_stay_and_removed_ones_stay_away(
-    mas: Mas, file: Path, lines: list[str]
-) -> None:
+async def test_plans_of_run_time_stay_and_removed_ones_stay_away(mas: Mas, file: Path, lines: list[str]):
     bob = mas.agent("bob")
     await bob.achieve("c")
     bob.mind.remove_plan(literal("a"))
@@ -144,9 +142,7 @@ async def test_a_changed_file_that_is_included_counts(mas: Mas, file: Path, line
 
 
 @pytest.mark.program("!go. +!go <- .print(reload); .print(old); !next. +!next <- .print(old).")
-async def test_a_reload_in_the_middle_of_a_step_waits_for_its_end(
-    mas: Mas, file: Path, lines: list[str]
-) -> None:
+async def test_a_reload_in_the_middle_of_a_step_waits_for_its_end(mas: Mas, file: Path, lines: list[str]):
     def printed(agent: str, text: str) -> None:
         if (agent, text) == ("bob", "reload"):
             write(file, file.read_text("utf-8").replace("print(old)", "print(new)"))

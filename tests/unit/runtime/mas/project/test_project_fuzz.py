@@ -68,9 +68,7 @@ def test_endless_brackets_are_refused(suffix: str, sign: str) -> None:
 
 @settings(max_examples=50)
 @given(data=st.data())
-def test_a_project_with_some_characters_changed_is_resolved(
-    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
-) -> None:
+def test_a_project_with_some_characters_changed_is_resolved(data: st.DataObject, tmp_path_factory):
     folder: Path = tmp_path_factory.mktemp("fuzz")
     text = list(WHOLE)
     for _ in range(data.draw(st.integers(1, 5))):

@@ -1,5 +1,6 @@
 """Projects with Python agents, and how to run them."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from jacaros import Literal, PythonAgent
@@ -45,6 +46,11 @@ BOTH = """mas m {{
 }}"""
 
 
+Ran = Callable[..., RunResult]
+
+TALK = "MAS m { agents: a a.py; bob; }"
+
+
 def run(folder: Path, *, idle: bool = True, seconds: float | None = 60, **files: str) -> RunResult:
     """Write files (``a_asl`` is a.asl) and run the first until nothing is left to do."""
     (folder / "artifacts.py").write_text(ARTIFACTS, encoding="utf-8")
@@ -57,19 +63,10 @@ def run(folder: Path, *, idle: bool = True, seconds: float | None = 60, **files:
     return run_project(paths[0], until_idle=idle, seconds=seconds)
 
 
-def alone(folder: Path, body: str, **options: object) -> RunResult:
-    """Run one agent in Python; *body* is that of its class."""
+def class_a(body: str) -> str:
+    """A class with this body, in Python."""
     indented = "\n".join(f"    {line}" for line in body.strip("\n").splitlines())
-    return run(folder, a_py=f"class A(PythonAgent):\n{indented}\n", **options)  # type: ignore[arg-type]
-
-
-TALK = "MAS m { agents: a a.py; bob; }"
-
-
-def talk(folder: Path, body: str, bob: str, **options: object) -> RunResult:
-    indented = "\n".join(f"    {line}" for line in body.strip("\n").splitlines())
-    text = f"class A(PythonAgent):\n{indented}\n"
-    return run(folder, m_mas2j=TALK, a_py=text, bob_asl=bob, **options)  # type: ignore[arg-type]
+    return f"class A(PythonAgent):\n{indented}\n"
 
 
 class Echo(PythonAgent):

@@ -4,7 +4,6 @@ import asyncio
 
 import pytest
 
-import jacaros
 from jacaros.agents.mind.state.act import SpeechAct
 from jacaros.agents.terms.values import atom
 from jacaros.runtime.clock import clock_of
@@ -40,49 +39,38 @@ class Desk:
         return str((await self.mail.next_message(None)).content)
 
 
-def test_readers_are_served_in_turn_and_a_cancelled_one_keeps_nothing() -> None:
-    async def main() -> None:
-        desk = Desk()
-        first, second, third = (asyncio.ensure_future(desk.read()) for _ in range(3))
-        await asyncio.sleep(0)
-        desk.mail.receive(message(1))
-        first.cancel()
-        assert await second == "m1"
-        desk.mail.receive(message(2))
-        assert await third == "m2"
-        desk.mail.receive(message(3))
-        assert await desk.read() == "m3"
-
-    jacaros.run(main(), clock="fast")
+async def test_readers_are_served_in_turn_and_a_cancelled_one_keeps_nothing() -> None:
+    desk = Desk()
+    first, second, third = (asyncio.ensure_future(desk.read()) for _ in range(3))
+    await asyncio.sleep(0)
+    desk.mail.receive(message(1))
+    first.cancel()
+    assert await second == "m1"
+    desk.mail.receive(message(2))
+    assert await third == "m2"
+    desk.mail.receive(message(3))
+    assert await desk.read() == "m3"
 
 
-def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> None:
-    async def main() -> None:
-        desk = Desk()
-        asking = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), None))
-        late = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), 1.0))
-        await asyncio.sleep(0)
-        desk.mail.receive(message(1, desk.sent[0].id))
-        assert (await asking).content == atom("m1")
-        with pytest.raises(TimeoutError, match="no answer from bob within 1 s"):
-            await late
-        desk.mail.receive(message(2, desk.sent[1].id))
-        desk.mail.receive(message(3, "another"))
-        assert await desk.read() == "m3"
-
-    jacaros.run(main(), clock="fast")
+async def test_an_answer_goes_to_the_waiting_task_and_a_late_one_is_discarded() -> None:
+    desk = Desk()
+    asking = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), None))
+    late = asyncio.ensure_future(desk.mail.ask("bob", "askOne", atom("q"), 1.0))
+    await asyncio.sleep(0)
+    desk.mail.receive(message(1, desk.sent[0].id))
+    assert (await asking).content == atom("m1")
+    with pytest.raises(TimeoutError, match="no answer from bob within 1 s"):
+        await late
+    desk.mail.receive(message(2, desk.sent[1].id))
+    desk.mail.receive(message(3, "another"))
+    assert await desk.read() == "m3"
 
 
-def test_unread_questions_get_a_negative_answer_at_the_end() -> None:
-    async def main() -> None:
-        desk = Desk()
-        desk.mail.receive(message(1, performative="askAll"))
-        desk.mail.receive(message(2))
-        desk.mail.close()
-        desk.mail.receive(message(3, performative="askOne"))
-        assert [(said.performative, said.receiver, said.in_reply_to) for said in desk.sent] == [
-            ("untell", "bob", "mid1_bob"),
-            ("untell", "bob", "mid3_bob"),
-        ]
-
-    jacaros.run(main(), clock="fast")
+async def test_unread_questions_get_a_negative_answer_at_the_end() -> None:
+    desk = Desk()
+    desk.mail.receive(message(1, performative="askAll"))
+    desk.mail.receive(message(2))
+    desk.mail.close()
+    desk.mail.receive(message(3, performative="askOne"))
+    answers = [(said.performative, said.receiver, said.in_reply_to) for said in desk.sent]
+    assert answers == [("untell", "bob", "mid1_bob"), ("untell", "bob", "mid3_bob")]

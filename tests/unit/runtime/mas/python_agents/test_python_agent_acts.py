@@ -2,13 +2,11 @@
 
 from pathlib import Path
 
-from python_agents_lab import alone, run
+from python_agents_lab import Ran
 
 
-def test_it_acts_and_sees_the_result(tmp_path: Path) -> None:
-    result = alone(
-        tmp_path,
-        """
+def test_it_acts_and_sees_the_result(alone: Ran) -> None:
+    result = alone("""
 async def run(self):
     await self.make_artifact("counter", "Counter", [1])
     self.focus("counter")
@@ -19,8 +17,7 @@ async def run(self):
         await self.act("fly")
     except OperationFailed as failure:
         self.print(failure.message)
-""",
-    )
+""")
     assert result.of("a") == [
         "3 [3] 3",
         "true 1 counter",
@@ -29,9 +26,8 @@ async def run(self):
     assert result.errors == []
 
 
-def test_it_shares_artifacts_with_an_agent_in_agentspeak(tmp_path: Path) -> None:
+def test_it_shares_artifacts_with_an_agent_in_agentspeak(run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm="""mas m {
             agent painter: painter.py { focus: lab.counter }
             agent bob { focus: lab.counter }
@@ -56,15 +52,12 @@ class Painter(PythonAgent):
     assert result.errors == []
 
 
-def test_its_name_counts_as_that_of_the_caller(tmp_path: Path) -> None:
-    assert alone(tmp_path, 'async def run(self):\n    await self.act("println", "x ", 1)').lines == [
-        "[a] x 1"
-    ]
+def test_its_name_counts_as_that_of_the_caller(alone: Ran) -> None:
+    assert alone('async def run(self):\n    await self.act("println", "x ", 1)').lines == ["[a] x 1"]
 
 
-def test_it_waits_for_an_artifact(tmp_path: Path) -> None:
+def test_it_waits_for_an_artifact(run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm="mas m { agent a: a.py   agent bob }",
         a_py="""
 class A(PythonAgent):
@@ -77,9 +70,8 @@ class A(PythonAgent):
     assert result.of("a") == ["802 4"]
 
 
-def test_without_an_environment_it_cannot_act(tmp_path: Path) -> None:
+def test_without_an_environment_it_cannot_act(tmp_path: Path, run: Ran) -> None:
     result = run(
-        tmp_path,
         m_mas2j="MAS m { agents: a a.py; }",
         a_py='class A(PythonAgent):\n    async def run(self):\n        await self.act("inc")\n',
     )

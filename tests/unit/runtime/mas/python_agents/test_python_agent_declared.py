@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from python_agents_lab import run
+from python_agents_lab import Ran
 
 
-def test_instances_options_and_beliefs(tmp_path: Path) -> None:
+def test_instances_options_and_beliefs(run: Ran) -> None:
     code = """
 class Painter(PythonAgent):
     async def run(self):
@@ -18,7 +18,7 @@ class Painter(PythonAgent):
         "mas m { agent painter: painter.py { instances: 2  speed: 0.5\n beliefs: home, room(kitchen, 2)\n } }"
     )
     for files in ({"m_mas2j": mas2j}, {"m_jcm": jcm}):
-        result = run(tmp_path, **files, painter_py=code)
+        result = run(**files, painter_py=code)
         assert [line.partition("painter")[2].partition("painter")[2] for line in result.lines] == [
             each.replace('"kitchen"', "kitchen") for each in expected
         ]
@@ -36,12 +36,12 @@ class Other(PaintBrush):
 """
 
 
-def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_named(tmp_path: Path) -> None:
+def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_named(run: Ran) -> None:
     for declared in ("paint_brush two.py", "x two.py [class=PaintBrush]", "x two.py agentClass PaintBrush"):
-        assert run(tmp_path, m_mas2j=f"MAS m {{ agents: {declared}; }}", two_py=TWO).lines[0][-5:] == "brush"
+        assert run(m_mas2j=f"MAS m {{ agents: {declared}; }}", two_py=TWO).lines[0][-5:] == "brush"
     for key in ("class", "ag-class"):
         jcm = f"mas m {{ agent x: two.py {{ {key}: Other }} }}"
-        assert run(tmp_path, m_jcm=jcm, two_py=TWO).lines == ["[x] other"]
+        assert run(m_jcm=jcm, two_py=TWO).lines == ["[x] other"]
 
 
 @pytest.mark.parametrize(
@@ -69,18 +69,17 @@ def test_the_class_of_several_is_that_with_the_agents_name_or_the_one_that_is_na
     ],
 )
 def test_errors_in_the_file_are_reported_before_anything_runs(
-    tmp_path: Path, code: str, agent: str, told: str
+    tmp_path: Path, code: str, agent: str, told: str, run: Ran
 ) -> None:
-    result = run(tmp_path, m_mas2j=f"MAS m {{\n  agents: {agent};\n}}", a_py=code)
+    result = run(m_mas2j=f"MAS m {{\n  agents: {agent};\n}}", a_py=code)
     assert result.exit_code == 1
     assert told in result.errors[0]
     assert result.errors[0].startswith(f"{tmp_path}/m.mas2j:2:1")
     assert result.lines == []
 
 
-def test_declarations_without_effect_are_reported(tmp_path: Path) -> None:
+def test_declarations_without_effect_are_reported(run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm="mas m { agent a: a.py { instances: 2 goals: g  events: discard} }",
         a_py="class A(PythonAgent):\n    pass\n",
     )
@@ -91,7 +90,7 @@ def test_declarations_without_effect_are_reported(tmp_path: Path) -> None:
     ]
 
 
-def test_its_file_may_be_in_a_folder_and_import_others(tmp_path: Path) -> None:
+def test_its_file_may_be_in_a_folder_and_import_others(tmp_path: Path, run: Ran) -> None:
     (tmp_path / "src" / "agt").mkdir(parents=True)
     (tmp_path / "src" / "agt" / "shapes.py").write_text("SIDES = 4\n", encoding="utf-8")
     (tmp_path / "src" / "agt" / "a.py").write_text(
@@ -99,13 +98,12 @@ def test_its_file_may_be_in_a_folder_and_import_others(tmp_path: Path) -> None:
         "    async def run(self):\n        self.print(shapes.SIDES)\n",
         encoding="utf-8",
     )
-    assert run(tmp_path, m_mas2j="MAS m { agents: a a.py; b src/agt/a.py; }").of("a") == ["4"]
-    assert run(tmp_path, m_mas2j='MAS m { agents: b "src/agt/a.py"; }').lines == ["[b] 4"]
+    assert run(m_mas2j="MAS m { agents: a a.py; b src/agt/a.py; }").of("a") == ["4"]
+    assert run(m_mas2j='MAS m { agents: b "src/agt/a.py"; }').lines == ["[b] 4"]
 
 
-def test_an_artifact_to_focus_may_be_created_later(tmp_path: Path) -> None:
+def test_an_artifact_to_focus_may_be_created_later(run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm="""mas m {
             agent a: a.py { focus: w.counter, w.other }
             agent bob { join: w }

@@ -3,16 +3,14 @@
 from pathlib import Path
 
 import pytest
-from python_agents_lab import BOTH, Echo, alone, run, talk
+from python_agents_lab import BOTH, Echo, Ran
 
-import jacaros
 from jacaros import Mas
 
 
 @pytest.mark.parametrize("end", [".stopMAS", ".kill_agent(a)"])
-def test_at_its_end_its_operations_are_cancelled_and_finally_runs(tmp_path: Path, end: str) -> None:
+def test_at_its_end_its_operations_are_cancelled_and_finally_runs(end: str, run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm=BOTH.format("wheels", "Wheels"),
         a_py="""
 class A(PythonAgent):
@@ -32,10 +30,8 @@ class A(PythonAgent):
     assert result.seconds < 3
 
 
-def test_an_exception_ends_this_agent_only(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_an_exception_ends_this_agent_only(tmp_path: Path, talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     try:
         await self.sleep(1)
@@ -45,9 +41,9 @@ async def run(self):
 
 def compute(self, x):
     return 1 / x
-""",
-        "!go. +!go <- .wait(2000); .all_names(L); .print(L).",
-    )
+# bob
+!go. +!go <- .wait(2000); .all_names(L); .print(L).
+""")
     assert result.lines == ["[a] finally", "[bob] [bob]"]
     assert result.errors == [
         f"[a] error: the agent was ended by ZeroDivisionError: division by zero ({tmp_path}/a.py:11, in compute)",
@@ -75,18 +71,16 @@ def compute(self, x):
         ("self.join('x')", "UnknownWorkspace: unknown workspace `/main/x`; did you mean `/main`?"),
     ],
 )
-def test_an_exception_is_logged_with_its_location(tmp_path: Path, code: str, told: str) -> None:
-    result = alone(tmp_path, f"async def run(self):\n    {code}")
+def test_an_exception_is_logged_with_its_location(tmp_path: Path, code: str, told: str, alone: Ran) -> None:
+    result = alone(f"async def run(self):\n    {code}")
     assert result.errors[0].startswith(f"[a] error: the agent was ended by {told}")
     assert result.errors[0].endswith(f" ({tmp_path}/a.py:4, in run)")
     assert len(result.errors) == 1
     assert result.exit_code == 0
 
 
-def test_an_exception_in_a_started_task_or_a_handler_ends_the_agent(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_an_exception_in_a_started_task_or_a_handler_ends_the_agent(tmp_path: Path, talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     self.start(self.other())
     await self.receive()
@@ -94,21 +88,21 @@ async def run(self):
 async def other(self):
     await self.sleep(1)
     raise KeyError("other")
-""",
-        "",
-    )
+# bob
+
+""")
     assert result.errors == [
         f"[a] error: the agent was ended by KeyError: 'other' ({tmp_path}/a.py:9, in other)"
     ]
-    result = talk(tmp_path, "def on_message(self, message):\n    message.x", "!g. +!g <- .send(a, tell, p).")
+    result = talk(
+        "def on_message(self, message):\n    message.x" + "\n# bob\n" + "!g. +!g <- .send(a, tell, p)."
+    )
     assert "AttributeError" in result.errors[0]
     assert f"({tmp_path}/a.py:4, in on_message)" in result.errors[0]
 
 
-def test_failing_tasks_of_a_group_are_logged(tmp_path: Path) -> None:
-    result = alone(
-        tmp_path,
-        """
+def test_failing_tasks_of_a_group_are_logged(tmp_path: Path, alone: Ran) -> None:
+    result = alone("""
 async def run(self):
     import asyncio
     async with asyncio.TaskGroup() as group:
@@ -116,37 +110,31 @@ async def run(self):
 
 async def fail(self):
     raise KeyError("x")
-""",
-    )
+""")
     assert result.errors[1:] == [f"[a]   KeyError: 'x' ({tmp_path}/a.py:9, in fail)"]
 
 
-def test_it_may_refuse_to_be_killed(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_it_may_refuse_to_be_killed(talk: Ran) -> None:
+    result = talk("""
 def accept_kill(self, killer):
     return killer != "bob"
 
 async def run(self):
     await self.receive()
     self.print("alive")
-""",
-        "!go. +!go <- .kill_agent(a); .send(a, tell, p). -!go <- .print(refused); .send(a, tell, p).",
-    )
+# bob
+!go. +!go <- .kill_agent(a); .send(a, tell, p). -!go <- .print(refused); .send(a, tell, p).
+""")
     assert result.of("a") == ["alive"]
 
 
-def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
-    async def main() -> None:
-        async with Mas(folder=tmp_path) as mas:
-            mas.add_agent("echo", Echo).kill()
-            assert mas.agents == ()
-
-    jacaros.run(main(), clock="fast")
+async def test_it_may_be_ended_before_its_first_step(tmp_path: Path) -> None:
+    async with Mas(folder=tmp_path) as mas:
+        mas.add_agent("echo", Echo).kill()
+        assert mas.agents == ()
 
 
-def test_an_agent_that_ignores_its_cancellation_is_reported_and_ended(tmp_path: Path) -> None:
+def test_an_agent_that_ignores_its_cancellation_is_reported_and_ended(alone: Ran) -> None:
     body = """
 async def run(self):
     import asyncio
@@ -156,26 +144,24 @@ async def run(self):
         except asyncio.CancelledError:
             self.print("no")
 """
-    result = alone(tmp_path, body, seconds=3, idle=False)
+    result = alone(body, seconds=3, idle=False)
     assert result.lines == ["[a] no"]
     assert result.errors[0] == "[a] warning: the agent did not end within 5 s of its cancellation"
 
 
-def test_forbidden_calls_in_its_constructor_are_reported(tmp_path: Path) -> None:
-    result = alone(tmp_path, "def __init__(self):\n    self.print(1)")
+def test_forbidden_calls_in_its_constructor_are_reported(tmp_path: Path, alone: Ran) -> None:
+    result = alone("def __init__(self):\n    self.print(1)")
     assert (
         "cannot create A: JacarosError: A has not started yet: do this in run, not in __init__"
         in result.errors[0]
     )
     assert f"({tmp_path}/a.py:4, in __init__)" in result.errors[0]
-    result = alone(tmp_path, "async def run(self):\n    self.prin(12345)")
+    result = alone("async def run(self):\n    self.prin(12345)")
     assert "AttributeError: A has no attribute 'prin'" in result.errors[0]
 
 
-def test_a_killed_agent_has_five_seconds(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_a_killed_agent_has_five_seconds(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     try:
         await self.receive()
@@ -186,25 +172,23 @@ async def run(self):
         self.print("eleven")
         await self.sleep(1)
         self.print("twelve")
-""",
-        "!go. +!go <- .kill_agent(a).",
-    )
+# bob
+!go. +!go <- .kill_agent(a).
+""")
     assert result.lines == ["[a] one"]
     assert result.errors == ["[a] warning: the agent did not end within 5 s of its cancellation"]
 
 
-def test_an_error_in_accept_kill_is_logged(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_an_error_in_accept_kill_is_logged(tmp_path: Path, talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     await self.receive()
 
 def accept_kill(self, killer):
     return self.friends
-""",
-        "!go. +!go <- .kill_agent(a); .all_names(L); .print(L).",
-    )
+# bob
+!go. +!go <- .kill_agent(a); .all_names(L); .print(L).
+""")
     assert result.lines == ["[bob] [bob]"]
     assert result.errors == [
         f"[a] error: accept_kill: AttributeError: A has no attribute 'friends' ({tmp_path}/a.py:7, in accept_kill)"

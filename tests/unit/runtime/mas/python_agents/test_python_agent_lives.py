@@ -3,25 +3,24 @@
 from pathlib import Path
 
 import pytest
-from python_agents_lab import Echo, alone, run
+from python_agents_lab import Echo, Ran
 
-import jacaros
 from jacaros import Mas
 from jacaros.runtime.errors import UsageError
 
 
-def test_time_is_virtual_and_numbers_are_seeded(tmp_path: Path) -> None:
+def test_time_is_virtual_and_numbers_are_seeded(alone: Ran) -> None:
     body = """
 async def run(self):
     await self.sleep(3600)
     self.print(self.random.random())
 """
-    first, second = alone(tmp_path, body, seconds=None), alone(tmp_path, body, seconds=None)
+    first, second = alone(body, seconds=None), alone(body, seconds=None)
     assert first.lines == second.lines
     assert first.seconds == 3600
 
 
-def test_a_run_is_idle_when_its_agents_wait_for_each_other(tmp_path: Path) -> None:
+def test_a_run_is_idle_when_its_agents_wait_for_each_other(run: Ran) -> None:
     body = """
 import asyncio
 class A(PythonAgent):
@@ -42,7 +41,6 @@ class A(PythonAgent):
         await asyncio.gather(self.until(lambda: self.value("count") > 5), self.receive())
 """
     result = run(
-        tmp_path,
         seconds=100,
         m_jcm="mas m { agent a: a.py { join: w } workspace w { artifact counter: Counter } }",
         a_py=body,
@@ -51,21 +49,20 @@ class A(PythonAgent):
     assert result.seconds == 5
 
 
-def test_an_agent_that_waits_for_something_else_is_not_idle(tmp_path: Path) -> None:
+def test_an_agent_that_waits_for_something_else_is_not_idle(alone: Ran) -> None:
     body = """
 async def run(self):
     import asyncio
     await asyncio.sleep(5)
     self.print(await asyncio.to_thread(lambda: "done"))
 """
-    result = alone(tmp_path, body)
+    result = alone(body)
     assert result.lines == ["[a] done"]
     assert result.seconds == 5
 
 
-def test_it_lets_others_have_their_turn(tmp_path: Path) -> None:
+def test_it_lets_others_have_their_turn(run: Ran) -> None:
     result = run(
-        tmp_path,
         idle=False,
         m_jcm="mas m { agent a: a.py   agent bob   workspace w { artifact counter: Counter  agents: a } }",
         a_py="class A(PythonAgent):\n    async def run(self):\n        while True:\n            await self.act('inc')\n",
@@ -75,9 +72,8 @@ def test_it_lets_others_have_their_turn(tmp_path: Path) -> None:
     assert result.errors == []
 
 
-def test_it_creates_and_ends_agents_and_the_run(tmp_path: Path) -> None:
+def test_it_creates_and_ends_agents_and_the_run(run: Ran) -> None:
     result = run(
-        tmp_path,
         idle=False,
         a_py="""
 from jacaros.runtime.errors import JacarosError
@@ -109,27 +105,21 @@ class A(PythonAgent):
     assert result.exit_code == 3
 
 
-def test_it_is_added_to_a_system_in_a_python_program(tmp_path: Path) -> None:
-    (tmp_path / "lone.py").write_text(
-        "from jacaros import PythonAgent\nclass Lone(PythonAgent): ...\n", encoding="utf-8"
-    )
-    lines: list[str] = []
-
-    async def main() -> None:
-        async with Mas(folder=tmp_path, on_log=lambda text, level: lines.append(text)) as mas:
-            echo = mas.add_agent("echo", Echo)
-            mas.add_agent("lone", tmp_path / "lone.py")
-            box = mas.mailbox("tester")
-            box.send("echo", "tell", "hello(1)")
-            assert str((await box.get(timeout=1)).content) == 'heard("hello")'
-            await mas.until_idle()
-            with pytest.raises(UsageError, match="agent echo is a Python agent"):
-                echo.achieve("x")
-            box.send("echo", "achieve", "hello(1)")
-            await mas.until_idle()
-            assert echo.ended
-            assert [agent.name for agent in mas.agents] == ["lone"]
-
-    jacaros.run(main(), clock="fast")
-    assert len(lines) == 1
-    assert lines[0].startswith("[echo] error: the agent was ended by ValueError: achieve")
+async def test_it_is_added_to_a_system_in_a_python_program(tmp_path: Path, logs: list[str]) -> None:
+    lone = tmp_path / "lone.py"
+    lone.write_text("from jacaros import PythonAgent\nclass Lone(PythonAgent): ...\n", encoding="utf-8")
+    async with Mas(folder=tmp_path, on_log=lambda text, level: logs.append(text)) as mas:
+        echo = mas.add_agent("echo", Echo)
+        mas.add_agent("lone", lone)
+        box = mas.mailbox("tester")
+        box.send("echo", "tell", "hello(1)")
+        assert str((await box.get(timeout=1)).content) == 'heard("hello")'
+        await mas.until_idle()
+        with pytest.raises(UsageError, match="agent echo is a Python agent"):
+            echo.achieve("x")
+        box.send("echo", "achieve", "hello(1)")
+        await mas.until_idle()
+        assert echo.ended
+        assert [agent.name for agent in mas.agents] == ["lone"]
+    assert len(logs) == 1
+    assert logs[0].startswith("[echo] error: the agent was ended by ValueError: achieve")

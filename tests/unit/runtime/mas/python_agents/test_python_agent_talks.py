@@ -1,14 +1,10 @@
 """Python agents send and receive beliefs and questions."""
 
-from pathlib import Path
-
-from python_agents_lab import BOTH, alone, run, talk
+from python_agents_lab import BOTH, Ran
 
 
-def test_it_tells_and_achieves(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_it_tells_and_achieves(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     self.send("bob", "tell", "painted(wall)")
     self.send("bob", "tell", Literal("painted", (Atom("door"), "red", [1, 2])))
@@ -16,18 +12,16 @@ async def run(self):
     self.send(["bob"], "tellHow", "+!clean <- .print(cleaned).")
     self.broadcast("achieve", Atom("clean"))
     self.send("bob", "untell", "painted(wall)")
-""",
-        """+painted(X)[source(S)] <- .print(X, " ", S).  -painted(X) <- .print("not ", X).
-           +painted(A, B, C) <- .print(A, B, C).  +!paint(_) <- .print(paint).""",
-    )
+# bob
++painted(X)[source(S)] <- .print(X, " ", S).  -painted(X) <- .print("not ", X).
+           +painted(A, B, C) <- .print(A, B, C).  +!paint(_) <- .print(paint).
+""")
     assert sorted(result.of("bob")) == ["cleaned", "doorred[1,2]", "not wall", "paint", "wall a"]
     assert result.errors == []
 
 
-def test_it_asks(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_it_asks(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     one = await self.ask("bob", "colour(X)")
     self.print(one.functor, " ", one.arguments)
@@ -40,9 +34,9 @@ async def run(self):
         self.print(error, " ", self.clock.now() % 1)
     await self.sleep(1)
     self.print((await self.ask("bob", "slow(X)")).arguments[0])
-""",
-        "colour(red). colour(blue). !go. +!go. +?slow(1) <- .wait(700).",
-    )
+# bob
+colour(red). colour(blue). !go. +!go. +?slow(1) <- .wait(700).
+""")
     assert result.of("a") == [
         "colour [red]",
         "[colour(red),colour(blue)][]",
@@ -54,10 +48,8 @@ async def run(self):
     assert result.errors == []
 
 
-def test_it_receives_beliefs_and_questions(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_it_receives_beliefs_and_questions(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     async for message in self.messages():
         self.print(message.performative, " ", message.content, " ", message.sender)
@@ -65,12 +57,12 @@ async def run(self):
             message.reply(["size(1)", Literal("size", (2,))])
         elif message.is_question:
             message.reply(None if message.content.functor == "weight" else "size(3)")
-""",
-        """!go. +!go <- .send(a, tell, [p(1), "x"]); .send(a, askOne, size(X), A); .print(A);
+# bob
+!go. +!go <- .send(a, tell, [p(1), "x"]); .send(a, askOne, size(X), A); .print(A);
              .send(a, askOne, weight(X), B); .print(B); .send(a, askAll, size(X), C); .print(C);
              .send(a, achieve, g(f(2)[s])); .send(a, askOne, size(Z)).
-           +size(N)[source(S)] <- .print(N, S).""",
-    )
+           +size(N)[source(S)] <- .print(N, S).
+""")
     assert result.of("bob") == [
         "size(3)[source(a)]",
         "false",
@@ -82,9 +74,8 @@ async def run(self):
     assert result.errors == []
 
 
-def test_handlers_are_called_in_turn(tmp_path: Path) -> None:
+def test_handlers_are_called_in_turn(run: Ran) -> None:
     result = run(
-        tmp_path,
         m_jcm=BOTH.format("counter", "Counter"),
         a_py="""
 class A(PythonAgent):
@@ -117,17 +108,19 @@ class A(PythonAgent):
     assert result.errors == []
 
 
-def test_an_agent_that_has_ended_gives_no_answers(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        'async def run(self):\n    await self.sleep(1)\n    self.print("over")',
-        """!go. +!go <- .send(a, tell, p); .send(a, askOne, size(X), A); .print(A);
-             .send(a, askOne, size(X), B); .print(B); .all_names(L); .print(L).""",
-    )
+def test_an_agent_that_has_ended_gives_no_answers(talk: Ran) -> None:
+    result = talk("""
+async def run(self):
+    await self.sleep(1)
+    self.print("over")
+# bob
+!go. +!go <- .send(a, tell, p); .send(a, askOne, size(X), A); .print(A);
+     .send(a, askOne, size(X), B); .print(B); .all_names(L); .print(L).
+""")
     assert result.lines == ["[a] over", "[bob] false", "[bob] false", "[bob] [a,bob]"]
 
 
-def test_a_message_to_an_unknown_agent_is_an_error_in_python(tmp_path: Path) -> None:
+def test_a_message_to_an_unknown_agent_is_an_error_in_python(alone: Ran) -> None:
     body = """
 async def run(self):
     for receiver in ("other", "a"):
@@ -145,7 +138,7 @@ async def run(self):
     except Exception as error:
         self.print(type(error).__name__)
 """
-    assert alone(tmp_path, body).of("a") == [
+    assert alone(body).of("a") == [
         "unknown agent `other`; agents: a",
         "self",
         "no message within 1.5 s",
@@ -153,10 +146,8 @@ async def run(self):
     ]
 
 
-def test_the_directory_facilitator_knows_it(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_the_directory_facilitator_knows_it(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     self.register_service("paint")
     self.subscribe_to_service("sell")
@@ -164,27 +155,25 @@ async def run(self):
     self.print(self.providers("sell"), self.providers("paint"))
     self.deregister_service("paint")
     self.print(self.providers("paint"))
-""",
-        """!go. +!go <- .df_search(paint, L); .print(L); .df_register(sell).""",
-    )
+# bob
+!go. +!go <- .df_search(paint, L); .print(L); .df_register(sell).
+""")
     assert result.of("bob") == ["[a]"]
     assert result.of("a") == ['tell from df: provider(bob,"sell")', '["bob"]["a"]', "[]"]
 
 
-def test_all_kinds_of_contents_are_received(tmp_path: Path) -> None:
-    result = talk(
-        tmp_path,
-        """
+def test_all_kinds_of_contents_are_received(talk: Ran) -> None:
+    result = talk("""
 async def run(self):
     async for message in self.messages():
         self.print(message.performative, " ", repr(message.content))
         if message.performative == "askHow":
             message.reply(["+!g(X) <- .print(X)."])
-""",
-        """!go. +!go <- .send(a, tellHow, {+!g(X) : p(X) <- .print(x)}); .send(a, untellHow, "l1");
+# bob
+!go. +!go <- .send(a, tellHow, {+!g(X) : p(X) <- .print(x)}); .send(a, untellHow, "l1");
             .send(a, askHow, {+!g(_)}, P); .print(P); .send(a, signal, s(1)); .send(a, unachieve, g(2));
-            .send(a, tell, [1, "text", b]); .send(a, tell, "text"); .send(a, tell, 7); .send(a, unknown, ~n::f(3)).""",
-    )
+            .send(a, tell, [1, "text", b]); .send(a, tell, "text"); .send(a, tell, 7); .send(a, unknown, ~n::f(3)).
+""")
     assert result.of("bob") == ['["+!g(X) <- .print(X)."]']
     assert result.of("a") == [
         "tellHow '{ +!g(X) : p(X) <- .print(x) }'",

@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
-import jacaros
 from jacaros.runtime.mas.agents.python_agents import TaskActivity
 from jacaros.runtime.mas.scheduler import Activity
 
@@ -32,27 +31,24 @@ class Stage:
         return self.activity.pending > 0
 
 
-def test_a_task_is_busy_unless_it_waits_for_others() -> None:
-    async def main() -> None:
-        stage, event = Stage(), asyncio.Event()
+async def test_a_task_is_busy_unless_it_waits_for_others() -> None:
+    stage, event = Stage(), asyncio.Event()
 
-        async def work() -> None:
-            await asyncio.sleep(1)
-            await stage.wait_for_others(event)
-            await asyncio.sleep(1)
+    async def work() -> None:
+        await asyncio.sleep(1)
+        await stage.wait_for_others(event)
+        await asyncio.sleep(1)
 
-        task = stage.start(work())
-        assert stage.busy
-        await asyncio.sleep(1.5)
-        assert (stage.busy, stage.settled) == (False, 1)
-        event.set()
-        await asyncio.sleep(0.1)
-        assert stage.busy
-        await task
-        await asyncio.sleep(0)
-        assert (stage.busy, stage.settled) == (False, 2)
-
-    jacaros.run(main(), clock="fast")
+    task = stage.start(work())
+    assert stage.busy
+    await asyncio.sleep(1.5)
+    assert (stage.busy, stage.settled) == (False, 1)
+    event.set()
+    await asyncio.sleep(0.1)
+    assert stage.busy
+    await task
+    await asyncio.sleep(0)
+    assert (stage.busy, stage.settled) == (False, 2)
 
 
 def test_running_operations_count_beside_the_tasks() -> None:
@@ -62,48 +58,39 @@ def test_running_operations_count_beside_the_tasks() -> None:
     assert (stage.busy, stage.settled) == (False, 1)
 
 
-def test_one_of_several_tasks_is_enough_to_be_busy() -> None:
-    async def main() -> None:
-        stage, event = Stage(), asyncio.Event()
-        stage.start(stage.wait_for_others(event))
-        other = stage.start(asyncio.sleep(1))
-        await asyncio.sleep(0.5)
-        assert stage.busy
-        await other
-        await asyncio.sleep(0)
-        assert not stage.busy
-        event.set()
-
-    jacaros.run(main(), clock="fast")
+async def test_one_of_several_tasks_is_enough_to_be_busy() -> None:
+    stage, event = Stage(), asyncio.Event()
+    stage.start(stage.wait_for_others(event))
+    other = stage.start(asyncio.sleep(1))
+    await asyncio.sleep(0.5)
+    assert stage.busy
+    await other
+    await asyncio.sleep(0)
+    assert not stage.busy
+    event.set()
 
 
-def test_a_task_that_gathers_others_waits_as_they_do() -> None:
-    async def main() -> None:
-        stage, event = Stage(), asyncio.Event()
+async def test_a_task_that_gathers_others_waits_as_they_do() -> None:
+    stage, event = Stage(), asyncio.Event()
 
-        async def work() -> None:
-            await asyncio.gather(stage.wait_for_others(event), stage.wait_for_others(event))
-            await asyncio.sleep(1)
+    async def work() -> None:
+        await asyncio.gather(stage.wait_for_others(event), stage.wait_for_others(event))
+        await asyncio.sleep(1)
 
-        task = stage.start(work())
-        await asyncio.sleep(0.5)
-        assert not stage.busy
-        event.set()
-        await asyncio.sleep(0.5)
-        assert stage.busy
-        await task
-
-    jacaros.run(main(), clock="fast")
+    task = stage.start(work())
+    await asyncio.sleep(0.5)
+    assert not stage.busy
+    event.set()
+    await asyncio.sleep(0.5)
+    assert stage.busy
+    await task
 
 
-def test_a_cancelled_wait_is_over() -> None:
-    async def main() -> None:
-        stage = Stage()
-        task = stage.start(stage.wait_for_others(asyncio.Event()))
-        await asyncio.sleep(0.1)
-        task.cancel()
-        await asyncio.sleep(0.1)
-        assert not stage.busy
-        assert stage.activity.pending == 0
-
-    jacaros.run(main(), clock="fast")
+async def test_a_cancelled_wait_is_over() -> None:
+    stage = Stage()
+    task = stage.start(stage.wait_for_others(asyncio.Event()))
+    await asyncio.sleep(0.1)
+    task.cancel()
+    await asyncio.sleep(0.1)
+    assert not stage.busy
+    assert stage.activity.pending == 0
