@@ -1,4 +1,4 @@
-"""Generated code: it shows the agent program to tracebacks, and is made only when needed."""
+"""Generated code in tracebacks, profilers and debuggers."""
 
 import cProfile
 import pstats
@@ -9,8 +9,11 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import pytest
+
 from jacaros.agents.language.loader import load_program
 from jacaros.agents.mind.actions.internal_action import InternalAction
+from jacaros.agents.mind.generated import function
 from jacaros.agents.mind.generated.compiler import executed
 from jacaros.agents.mind.generated.selection import write_select
 from jacaros.agents.mind.state.plan import Plan, label_of
@@ -145,3 +148,31 @@ def test_steps_of_an_included_plan_carry_their_own_file(tmp_path):
         assert frame is not None
         places.append((frame[0].__code__.co_filename, frame[0].__code__.co_firstlineno))
     assert places == [("second.asl", 5), ("first.asl", 3)]
+
+
+TEXT = """def first(x):
+    if x:
+        for y in range(3):
+            try:
+                x = [z * 2 for z in [y]]
+            except ValueError: raise
+        return inner(lambda: 1 / (x[0] - 4))
+    return None
+def inner(call):
+    return call()
+"""
+ORIGINS = [0, 900, 900, 7, 7, 100_000, 7, 12, 900, 3, 3, 3]
+
+
+def test_a_traceback_shows_the_lines_of_the_program():
+    names = {}
+    exec(function.compile_text(TEXT, ORIGINS, "program.asl"), names)
+    with pytest.raises(ZeroDivisionError) as raised:
+        names["first"](True)
+    places = [(f.filename, f.lineno, f.name) for f in traceback.extract_tb(raised.value.__traceback__)[1:]]
+    assert places == [
+        ("program.asl", 12, "first"),
+        ("program.asl", 3, "inner"),
+        ("program.asl", 12, "<lambda>"),
+    ]
+    assert names["first"].__code__.co_firstlineno == 900

@@ -205,13 +205,6 @@ def test_conditions_that_may_hold(context):
     assert "context-never-true" not in codes(f"+!g : {context} <- a.")
 
 
-def test_handlers_that_all_have_conditions_are_worth_a_note():
-    (found,) = warnings("+!g <- a. -!g : p <- a. -!g : q <- a.")
-    assert (found.severity, found.code) == ("note", "narrow-handler")
-    assert codes("+!g <- a. -!g : p <- a. -!g <- b.") == []
-    assert codes("+!g <- a. -!g : p <- a. -!G <- b(G).") == []
-
-
 def test_comparing_an_atom_or_a_variable_without_a_value_is_reported():
     assert codes("+!g <- X == 3; a(X).") == ["comparison-without-value"]
     assert codes("+!g : X == 3 & p(X) <- a.") == ["comparison-without-value"]
@@ -265,11 +258,15 @@ def test_comments_switch_warnings_off(text, left):
     assert found == left
 
 
-def test_only_known_warnings_can_be_switched_off():
+def test_only_known_warnings_can_be_switched_off_and_narrow_handlers_are_noted():
     diagnostics = list(wanted(errors("// jacaros: ignore-file missing-body\n+!g <- .")))
     assert [each.code for each in diagnostics] == ["missing-body"]
     (found,) = Suppressions(SourceFile("x", "p. // jacaros: ignore singletons")).unknown
     assert (found.code, found.message) == ("unknown-code", "unknown code `singletons`")
+    (found,) = warnings("+!g <- a. -!g : p <- a. -!g : q <- a.")
+    assert (found.severity, found.code) == ("note", "narrow-handler")
+    assert codes("+!g <- a. -!g : p <- a. -!g <- b.") == []
+    assert codes("+!g <- a. -!g : p <- a. -!G <- b(G).") == []
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,17 @@
-"""The front end on all conformance programs."""
+"""The conformance programs and the examples of modules."""
 
+import doctest
+import inspect
+import pkgutil
 import re
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from asl_lab import parse_plan
 
+import jacaros.agents.language
 from jacaros.agents.checks.checker import check
 from jacaros.agents.checks.goals import KnownActions
 from jacaros.agents.language.diagnostics import AslError
@@ -29,12 +35,16 @@ def load(path: Path):
     return load_program(str(path), path.read_text(encoding="utf-8"), read)
 
 
-def test_correct_programs_are_there_and_read_without_a_warning():
+def test_correct_programs_are_read_and_checked_without_a_warning():
     assert len(GOOD) > 300
     assert len(REFUSED) == 14
     for path in GOOD:
         _, warnings = load(path)
         assert warnings == [], path
+    for path in GOOD:
+        for warning in check(load(path)[0], KnownActions({})):
+            assert warning.severity in ("warning", "note")
+            assert warning.span is not None
 
 
 def test_every_plan_reads_back_from_its_text():
@@ -68,8 +78,26 @@ def test_a_wrong_program_is_refused_at_its_line(expected):
         assert f":{wanted.group(1)}:" in str(refused.value)
 
 
-def test_the_checker_takes_every_correct_program():
-    for path in GOOD:
-        for warning in check(load(path)[0], KnownActions({})):
-            assert warning.severity in ("warning", "note")
-            assert warning.span is not None
+MODULES = [
+    import_module(found.name)
+    for found in pkgutil.walk_packages(jacaros.agents.language.__path__, "jacaros.agents.language.")
+]
+
+
+def name_of(module: ModuleType) -> str:
+    return module.__name__
+
+
+@pytest.mark.parametrize("module", MODULES, ids=name_of)
+def test_the_examples_of_a_module_run(module):
+    assert doctest.testmod(module).failed == 0
+
+
+@pytest.mark.parametrize("module", MODULES, ids=name_of)
+def test_a_module_with_a_public_function_begins_with_an_example(module):
+    functions = [
+        name
+        for name, value in inspect.getmembers(module, inspect.isfunction)
+        if value.__module__ == module.__name__ and not name.startswith("_")
+    ]
+    assert not functions or ">>>" in (module.__doc__ or "")

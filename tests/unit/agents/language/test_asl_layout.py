@@ -36,8 +36,10 @@ def program(text: str):
     return load_program("x", text, lambda path, _: (f"{path}!", ""))[0]
 
 
-def test_the_programs_are_there():
+def test_steps_keep_blank_lines_and_programs_are_there():
     assert len(PROGRAMS) > 330
+    text = "p.\nq.\n\n\nr.\n+!g\n  <- a;\n\n\n     b;\n     c.\n"
+    assert formatted(text) == "p.\nq.\n\nr.\n+!g\n  <- a;\n\n     b;\n     c.\n"
 
 
 def test_formatting_keeps_the_meaning_and_is_stable():
@@ -183,11 +185,6 @@ def test_comments_stay(before, after):
     assert formatted(result) == result
     if after is not None:
         assert result == after
-
-
-def test_steps_keep_their_blank_lines_and_lines_their_groups():
-    text = "p.\nq.\n\n\nr.\n+!g\n  <- a;\n\n\n     b;\n     c.\n"
-    assert formatted(text) == "p.\nq.\n\nr.\n+!g\n  <- a;\n\n     b;\n     c.\n"
 
 
 def test_a_wrong_program_is_refused_and_line_ends_of_other_systems_are_read():

@@ -76,9 +76,17 @@ def test_a_namespace_directive_without_a_block_puts_nothing_into_the_namespace(k
     assert belief_texts(f"{{ namespace(n{kind}) }} b. c.") == ["b", "c"]
 
 
-def test_a_block_ends_its_namespace_and_blocks_can_be_nested():
+def test_blocks_end_and_rules_become_functions():
     text = "{ begin namespace(m) } a. { begin namespace(n) } b. { end } c. { end } d."
     assert belief_texts(text) == ["m::a", "n::b", "m::c", "d"]
+    read = program(
+        """{ register_function("my.double", 1, "double") }
+           double(X, X*2). +!g : my.double(2) > 3 <- Y = my.double(X)+1."""
+    )
+    assert read.functions == (nodes.RegisteredFunction("my.double", 1, "double"),)
+    context = read.plans[0].context
+    assert isinstance(context, nodes.Relation)
+    assert isinstance(context.left, nodes.FunctionCall)
 
 
 def test_an_include_stands_at_its_place_in_a_namespace():
@@ -139,17 +147,6 @@ def test_includes_are_limited_and_not_circular():
     files = {"one.asl": "p(1.\n"}
     (error,) = errors('q.\nr.\n{ include("one.asl") }', files)
     assert error.place() == "one.asl:1:4: "
-
-
-def test_a_rule_can_be_registered_as_a_function():
-    read = program(
-        """{ register_function("my.double", 1, "double") }
-           double(X, X*2). +!g : my.double(2) > 3 <- Y = my.double(X)+1."""
-    )
-    assert read.functions == (nodes.RegisteredFunction("my.double", 1, "double"),)
-    context = read.plans[0].context
-    assert isinstance(context, nodes.Relation)
-    assert isinstance(context.left, nodes.FunctionCall)
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,13 @@
-"""Plans, bodies, labels and the other clauses of a program."""
+"""Plans as nodes, control statements as actions, and needs."""
 
 import pytest
 from asl_lab import belief_texts, errors, parse_plan, plan_texts, program
 
+from jacaros.agents.checks.checker import wrong_needs
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import AslError
 from jacaros.agents.language.loader import load_program, parse_plans
+from jacaros.agents.language.nodes import ByKind
 
 
 def steps(text: str) -> tuple[nodes.Step, ...]:
@@ -164,3 +166,57 @@ def test_plans_at_run_time_and_the_same_plan_twice():
 def test_only_plans_are_plans(text):
     with pytest.raises(AslError):
         parse_plans(text)
+
+
+def step(text: str) -> object:
+    body = parse_plan(f"+!g <- {text}").body
+    assert isinstance(body, nodes.Body)
+    (only,) = body.steps
+    return only
+
+
+@pytest.mark.parametrize(
+    ("action", "statement"),
+    [
+        (".if_then_else(p(X), { .print(X) })", "if (p(X)) { .print(X) }"),
+        (".if_then_else(p, { a; b }, { })", "if (p) { a; b } else { }"),
+        (".foreach(p(X) & X > 1, { +q(X); !g })", "for (p(X) & X > 1) { +q(X); !g }"),
+        (".loop(not p, { !g })", "while (not p) { !g }"),
+        (".fork(and, { a; b }, { !c })", "(a; b) |&| !c"),
+        (".fork(or, { a }, { b }, { c })", "a ||| b ||| c"),
+    ],
+)
+def test_they_mean_the_statements(action, statement):
+    assert step(action) == step(statement)
+
+
+@pytest.mark.parametrize(
+    "action", [".foreach(p)", ".foreach(p, q)", ".fork(xor, { a }, { b })", ".fork(and, { a })"]
+)
+def test_other_forms_are_plain_internal_actions(action):
+    assert isinstance(step(action), nodes.Constraint)
+
+
+def told(program: str) -> list[tuple[str, str | None]]:
+    read, _ = load_program("test.asl", program)
+    return [(each.message, each.help) for each in wrong_needs(ByKind(*read.plans))]
+
+
+@pytest.mark.parametrize(
+    ("needs", "message", "help"),
+    [
+        ("needs(lift(2))", "expected a resource", "write names"),
+        ("needs(arm), policy(refusse)", "unknown policy `refusse`", "did you mean `refuse`?"),
+    ],
+)
+def test_needs_that_can_never_be_met_are_reported(needs, message, help):
+    for written in (f"@a[{needs}] +!g <- b.", f"+!f <- !g[{needs}]."):
+        ((found, help),) = told(written)
+        assert message in found
+        assert help is not None
+        assert help in help
+
+
+def test_needs_that_can_be_met_are_not_reported():
+    for needs in ("needs(arm,base)", 'needs("/r1/wheels")'):
+        assert not told(f"@a[{needs}, policy(refuse)] +!g <- b.")

@@ -145,15 +145,12 @@ def test_text_at_run_time_is_refused_with_a_message():
         parse_literal("3")
 
 
-def test_other_entry_points():
+def test_other_entry_points_and_long_chains():
     assert parse_literal("~p(1)[a].") == parse_term("~p(1)[a]")
     assert parse_trigger("-!g(X)[error(E)]").operator == "-"
     assert isinstance(parse_formula("a & not b"), nodes.And)
     assert [literal.functor for literal in parse_literals('p(1), ~q, r("a,b")')] == ["p", "q", "r"]
     assert parse_literals("") == ()
-
-
-def test_the_parser_reads_long_chains_without_recursion():
     parse_formula(" & ".join(["a"] * 400))
     parse_term("+".join(["1"] * 251))
     parse_term("[" + ",".join(["1"] * 5000) + "]")

@@ -1,18 +1,20 @@
-"""The belief base against a simple model, and its indexes."""
+"""The belief base against a simple model, its indexes, rules and limit."""
 
 from unittest import mock
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from recording_host import printed
+from recording_host import RecordingHost, believed, mind, printed
 
 from jacaros.agents.mind.state import belief_base
+from jacaros.agents.mind.state.act import Percept, SpeechAct
 from jacaros.agents.mind.state.belief_base import BeliefTables, Table
+from jacaros.agents.mind.state.budget import Options
 from jacaros.agents.mind.state.plan import OpenFact
 from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, unify
-from jacaros.agents.terms.values import BY_SELF, Var, atom, functor
+from jacaros.agents.terms.values import BY_SELF, SOURCE_PERCEPT, Var, atom, functor, structure
 
 OPERATIONS = st.lists(
     st.tuples(st.sampled_from(["add", "last", "remove"]), st.integers(0, 4), st.integers(0, 2)), max_size=40
@@ -149,3 +151,97 @@ def test_the_cost_of_a_belief_does_not_depend_on_the_number_of_others(belief, ot
     work(1)  # what a process makes once
     least = work(1)
     assert work(200) - least < 6 * (work(50) - least)
+
+
+GROW = """
+known(1). known(2).
+!fill(1).
++!fill(N)
+  <- +grown(N);
+     !fill(N + 1).
+-!fill(N)[error(E), error_msg(M), code_line(L)] <- .print(N, " ", E, " in line ", L); .print(M).
+"""
+
+
+def limited(program: str, limit: int) -> RecordingHost:
+    host = mind(program, options=Options(belief_limit=limit))
+    host.run()
+    return host
+
+
+def test_a_step_that_exceeds_the_limit_fails_with_the_reason():
+    host = limited(GROW, 10)
+    assert host.printed == [
+        "9 belief_limit in line 5",
+        "there are 10 beliefs (option belief_limit), most of them grown/1 (8)",
+    ]
+    assert len(believed(host, "grown")) == 8
+    host = limited(GROW.replace("+grown(N)", "-+now(N); if (N mod 2 == 0) { +grown(N) }"), 3_000)
+    assert host.printed == [
+        "5996 belief_limit in line 5",
+        "there are 3000 beliefs (option belief_limit), most of them grown/1 (2997)",
+    ]
+    program = """
+    a. b.
+    !s.
+    +!s <- .asserta(c); .print(never).
+    -!s[error(E)] <- .print(E).
+    """
+    assert limited(program, 2).printed == ["belief_limit"]
+
+
+def test_rules_count_and_replaced_or_deleted_beliefs_make_room():
+    program = """
+    a(0). b(0).
+    !s.
+    +!s <- -+a(1); -+a(2); +a(2); -b(0); +c(X); -c(_); +c(f(Y)); .abolish(c(_)); +b(1); .print(full); +b(2).
+    -!s[error(E)] <- .print(E).
+    """
+    assert limited(program, 2).printed == ["full", "belief_limit"]
+    program = """
+    a :- b.
+    !s.
+    +!s <- +c; +d.
+    -!s[error(E)] <- .print(E).
+    """
+    host = limited(program, 2)
+    assert host.printed == ["belief_limit"]
+    assert believed(host, "c") == ["c[source(self)]"]
+
+
+def test_refused_beliefs_from_outside_are_logged_once():
+    host = mind("+p(X) <- .print(X).", options=Options(belief_limit=3))
+    host.run()
+    percepts = [Percept("add", structure("p", float(n)), (SOURCE_PERCEPT,)) for n in range(4)]
+    host.agent.perceive(percepts)
+    for n in range(4, 6):
+        host.agent.receive(SpeechAct("tell", "bob", "tester", structure("p", float(n)), f"m{n}"))
+    host.run()
+    assert host.printed == ["0", "1", "2"]
+    assert host.logged == [
+        (
+            "error",
+            "refusing beliefs from outside: there are 3 beliefs (option belief_limit), most of them p/1 (3)",
+        )
+    ]
+    host.agent.perceive([Percept("remove", structure("p", 0.0), (SOURCE_PERCEPT,))])
+    host.agent.perceive([Percept("remove", structure("p", 3.0), (SOURCE_PERCEPT,))])
+    host.agent.perceive([Percept("add", structure("p", 7.0), (SOURCE_PERCEPT,))])
+    host.run()
+    assert host.printed[3:] == ["7"]
+    assert len(believed(host, "p")) == 3
+
+
+def test_facts_with_variables_are_listed_as_rules():
+    program = """
+        a(X) :- b(X). open(Y). ~no(Z)[k]. b(1).
+        !s.
+        +!s <- .relevant_rules(open(3), L); .print(L); .relevant_rules(~no(_), M); .print(M);
+           .relevant_rules([a], N); .print(N); .relevant_rules(b(_), O); .print(O);
+           .relevant_rules(_, P); .print(.length(P)).
+    """
+    assert printed(program) == ["[{ open(Y) :- true }]", "[{ ~no(Z)[k] :- true }]", "[]", "[]", "3"]
+    assert sorted(printed("a(X) :- b(X). open(Y)[k]. b(1). !s. +!s <- .list_rules.")) == [
+        "a(X)[source(self)] :- b(X)",
+        "open(Y)[k,source(self)] :- true",
+    ]

@@ -25,8 +25,8 @@ def needs_granted(act: Act) -> Completion | None:
     return Completion(True) if act.functor.name == ".needs" else None
 
 
-def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs():
-    """Jason handles it there again, for ever."""
+def test_scopes_deadlines_and_stacks_choose_the_nearest_plan():
+    # Jason handles it there again, for ever.
     host = mind(
         """
         !g.
@@ -38,9 +38,6 @@ def test_a_failure_in_a_scope_does_not_go_to_the_bottom_goal_whose_handler_runs(
     )
     host.run(fuel=100)
     assert host.printed == ["handles_g", "handles_h"]
-
-
-def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts():
     host = mind(
         """
         !g(2).
@@ -52,6 +49,14 @@ def test_of_two_plans_on_a_stack_the_one_nearest_to_the_top_reacts():
     host.agent.perceive([percept("e", 1.0)])
     host.run(seconds=0.01)
     assert host.printed == ["reacts(1)"]
+    assert printed(
+        """
+        !start.
+        +!start <- !g[within(50)]; .print(after).
+        @p[within(5000)] +!g <- .wait(1000); .print(late).
+        -!g[error(E)] <- .print(E).
+        """
+    ) == ["deadline", "after"]
 
 
 def test_the_first_branch_of_an_atomic_plan_is_not_interrupted():
@@ -95,17 +100,6 @@ def test_a_goal_condition_that_cannot_be_evaluated_is_reported_once_and_looked_a
     assert [text for level, text in host.logged if level == "error"] == [
         "goal condition of plan p__2 skipped: ArithmeticFault: integer division by zero"
     ]
-
-
-def test_the_deadline_of_a_goal_ends_a_plan_that_has_one_too():
-    assert printed(
-        """
-        !start.
-        +!start <- !g[within(50)]; .print(after).
-        @p[within(5000)] +!g <- .wait(1000); .print(late).
-        -!g[error(E)] <- .print(E).
-        """
-    ) == ["deadline", "after"]
 
 
 def test_messages_are_read_one_in_a_cycle_unless_they_are_urgent():
@@ -153,12 +147,6 @@ def test_a_program_included_at_run_time_must_not_take_a_label(tmp_path):  # type
     assert len(host.agent.library.plans) == plans + 1
 
 
-def test_a_limit_multiplies_a_random_number():
-    host = mind("!g. +!g <- .findall(X, .range(_, 1, 60) & X = math.random(10), L); .max(L, M); .print(M).")
-    host.run()
-    assert 3 < float(host.printed[0]) < 10
-
-
 def test_input_waits_for_its_cycle_in_an_agent_that_looks_around_rarely():
     steps = "; ".join(f".print({number})" for number in range(12))
     host = mind(f"!g. +!g <- {steps}. +p(_) <- .print(p).", options=Options(percept_interval=10))
@@ -202,11 +190,20 @@ def test_an_observer_of_beliefs_does_not_hear_signals():
     assert Observer.changes == ["+p/1"]
 
 
-def test_a_number_can_be_neither_believed_nor_forgotten():
+def test_beliefs_are_literals_and_watched_goals_end_with_their_plans():
     host = mind("")
     assert not host.agent.tell(3.0)
     assert not host.agent.untell(3.0)
     assert host.agent.untell(structure("p", 1.0)) is False
+    host = mind("+!g <- .wait(10).")
+    goal = WatchedGoal(host.agent, lower_value(parse_term("g")))
+    host.run(seconds=0.005)
+    assert not goal.achieved
+    host.run()
+    assert goal.achieved
+    host = mind("!g. +!g <- .findall(X, .range(_, 1, 60) & X = math.random(10), L); .max(L, M); .print(M).")
+    host.run()
+    assert 3 < float(host.printed[0]) < 10
 
 
 @pytest.mark.parametrize(
@@ -215,12 +212,3 @@ def test_a_number_can_be_neither_believed_nor_forgotten():
 def test_a_belief_must_be_a_literal(step, error):
     program = f"!g({'X' if 'X' in step else '3'}). +!g(X) <- +X. -!g(_)[error(E)] <- .print(E)."
     assert printed(program) == [error]
-
-
-def test_a_goal_that_is_watched_is_achieved_when_its_plan_has_ended():
-    host = mind("+!g <- .wait(10).")
-    goal = WatchedGoal(host.agent, lower_value(parse_term("g")))
-    host.run(seconds=0.005)
-    assert not goal.achieved
-    host.run()
-    assert goal.achieved

@@ -1,4 +1,4 @@
-"""Plans made once for all agents of a program: shared while untouched, each agent's own when it changes them."""
+"""Plans of a program that its agents share, and features that cost only the plans that have them."""
 
 import pytest
 from recording_host import RecordingHost, mind, printed
@@ -7,7 +7,10 @@ from jacaros.agents.language.loader import load_program, parse_literals
 from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.mind import Mind, new_engine
+from jacaros.agents.mind.rules import clr_int, forks, needs
+from jacaros.agents.mind.state.act import Percept
 from jacaros.agents.mind.state.plan_library import ProgramPlans
+from jacaros.agents.terms.values import SOURCE_PERCEPT, atom
 
 PROGRAM = """
 +!greet(X) <- .print("hello ", X).
@@ -79,11 +82,15 @@ def test_added_and_removed_plans_count_for_that_agent():
     assert second.printed == ["hello bob"]
 
 
-def test_a_running_plan_keeps_its_place_when_its_kind_is_compiled_again():
+def test_running_plans_and_branches_keep_their_sub_plans():
     first, second = agents("a", "b")
     adopt(first, "slow")
     adopt(second, "slow")
     assert first.printed == second.printed == ["test_goal_failed in line 6"]
+    host = mind("!s. +!s <- (.wait({+n1}) |&| .wait({+n2})). { +y <- .print(y). }")
+    host.run()
+    perceive(host, "y")
+    assert host.printed == ["y", "y"]
 
 
 @pytest.mark.parametrize("size", [30, 125, 1500])
@@ -117,3 +124,62 @@ def test_plans_are_searched_or_run_although_nested_or_not_compiled():
     assert host.printed == ["stop", "5"]
     levels = {level for level, told in host.logged if "is too large to compile" in told}
     assert levels == {"warning"}
+
+
+LOOP = "!c(50). +!c(0) <- .print(done). +!c(N) <- +left(N); -left(N); !c(N - 1). +e <- .print(e).\n"
+UNUSED = """
+@never[needs(wheels)] +!never.
++!until <: done <- +x.
++!around <- +x. { +y <- .print(y). }
+"""
+
+
+def perceive(host: RecordingHost, name: str) -> None:
+    host.agent.perceive([Percept("signal", atom(name), (SOURCE_PERCEPT,))])
+    host.run()
+
+
+def test_plans_that_do_not_run_change_no_cycle(monkeypatch):
+    def never(*_: object) -> None:
+        raise AssertionError
+
+    for module, name in ((clr_int, "_is_achieved"), (needs, "_wanted"), (forks, "_select")):
+        monkeypatch.setattr(module, name, never)
+    hosts = mind(LOOP), mind(LOOP + UNUSED)
+    for host in hosts:
+        host.run()
+        perceive(host, "e")
+        assert host.printed == ["done", "e"]
+        assert not host.agent.incoming.called
+    assert hosts[0].agent.counts.cycles == hosts[1].agent.counts.cycles
+
+
+def test_an_event_is_offered_only_to_intentions_with_sub_plans_for_it(monkeypatch):
+    host = mind(
+        """
+        !start.
+        +!start <- for (.range(I, 1, 20)) { !!other(I) }; !!one.
+        +!other(I) <- .wait({+never(I)}). { +x <- .print(x). }
+        +!one <- .wait({+never}). { +y <- .print(y). }
+        """
+    )
+    host.run()
+    asked = []
+    select = forks._select
+    monkeypatch.setattr(forks, "_select", lambda *given: asked.append(given) or select(*given))
+    perceive(host, "z")
+    assert not asked
+    perceive(host, "y")
+    assert host.printed == ["y"]
+    assert len(asked) == 1
+
+
+def test_a_goal_condition_is_tested_only_while_its_goal_is_pursued():
+    host = mind("!s. +!s <- !g; .print(over). +!g <: done <- .wait({+never}). +e <- +done.")
+    host.run()
+    assert host.agent.conditioned
+    perceive(host, "e")
+    assert host.printed == ["over"]
+    perceive(host, "other")
+    assert not host.agent.conditioned
+    assert not host.agent.incoming.called

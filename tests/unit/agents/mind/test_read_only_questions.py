@@ -103,12 +103,16 @@ def test_an_effect_that_a_rule_or_function_hides_is_refused(formula):
     assert state(agent) == before
 
 
-def test_nothing_is_printed_or_logged():
+def test_questions_print_nothing_and_do_not_exhaust_the_memory():
     host = asked()
     logged = len(host.logged)
     assert answers(host.agent, '.print("no") & .nth(9, [a], X)') == []
     assert host.printed == []
     assert len(host.logged) == logged
+    doubling = " & ".join(f".concat(X{i}, X{i}, X{i + 1})" for i in range(60))
+    for first in ('"abcdefgh"', "[1, 2, 3]"):
+        with pytest.raises(SearchLimit, match=f"more than {LARGEST} elements"):
+            answers(asked().agent, f"X0 = {first} & {doubling}")
 
 
 @pytest.mark.parametrize(
@@ -119,10 +123,3 @@ def test_a_search_ends_after_its_steps(formula):
     with pytest.raises(SearchLimit):
         answers(agent, formula, 500)
     assert agent.beliefs.budget is None
-
-
-def test_values_that_double_do_not_exhaust_the_memory():
-    doubling = " & ".join(f".concat(X{i}, X{i}, X{i + 1})" for i in range(60))
-    for first in ('"abcdefgh"', "[1, 2, 3]"):
-        with pytest.raises(SearchLimit, match=f"more than {LARGEST} elements"):
-            answers(asked().agent, f"X0 = {first} & {doubling}")

@@ -92,14 +92,11 @@ def test_a_mind_that_is_restored_after_each_cycle_prints_the_same(program):
     assert printed(program, exchanged=True) == expected
 
 
-def test_a_restored_mind_is_stored_as_the_same_data():
+def test_a_restored_mind_is_stored_as_the_same_data_and_keeps_what_it_needs():
     host = mind("b(1)[x]. b(X) :- c(X). !s. +!s <- .wait(1000).")
     host.agent.run(10)
     before = stored(host.agent)
     assert stored(restored(host)) == before
-
-
-def test_a_restored_mind_keeps_what_its_plans_need_on_the_same_host():
     host = mind("!g. @[needs(base)] +!g <- .wait(1000).", complete=lambda act: Completion(True))
     host.agent.run(10)
     restored(host)

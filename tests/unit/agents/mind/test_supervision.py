@@ -94,10 +94,12 @@ def test_what_a_program_prints_of_within(program, output):
     assert printed(program) == output
 
 
-def test_a_goal_that_is_achieved_in_time_leaves_no_alarm():
+def test_deadlines_that_are_over_leave_nothing():
     host = ran("!g. +!g <- !h[within(5000)]; .print(after). +!h <- .wait(10).")
     assert (host.printed, elapsed(host)) == (["after"], 0.01)
     assert not host.agent.waits.alarms
+    host = ran("!g. +!g <- !h[within(500)]. +!h <- drive(5). -!h <- .print(stopped).")
+    assert (host.printed, host.cancelled) == (["stopped"], [1])
 
 
 def test_the_deadline_of_a_suspended_goal_keeps_running():
@@ -111,11 +113,6 @@ def test_the_deadline_of_a_suspended_goal_keeps_running():
         """
     )
     assert (host.printed, elapsed(host)) == (["deadline"], 0.5)
-
-
-def test_a_deadline_cancels_the_action_of_the_goal():
-    host = ran("!g. +!g <- !h[within(500)]. +!h <- drive(5). -!h <- .print(stopped).")
-    assert (host.printed, host.cancelled) == (["stopped"], [1])
 
 
 # --- retry -------------------------------------------------------------------------------------------------
@@ -214,11 +211,7 @@ def test_a_goal_between_two_attempts_is_dropped_succeeds_and_fails(step, expecte
 # --- every -------------------------------------------------------------------------------------------------
 
 
-def test_a_goal_is_pursued_in_each_period_without_drift():
-    assert printed(f"!scan[every(1000)]. +!scan <- {NOW}; .wait(300).", 3.9) == ["0", "1", "2", "3"]
-
-
-def test_missed_periods_are_reported_once():
+def test_missed_periods_are_reported_once_and_warned_of_seldom():
     host = ran(
         f"""
         n(0). !scan[every(1000)].
@@ -229,9 +222,6 @@ def test_missed_periods_are_reported_once():
     )
     assert host.printed == ["0", "1", "missed1", "3", "missed2", "6"]
     assert host.logged == [("warning", "goal !scan has missed a period of 1000 ms: it takes longer")]
-
-
-def test_missed_periods_are_warned_of_at_the_first_tenth_and_hundredth():
     host = ran("!scan[every(100)]. +!scan <- .wait(150).", 40.0)
     counts = [int(found[1]) if (found := re.search(r"(\d+) periods", text)) else 1 for _, text in host.logged]
     assert counts == [1, 10, 100]
@@ -264,7 +254,7 @@ def test_a_periodic_goal_that_is_named_ends_for_good_and_its_plan_continues(mome
     assert not host.agent.waits.alarms
 
 
-def test_a_periodic_goal_that_succeeds_before_its_first_period_never_runs():
+def test_a_periodic_goal_ends_by_success_or_failure():
     program = """
         !g. !end.
         +!g <- !scan[every(1000)]; .print(after).
@@ -272,22 +262,12 @@ def test_a_periodic_goal_that_succeeds_before_its_first_period_never_runs():
         +!end <- .succeed_goal(scan).
         """
     assert printed(program, 5.0) == ["after"]
-
-
-def test_the_plan_of_a_periodic_goal_can_end_it():
     program = """
         n(0). !g.
         +!g <- !scan[every(1000)]; .print(after).
         +!scan <- ?n(N); -+n(N + 1); .print(N); if (N == 2) { .succeed_goal(scan) }; .wait(10).
         """
     assert printed(program) == ["0", "1", "2", "after"]
-
-
-def test_done_ends_the_present_period():
-    assert printed("!scan[every(1000)]. +!scan <- .print(scan); .done; .print(never).", 2.5) == ["scan"] * 3
-
-
-def test_a_periodic_sub_goal_holds_its_plan_until_it_fails():
     assert printed(
         """
         n(0). !g.
@@ -296,13 +276,6 @@ def test_a_periodic_sub_goal_holds_its_plan_until_it_fails():
         +!scan <- ?n(N); -+n(N + 1); .print(N); N < 2.
         """
     ) == ["0", "1", "2", "constraint_failed"]
-
-
-def test_a_periodic_goal_continues_after_its_failure_plan():
-    assert printed("!scan[every(1000)]. +!scan <- .fail. -!scan <- .print(failed).", 2.5) == ["failed"] * 3
-
-
-def test_a_deadline_and_attempts_are_those_of_one_period():
     assert printed(
         """
         n(0). !scan[every(1000), within(400), retry(1, 100)].
@@ -311,6 +284,15 @@ def test_a_deadline_and_attempts_are_those_of_one_period():
         """,
         2.5,
     ) == ["0", "1", "constraint_failed", "2", "deadline", "3", "deadline"]
+
+
+def test_a_periodic_goal_continues_after_failures_and_ends_periods_by_done():
+    assert printed("!scan[every(1000)]. +!scan <- .print(scan); .done; .print(never).", 2.5) == ["scan"] * 3
+    assert printed("!scan[every(1000)]. +!scan <- .fail. -!scan <- .print(failed).", 2.5) == ["failed"] * 3
+    assert printed(
+        "n(0). !g. +!g <- !!scan(X)[every(10)]. +!scan(X) <- ?n(X); -+n(X + 1); .print(X).", 0.025
+    ) == ["0", "1", "2"]
+    assert printed(f"!scan[every(1000)]. +!scan <- {NOW}; .wait(300).", 3.9) == ["0", "1", "2", "3"]
 
 
 def test_the_periods_of_a_suspended_goal_are_missed_once():
@@ -324,12 +306,6 @@ def test_the_periods_of_a_suspended_goal_are_missed_once():
     )
     assert [line[:7] for line in host.printed] == ["0", "1", "missed4", host.printed[3][:7], "7", "8"]
     assert 6.24 < float(host.printed[3]) < 6.26
-
-
-def test_each_period_has_variables_of_its_own():
-    assert printed(
-        "n(0). !g. +!g <- !!scan(X)[every(10)]. +!scan(X) <- ?n(X); -+n(X + 1); .print(X).", 0.025
-    ) == ["0", "1", "2"]
 
 
 # --- while and cleanup -------------------------------------------------------------------------------------

@@ -1,17 +1,21 @@
-"""Urgent events and intentions go before what waits, and among equals the order is Jason's."""
+"""Urgency, and the other policies of a cycle."""
 
 from collections import Counter, deque
+from pathlib import Path
 from random import Random
 
 import pytest
 from recording_host import RecordingHost, mind, printed, programs
 
+from jacaros.agents.mind.rules import urgency
 from jacaros.agents.mind.rules.urgency import Fair, Urgent, UrgentQueue
 from jacaros.agents.mind.state.act import Percept, SpeechAct
 from jacaros.agents.mind.state.budget import Options
-from jacaros.agents.mind.state.intention import Event
+from jacaros.agents.mind.state.circumstance import Selections
+from jacaros.agents.mind.state.intention import Event, Intention
 from jacaros.agents.terms.order import annotation_set
 from jacaros.agents.terms.values import SOURCE_PERCEPT, Term, Var, atom, structure
+from jacaros.testing import RunResult, run_project
 
 TWO_STEPS = """
     +low(I) <- .print("low ", I); .print("end of low ", I).
@@ -399,3 +403,118 @@ def test_the_first_goes_first_while_nothing_is_urgent():
     agent.run(100)
     assert host.printed == ["halt 1"]
     assert agent.selections.plain
+
+
+CASES = Path(__file__).parents[3] / "conformance"
+PROGRAMS = sorted(
+    path
+    for area in ("concurrency", "failure", "intentions", "messages", "plan_selection", "programs")
+    for pattern in ("*.asl", "*/*.mas2j")
+    for path in (CASES / area).glob(pattern)
+)
+
+
+def test_there_are_programs():
+    assert len(PROGRAMS) > 50
+
+
+@pytest.mark.parametrize("ordered", [False, True], ids=["plain", "in order of urgency"])
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_program_prints_the_same(program, ordered, monkeypatch):
+    ordered_agents = []
+
+    def run() -> RunResult:
+        return run_project(
+            program,
+            seconds=120,
+            when_started=lambda mas: ordered_agents.extend(
+                isinstance(host.mind.selections, urgency.Urgent) for host in mas.directory
+            ),
+        )
+
+    plain = run()
+    assert not any(ordered_agents)
+    monkeypatch.setattr(urgency, "has_urgent_plans", lambda agent: True)
+    if ordered:
+        monkeypatch.setattr(urgency.Urgent, "_calm_down", lambda selections: None)
+    ordered_agents.clear()
+    urgent = run()
+    assert all(ordered_agents)
+    assert (urgent.lines, urgent.errors, urgent.exit_code) == (plain.lines, plain.errors, plain.exit_code)
+
+
+GOALS = "!go(1). !go(2). !go(3). +!go(N) <- .print(N); .print(N)."
+
+
+class NewestEventFirst(Fair):
+    """Takes up the event that came last."""
+
+    def select_event(self) -> Event | None:
+        events = self.agent.events
+        return events.pop() if events else None
+
+
+class LongestFirst(Fair):
+    """Continues the running intention until it is over."""
+
+    def select_intention(self) -> Intention | None:
+        intentions = self.agent.intentions
+        if not intentions:
+            return None
+        chosen = min(intentions, key=lambda each: each.id)
+        intentions.remove(chosen)
+        return chosen
+
+
+class AllMessagesAtOnce(Fair):
+    """Reads all that has come in one cycle."""
+
+    def select_messages(self) -> list[SpeechAct]:
+        inbox = self.agent.incoming.messages
+        return [inbox.popleft() for _ in range(len(inbox))]
+
+
+def with_policy(program: str, policy: type[Fair]) -> RecordingHost:
+    host = mind(program)
+    selections: Selections = policy(host.agent)
+    selections.plain = False
+    host.agent.selections = selections
+    host.agent.incoming.called = True
+    return host
+
+
+@pytest.mark.parametrize(
+    ("policy", "printed"),
+    [
+        (Fair, ["1", "1", "2", "3", "2", "3"]),
+        (NewestEventFirst, ["3", "3", "2", "1", "2", "1"]),
+        (LongestFirst, ["1", "1", "2", "2", "3", "3"]),
+    ],
+)
+def test_a_policy_decides_what_goes_first(policy, printed):
+    host = with_policy(GOALS, policy)
+    host.run()
+    assert host.printed == printed
+
+
+def test_a_policy_decides_how_many_messages_are_read_in_a_cycle():
+    for policy, read in ((Fair, 1), (AllMessagesAtOnce, 3)):
+        host = with_policy("+told(N) <- .print(N).", policy)
+        host.run()
+        for number in range(3):
+            host.agent.receive(
+                SpeechAct("tell", "friend", "tester", structure("told", float(number)), f"m{number}")
+            )
+        host.agent.run(1)
+        assert 3 - len(host.agent.incoming.messages) == read
+
+
+def test_a_plain_policy_is_not_asked_for_each_event():
+    class Refusing(Fair):
+        def select_event(self) -> Event | None:
+            raise AssertionError
+
+    host = mind(GOALS)
+    host.agent.selections = Refusing(host.agent)
+    host.run()
+    assert len(host.printed) == 6

@@ -40,20 +40,23 @@ def test_a_function_stands_in_expressions_and_conditions(tmp_path):
     assert said(tmp_path, program, SQ) == ["10", "4", "7", "yes", "8", "ok"]
 
 
-def test_a_function_waits_for_its_arguments(tmp_path):
+def test_functions_wait_for_arguments_and_may_be_registered(tmp_path):
     program = "!go. +!go <- Y = my.sq(X) + 1; X = 3; .print(Y)."
     assert said(tmp_path, program, SQ) == ["10"]
-
-
-def test_jasons_directive_is_accepted(tmp_path):
     program = '{ register_function("my.sq") } !go. +!go <- .print(my.sq(3)).'
     assert said(tmp_path, program, SQ) == ["9"]
 
 
-def test_a_java_function_is_reported(tmp_path):
+def test_java_functions_and_wrong_numbers_of_arguments_are_reported(tmp_path):
     result = run(tmp_path, '{ register_function("your.sq") } !go. +!go <- .print(hello).', SQ)
     assert result.of("t") == ["hello"]
     assert "a function sq with @arithmetic_function in your.py" in result.errors[0]
+    result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
+    assert result.exit_code in (0, 1)
+    assert "my.sq" in result.errors[0]
+    result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
+    assert result.of("t") == ["arithmetic_error"]
+    assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
 
 
 def test_an_exception_fails_the_step(tmp_path):
@@ -64,18 +67,6 @@ def test_an_exception_fails_the_step(tmp_path):
     assert result.of("t")[0] == "arithmetic_error"
     assert result.of("t")[1] == f"my.broken: ValueError: not today ({tmp_path}/my.py:18)"
     assert result.errors == [f"[t] error: {result.of('t')[1]}"]
-
-
-def test_a_result_that_is_not_a_number_fails_the_step(tmp_path):
-    result = run(tmp_path, "!go. +!go <- X = my.word(1). -!go[error(E)] <- .print(E).", SQ)
-    assert result.of("t") == ["arithmetic_error"]
-    assert "my.word: the function returned 'four', which is not a number" in result.errors[0]
-
-
-def test_a_wrong_number_of_arguments_of_a_function_is_reported(tmp_path):
-    result = run(tmp_path, "!go. +!go <- X = my.sq(1, 2). -!go <- .print(failed).", SQ)
-    assert result.exit_code in (0, 1)
-    assert "my.sq" in result.errors[0]
 
 
 def test_the_functions_of_a_project_are_gone_after_its_run(tmp_path):

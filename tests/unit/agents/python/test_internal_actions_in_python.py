@@ -168,11 +168,15 @@ def test_a_function_without_value_succeeds_unless_it_returns_false(tmp_path, ret
     assert said(tmp_path, program, python) == [outcome]
 
 
-def test_an_undeclared_value_is_reported_with_help(tmp_path):
+def test_undeclared_values_and_exceptions_in_conditions_are_reported(tmp_path):
     python = "@internal_action\ndef sum(x, y):\n    return x + y\n"
     result = run(tmp_path, "!go. +!go <- my.sum(1, 2). -!go[error(E)] <- .print(E).", python)
     assert result.of("t") == ["internal_action"]
     assert "write 'def sum(...) -> int'" in result.errors[0]
+    python = "@internal_action\ndef bad():\n    raise ValueError('no')\n"
+    result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
+    assert result.of("t") == ["yes"]
+    assert "my.py:5" in result.errors[0]
 
 
 def test_dropping_the_intention_cancels_its_coroutine(tmp_path):
@@ -245,13 +249,6 @@ def test_a_system_exit_does_not_end_the_run(tmp_path, word, what):
     assert len(result.errors) == 1
     assert f"({tmp_path}/my.py:" in result.errors[0]
     assert result.exit_code == 0
-
-
-def test_an_exception_in_a_condition_is_logged_and_the_condition_does_not_hold(tmp_path):
-    python = "@internal_action\ndef bad():\n    raise ValueError('no')\n"
-    result = run(tmp_path, "!go. +!go : my.bad <- .print(no). +!go <- .print(yes).", python)
-    assert result.of("t") == ["yes"]
-    assert "my.py:5" in result.errors[0]
 
 
 def test_annotations_that_are_not_resolved_count_by_their_names(tmp_path):

@@ -1,8 +1,10 @@
+"""The standard order of terms, and their values once variables are bound."""
+
 from collections.abc import Callable
 from functools import cmp_to_key
 
 import pytest
-from drawn_terms import any_plans, build
+from drawn_terms import any_plans, build, ground_plans, plans
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -10,8 +12,9 @@ from jacaros.agents.terms import order
 from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
 from jacaros.agents.terms.operators import BINARY
 from jacaros.agents.terms.order import annotation_set, compare, merge_annotations, sorted_set, sorted_terms
-from jacaros.agents.terms.substitution import equal, related
+from jacaros.agents.terms.substitution import equal, free_variables, is_ground, related, rename, resolve
 from jacaros.agents.terms.text import text
+from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import (
     Annotated,
     Reference,
@@ -105,10 +108,14 @@ def test_each_kind_of_term_has_its_place(position):
     assert compare(higher, lower) > 0
 
 
-def test_sorting_puts_terms_in_order_and_keeps_equal_ones_apart():
+def test_terms_are_sorted_by_value_and_equal_ones_kept():
     assert sorted_terms(reversed(IN_ORDER)) == IN_ORDER
     twins = [Annotated(atom("a"), ()), atom("a")]
     assert sorted_terms(twins) == twins
+    nan = float("nan")
+    assert [text(n) for n in sorted_terms([nan, 2.0, nan, 1.0])] == ["1", "2", "NaN", "NaN"]
+    assert compare(nan, float("nan")) == 0
+    assert compare((BINARY["+"].functor, 1.0, 2.0), 3.0) == 0
 
 
 drawn_terms = st.lists(any_plans, max_size=6).map(lambda plans: [build(plan, {}) for plan in plans])
@@ -133,13 +140,6 @@ def test_names_and_plain_arguments_are_sorted_without_comparing_terms(monkeypatc
     expected = sorted(terms, key=order.SortKey)
     monkeypatch.setattr(order, "SortKey", None)
     assert sorted_terms(terms) == expected
-
-
-def test_numbers_and_arithmetic_are_sorted_by_value():
-    nan = float("nan")
-    assert [text(n) for n in sorted_terms([nan, 2.0, nan, 1.0])] == ["1", "2", "NaN", "NaN"]
-    assert compare(nan, float("nan")) == 0
-    assert compare((BINARY["+"].functor, 1.0, 2.0), 3.0) == 0
 
 
 def test_variables_and_opaque_objects_keep_an_order():
@@ -211,3 +211,77 @@ def test_only_unequal_holds_for_nan(symbol):
 )
 def test_relations_of_terms_follow_their_order_and_equality(symbol, left, right):
     assert related(symbol, left, right)
+
+
+@given(ground_plans)
+def test_resolving_a_ground_term_gives_the_same_object(plan):
+    term = build(plan, {})
+    assert resolve(term) is term
+    assert is_ground(term)
+
+
+@given(plans)
+def test_resolving_without_bindings_gives_the_same_object(plan):
+    term = build(plan, {})
+    assert resolve(term) is term
+
+
+def test_resolve_puts_values_and_annotations_in_place():
+    first, rest = Var("X"), Var("T")
+    term = structure("f", first, make_list([1.0], rest))
+    trail = Trail()
+    unify(first, structure("g", Var("Y")), trail)
+    unify(rest, make_list([2.0, first]), trail)
+    assert text(resolve(term)) == "f(g(Y),[1,2,g(Y)])"
+    undo(trail, 0)
+    assert text(term) == "f(X,[1|T])"
+    whole, rest = Var("X"), Var("R")
+    trail = Trail()
+    unify(whole, Annotated(atom("p"), (atom("b"),)), trail)
+    unify(rest, make_list([atom("a"), atom("b")]), trail)
+    assert text(resolve(Annotated(whole, (atom("c"),), rest))) == "p[a,b,c]"
+    rest = Var("R")
+    unify(rest, make_list([]), Trail())
+    assert resolve(Annotated(atom("p"), (), rest)) is atom("p")
+    first = Var("X")
+    assert not equal(structure("f", first), structure("f", 1.0))
+    unify(first, 1.0, Trail())
+    assert equal(structure("f", first), structure("f", 1.0))
+    assert not equal(first, atom("a"))
+
+
+@given(any_plans)
+def test_a_renamed_term_shares_no_variable_and_is_otherwise_the_same(plan):
+    scope: dict[str, Var] = {}
+    term = build(plan, scope)
+    copy = rename(term)
+    fresh, old = free_variables(copy), free_variables(term)
+    assert not set(map(id, fresh)) & set(map(id, old))
+    assert [v.name for v in fresh] == [v.name for v in old]
+    if not old:
+        assert equal(copy, term)
+    assert unify(copy, term, Trail())
+    assert equal(copy, term)
+
+
+@given(ground_plans)
+def test_a_ground_term_is_not_copied(plan):
+    term = build(plan, {})
+    assert rename(term) is term
+
+
+def test_copies_keep_equal_variables_equal():
+    first, second = Var("X"), Var("Y")
+    copy = rename(structure("f", first, second, first, make_list([second], first)))
+    unify(copy[1], 1.0, Trail())
+    assert text(copy) == "f(1,Y,1,[Y|1])"
+    assert first.ref is None
+    first = Var("X")
+    names: dict[Var, Var] = {}
+    one, other = rename(structure("f", first), names), rename(structure("g", first), names)
+    assert one[1] is other[1]
+    first, second, bound = Var("X"), Var("Y"), Var("Z")
+    unify(bound, structure("g", second), Trail())
+    term = structure("f", make_list([second, bound]), Annotated(atom("p"), (first,), Var("T")))
+    assert [variable.name for variable in free_variables(term)] == ["Y", "X", "T"]
+    assert not is_ground(term)

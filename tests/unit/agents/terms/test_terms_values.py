@@ -1,3 +1,5 @@
+"""Values of terms, and how they are written in full or in part."""
+
 import copy
 import pickle
 import sys
@@ -6,14 +8,23 @@ import weakref
 
 import pytest
 
-from jacaros.agents.terms.collections import QueueValue, SetValue
+from jacaros.agents.terms.collections import MapValue, QueueValue, SetValue
+from jacaros.agents.terms.operators import BINARY, PREFIX
+from jacaros.agents.terms.plans import BODY_TERM, NO_LABEL, PLAN, RULE, make_body, step, trigger
+from jacaros.agents.terms.text import display, double_text, excerpt, number_text, text
 from jacaros.agents.terms.unifier import Trail, unify
 from jacaros.agents.terms.values import (
+    ARITHMETIC,
+    CONS,
+    LOGIC,
     NIL,
     PLAIN,
+    RELATION,
+    TRUE,
     Annotated,
     Reference,
     String,
+    Term,
     Var,
     _functors,
     annotations_of,
@@ -116,3 +127,167 @@ def test_references_and_sets_are_equal_by_what_they_hold():
         queue.add(item)
     assert [queue.remove(), queue.remove()] == items
     assert queue.remove() is None
+
+
+def bound(value: Term) -> Var:
+    variable = Var("V")
+    variable.ref = value
+    return variable
+
+
+@pytest.mark.parametrize(
+    "term",
+    [
+        3.0,
+        atom("a"),
+        String("a text"),
+        Var("X"),
+        bound(bound(atom("a"))),
+        structure("f", bound(structure("g", atom("b"))), make_list([1.0, bound(2.0)])),
+        make_list([1.0], Var("T")),
+        Annotated(structure("p", bound(1.0)), (atom("a"), structure("b", bound(2.0)))),
+        (BINARY["+"].functor, 1.0, bound(2.0)),
+        structure("f", SetValue()),
+        structure("f", make_body([step("!", atom("go"))])),
+    ],
+)
+def test_a_small_term_is_shown_in_full(term):
+    assert text(excerpt(term)) == text(term)
+
+
+def test_dots_mark_omitted_parts_and_excerpts_are_finite():
+    assert text(excerpt(make_list([1.0, 2.0, 3.0, 4.0, 5.0]), 4)) == "[1,2,3|...]"
+    assert (
+        text(excerpt(structure("f", structure("g", atom("a")), structure("h", atom("b"))), 3))
+        == "f(g(a),...)"
+    )
+    shared: Term = atom("a")
+    for _ in range(200):
+        shared = structure("f", shared, shared)
+    assert text(excerpt(shared)).startswith("f(f(f(f(")
+    itself = Var("X")
+    itself.ref = (functor("f", 1), itself)
+    assert text(excerpt(itself)).startswith("f(f(f(f(")
+    ring = Var("L")
+    ring.ref = (CONS, 1.0, ring)
+    assert text(excerpt(ring)).startswith("[1,1,1,1,")
+    deep: Term = atom("a")
+    for _ in range(100_000):
+        deep = structure("f", deep)
+    assert len(text(excerpt(deep))) < 1000
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (3.0, "3"),
+        (-2.0, "-2"),
+        (-0.0, "0"),
+        (2.5, "2.5"),
+        (-1.5, "-1.5"),
+        (0.1 + 0.2, "0.30000000000000004"),
+        (1 / 3, "0.3333333333333333"),
+        (1e10, "10000000000"),
+        (2.0**53, "9007199254740992"),
+        (2.0**63, "9223372036854775807"),
+        (-(2.0**63), "-9223372036854775808"),
+        (1e20, "1.0E20"),
+        (-1e21, "-1.0E21"),
+        (1.5e-7, "1.5E-7"),
+        (5e-324, "4.9E-324"),
+        (1e-323, "9.9E-324"),
+        (1e23, "1.0E23"),
+        (0.001, "0.001"),
+        (0.0001, "1.0E-4"),
+        (0.00012, "1.2E-4"),
+        (12345678.9, "1.23456789E7"),
+        (1234567.5, "1234567.5"),
+        (1.7976931348623157e308, "1.7976931348623157E308"),
+        (float("inf"), "Infinity"),
+        (float("-inf"), "-Infinity"),
+        (float("nan"), "NaN"),
+    ],
+)
+def test_numbers_are_written_as_jason_does(value, written):
+    assert number_text(value) == written
+
+
+@pytest.mark.parametrize(
+    ("value", "written"), [(3.0, "3.0"), (0.0, "0.0"), (-0.0, "-0.0"), (1e7, "1.0E7"), (0.5, "0.5")]
+)
+def test_doubles_are_written_as_java_does(value, written):
+    assert double_text(value) == written
+
+
+def filled(kind: type, *items: Term) -> Term:
+    made = kind()
+    for item in items:
+        made.add(item)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("term", "written"),
+    [
+        (atom("a"), "a"),
+        (atom("'A b'"), "'A b'"),
+        (atom("a", "ns"), "ns::a"),
+        (functor("q", 0, negated=True), "~q"),
+        (functor("q", 0, True, "ns"), "ns::~q"),
+        (String("x"), '"x"'),
+        (String('say "x"\n'), '"say "x"\n"'),
+        (structure("f", atom("a"), structure("g", 1.0), String("s")), 'f(a,g(1),"s")'),
+        ((functor("p", 1, negated=True), 1.0), "~p(1)"),
+        (make_list([]), "[]"),
+        (make_list([1.0, atom("a"), make_list([])]), "[1,a,[]]"),
+        (make_list([1.0], Var("T")), "[1|T]"),
+        (make_list([1.0], make_list([2.0])), "[1,2]"),
+        (Annotated(structure("p", 1.0), (atom("a"), atom("b"))), "p(1)[a,b]"),
+        (Annotated(atom("p"), (atom("a"),), Var("T")), "p[a|T]"),
+        (Var("X"), "X"),
+        ((functor("+", 2, kind=ARITHMETIC), Var("X"), 1.0), "(X+1)"),
+        ((functor("div", 2, kind=ARITHMETIC), Var("X"), 2.0), "(X div 2)"),
+        ((PREFIX["-"].functor, Var("X")), "(-X)"),
+        ((functor("<", 2, kind=RELATION), Var("X"), 1.0), "(X < 1)"),
+        ((functor("&", 2, kind=LOGIC), atom("a"), atom("b")), "(a & b)"),
+        ((functor("not", 1, kind=LOGIC), atom("a")), "not (a)"),
+        (SetValue({atom("b"): None, atom("a"): None}), "{a,b}"),
+        (MapValue({atom("b"): 1.0, atom("a"): String("s")}), '{a->"s",b->1}'),
+        (filled(QueueValue, atom("b"), atom("a")), "[b,a]"),
+        (trigger("-!", atom("g")), "{ -!g }"),
+        ((RULE, atom("h"), atom("b")), "{ h :- b }"),
+        ((PLAN, NO_LABEL, trigger("+!", atom("g")), TRUE, make_body([])), "{ +!g }"),
+        (
+            (
+                PLAN,
+                atom("l"),
+                trigger("+", structure("b", Var("X"))),
+                atom("c"),
+                make_body([step("!", atom("g")), step("", structure("act", 1.0))]),
+            ),
+            "{ @l +b(X) : c <- !g; act(1) }",
+        ),
+        (make_body([step("!", atom("g")), step("+<", atom("b"))], symbol=BODY_TERM), "{ !g; +b }"),
+        (make_body([step("!", atom("g"))]), "!g"),
+        (make_body([]), "{ }"),
+        (step("if", atom("c"), make_body([step("", atom("a"))]), make_body([])), ".if_then_else(c,a,)"),
+        (step("|&|", *(make_body([step("!", atom(name))]) for name in "ab")), ".fork(and,!a,!b)"),
+    ],
+)
+def test_terms_are_written_as_jason_does(term, written):
+    assert text(term) == written
+
+
+def test_print_shows_top_level_strings_and_variables_in_its_own_way():
+    assert display(String("x")) == "x"
+    assert display(make_list([String("x")])) == '["x"]'
+    assert display(Var("X")) == "X<no-value>"
+    assert display(Var("_")) == "_<no-value>"
+    assert display(Annotated(Var("X"), (atom("a"),))) == "X[a]<no-value>"
+    assert display(structure("f", Var("X"))) == "f(X)"
+    reference = Reference(object())
+    assert text(reference) == f"cobj_{reference.number}"
+    variable = Var("X")
+    unify(variable, 2.0, Trail())
+    assert text(structure("f", variable, (BINARY["+"].functor, variable, 1.0))) == "f(2,3)"
+    assert text(make_list([1.0] * 5000)).count("1") == 5000

@@ -42,10 +42,14 @@ def test_length_counts_elements_or_characters(mind, collection, size):
     assert mind.result(".length", collection) == size
 
 
-def test_length_fails_for_another_number_or_kind_of_term(mind):
+def test_length_and_delete_fail_for_another_result(mind):
     assert not mind.succeeds(".length", ["a"], 2)
     assert not mind.succeeds(".length", "a", Var("N"))
     assert not mind.succeeds(".length", Var("L"), Var("N"))
+    pattern = Var("X")
+    assert mind.result(".delete", ("f", pattern), [("f", 1), ("f", 2)]) == "[f(2)]"
+    assert text(pattern) == "X"
+    assert not mind.succeeds(".delete", "a", ["a", "b"], [])
 
 
 @pytest.mark.parametrize("collection", [[], String(""), set_of(), queue(), MapValue()])
@@ -136,11 +140,17 @@ def test_concat_joins_strings_with_any_terms_and_takes_the_quotes_off_atoms(mind
     assert mind.result(".concat", "'x y'", "z", ("f", "'q'")) == "\"x yzf('q')\""
 
 
-def test_concat_refuses_a_list_with_something_else(mind):
+def test_concat_and_delete_refuse_other_kinds(mind):
     with pytest.raises(WrongArguments, match="argument 2"):
         mind.succeeds(".concat", ["a"], "b", Var("R"))
     with pytest.raises(ActionError, match="last argument"):
         mind.succeeds(".concat", ["a"], ["b"], String("ab"))
+    with pytest.raises(WrongArguments):
+        mind.succeeds(".delete", "a", "b", Var("R"))
+    with pytest.raises(WrongArguments):
+        mind.succeeds(".delete", 1, "b", Var("R"))
+    with pytest.raises(ActionError, match="invalid regular expression"):
+        mind.succeeds(".delete", String("("), String("b"), Var("R"))
 
 
 # .delete
@@ -168,22 +178,6 @@ def test_concat_refuses_a_list_with_something_else(mind):
 )
 def test_delete_removes_elements(mind, arguments, rest):
     assert mind.result(".delete", *arguments) == rest
-
-
-def test_delete_binds_nothing_and_fails_for_another_result(mind):
-    pattern = Var("X")
-    assert mind.result(".delete", ("f", pattern), [("f", 1), ("f", 2)]) == "[f(2)]"
-    assert text(pattern) == "X"
-    assert not mind.succeeds(".delete", "a", ["a", "b"], [])
-
-
-def test_delete_needs_a_list_and_a_valid_regular_expression(mind):
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".delete", "a", "b", Var("R"))
-    with pytest.raises(WrongArguments):
-        mind.succeeds(".delete", 1, "b", Var("R"))
-    with pytest.raises(ActionError, match="invalid regular expression"):
-        mind.succeeds(".delete", String("("), String("b"), Var("R"))
 
 
 # .reverse .sort .shuffle
@@ -227,16 +221,13 @@ def test_shuffle_keeps_the_elements_and_follows_the_seed(mind):
 # .max .min
 
 
-def test_max_and_min_use_the_standard_order(mind):
+def test_max_and_min_use_the_standard_order_of_lists_and_answers(mind):
     assert mind.result(".max", ["b", "c", 10, "g", ("f", 10), 5, ("f", 4)]) == "g"
     assert mind.result(".min", ["b", [3, 4], 5, [3], ("f", 4)]) == "5"
     assert mind.succeeds(".max", [3, 2, 5], 5)
     assert not mind.succeeds(".max", [3, 2, 5], 2)
     assert not mind.succeeds(".max", [], Var("X"))
     assert not mind.succeeds(".min", [], Var("X"))
-
-
-def test_max_and_min_of_the_answers_of_a_formula(mind):
     value = Var("V")
     formula = ("b", value)
     mind.facts = [("b", 2), ("b", 7), ("b", 5), ("c", 9)]

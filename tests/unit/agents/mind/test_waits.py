@@ -1,10 +1,14 @@
-"""Waits for conditions end when the condition comes true, and cost the changes of other beliefs nothing."""
+"""Waits for conditions and for events: what ends them, and in which order."""
 
 import pytest
 from recording_host import believed, mind, printed
 
+from jacaros.agents.mind.mind import Mind
+from jacaros.agents.mind.rules.pending import cancel, listen, notify_listeners
 from jacaros.agents.mind.state.act import Percept
-from jacaros.agents.terms.values import SOURCE_PERCEPT, atom, structure
+from jacaros.agents.mind.state.pending import Listener
+from jacaros.agents.mind.state.triggers import trigger
+from jacaros.agents.terms.values import BY_SELF, SOURCE_PERCEPT, Var, atom, functor, structure
 
 
 @pytest.mark.parametrize(
@@ -99,3 +103,37 @@ def test_ended_waits_leave_nothing_behind():
     waits = host.agent.waits
     assert "done[source(self)]" in believed(host, "done")
     assert (waits.conditions, waits.restless, waits.due, waits.asked) == ({}, {}, {}, {})
+
+
+ADDED = trigger("+", "", functor("a", 1))
+OTHER = trigger("+", "", functor("b", 1))
+
+
+def wait(agent: Mind, kind: object, heard: list[Listener]) -> Listener:
+    made = listen(agent, kind, Var(), lambda _: heard.append(made))  # type: ignore[arg-type]
+    return made
+
+
+def test_waits_keep_their_order_and_leave_nothing_behind():
+    agent = mind("").agent
+    heard: list[Listener] = []
+    first, any_kind, other, last = (wait(agent, kind, heard) for kind in (ADDED, None, OTHER, ADDED))
+    notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
+    assert heard == [first, any_kind, last]
+    notify_listeners(agent, ((OTHER, 1.0), None, BY_SELF, None))
+    assert heard == [first, any_kind, last, other]
+    assert not agent.waits.events
+    agent = mind("").agent
+    heard: list[Listener] = []
+    first, second = wait(agent, ADDED, heard), wait(agent, ADDED, heard)
+    cancel(agent, first)
+    cancel(agent, first)
+    notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
+    assert heard == [second]
+    assert not agent.waits.events
+    host = mind(
+        "!begin. +!begin <- !!one; !!any; .wait(10); +b(1); .wait(10); +a(2)."
+        "+!one <- .wait({+a(X)}); .print(one, X). +!any <- .wait({+V}); .print(any)."
+    )
+    host.run(seconds=5)
+    assert host.printed == ["any", "one2"]
