@@ -20,11 +20,11 @@ from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records.recording import Recording
 from jacaros.robots.mapping.file import load_mapping
-from jacaros.robots.ros.drivers.rosbridge.link import Link
+from jacaros.robots.ros.drivers.rosbridge.link import RosbridgeLink
 from jacaros.robots.ros.parameter import checked_value
 from jacaros.robots.ros.protocols.rosbridge_messages import Translator
 from jacaros.robots.ros.typestore import DefinitionSchema
-from jacaros.robots.world.data.ground_truth import GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, PathSample
 from jacaros.robots.world.files.world import load_world
 from jacaros.runtime.cli.ros_arguments import read_parameters
 from jacaros.runtime.errors import JacarosError
@@ -337,7 +337,7 @@ def _ground_truths() -> list[bytes]:
     records = [
         {"kind": "world", "world": world, "seed": 1, "epoch": 0.0},
         {"kind": "sample", "robot": "turtlebot"}
-        | dict.fromkeys(Sample._fields, 1.0)
+        | dict.fromkeys(PathSample._fields, 1.0)
         | {"charging": False, "touching": False},
         {
             "kind": "event",
@@ -381,7 +381,7 @@ _TRANSLATOR = Translator(DefinitionSchema())
 def _read_frame(_: Path, data: bytes) -> str:
     told: list[str] = []
     taken: list[dict[str, Any]] = []
-    link = Link("ws://robot.example", lambda: None, lambda: None, taken.append, told.append)
+    link = RosbridgeLink("ws://robot.example", lambda: None, lambda: None, taken.append, told.append)
     link.received(data, data[:1] not in (b"{", b"["))
     for message in taken:
         try:

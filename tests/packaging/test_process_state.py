@@ -22,7 +22,7 @@ import pytest
 
 import jacaros
 from jacaros import Mas, PythonAgent
-from jacaros.agents.terms.values import Held
+from jacaros.agents.terms.values import InternedRef
 
 PACKAGES = (
     "agents",
@@ -82,7 +82,7 @@ def others_than(expected: Iterable[str], is_meant: Callable[[Any], bool]) -> lis
     return [each for each in names.values() if not set(expected) & set(each)]
 
 
-WEAK_KINDS = (WeakKeyDictionary, WeakSet, WeakValueDictionary, Held)
+WEAK_KINDS = (WeakKeyDictionary, WeakSet, WeakValueDictionary, InternedRef)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import pytest
 from examples_lab import LONGEST, checker, falsified, run, run_of, spoilt
 
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "11_narrow_passage/narrow_passage.jcm"
@@ -62,12 +62,12 @@ def test_each_annotation_of_the_program_is_needed(tmp_path, old: str, new: str, 
 
 
 def test_the_checker_sees_a_bump_a_second_robot_in_the_passage_and_too_few_loads() -> None:
-    bump = Event(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
+    bump = RobotEvent(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
     assert check(falsified(truth_of_example(), more=[bump])).complaints == ["a robot bumped into something"]
     truth = truth_of_example()
     first = module.crossings(truth, "robot_1")[0]
 
-    def moved(sample: Sample) -> Sample:
+    def moved(sample: PathSample) -> PathSample:
         if first.begin < sample.time < first.end and round(sample.y, 1) == module.LANES["robot_3"]:
             return sample._replace(x=0.9, y=0.0)
         return sample

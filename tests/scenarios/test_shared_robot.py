@@ -9,7 +9,7 @@ import pytest
 from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
 
 from jacaros.artifacts import Session
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
@@ -120,13 +120,13 @@ def test_when_the_tree_dies_the_robot_stops(tmp_path: Path) -> None:
 def test_the_checker_sees_too_few_recharges_or_rounds_and_a_bump() -> None:
     assert check(truth_of_example(), recharges=3).complaints == ["2 recharges, not 3"]
     assert "in the order" in check(truth_of_example(), rounds=5).complaints[0]
-    bump = Event(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
+    bump = RobotEvent(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
     complaints = check(falsified(truth_of_example(), more=[bump])).complaints
     assert complaints == ["the robot bumped into something"]
 
 
 def test_the_checker_sees_a_robot_near_the_visitor_or_moving_at_the_end() -> None:
-    def nearer(sample: Sample) -> Sample:
+    def nearer(sample: PathSample) -> PathSample:
         beside = abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
         return sample._replace(x=sample.x - 0.3) if beside else sample
 
@@ -134,7 +134,7 @@ def test_the_checker_sees_a_robot_near_the_visitor_or_moving_at_the_end() -> Non
     truth = truth_of_example()
     end = truth.latest("turtlebot").time
 
-    def moving(sample: Sample) -> Sample:
+    def moving(sample: PathSample) -> PathSample:
         return sample._replace(odometer=sample.odometer + 0.02) if sample.time == end else sample
 
     assert "metres a second at the end" in check(falsified(truth, moving)).complaints[-1]

@@ -11,7 +11,7 @@ from jacaros.artifacts import ArtifactId, Environment, Out, Structure
 from jacaros.robots.artifacts.connection_artifact import ArtRos
 from jacaros.robots.registry import find_type
 from jacaros.robots.ros.open import open_backend
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import VirtualClock
 
@@ -44,9 +44,9 @@ async def given(lab: Lab, artifact: ArtifactId, operation: str, *arguments: obje
 @made(ArtRos)
 async def test_parameters_of_nodes_are_read_and_written(lab: Lab, artifact: ArtifactId) -> None:
     own = (await lab.node("controller")).parameters()
-    own.declare("speed", Declaration(0.5, maximum=1.0))
-    own.declare("name", Declaration("bob"))
-    own.declare("places", Declaration([1.0, 2.0]))
+    own.declare("speed", DeclaredParameter(0.5, maximum=1.0))
+    own.declare("name", DeclaredParameter("bob"))
+    own.declare("places", DeclaredParameter([1.0, 2.0]))
     assert await given(lab, artifact, "get_parameter", "controller", "speed") == 0.5
     names = await given(lab, artifact, "list_parameters", "/controller")
     assert [each for each in names if each in ("name", "places", "speed")] == ["name", "places", "speed"]

@@ -6,7 +6,7 @@ from functools import partial
 from types import MappingProxyType
 
 from jacaros.artifacts.env import ports
-from jacaros.artifacts.env.artifact import Artifact, Host
+from jacaros.artifacts.env.artifact import Artifact, ArtifactHost
 from jacaros.artifacts.env.errors import (
     ArtifactId,
     InvalidArtifact,
@@ -30,7 +30,7 @@ from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, igno
 from jacaros.artifacts.env.property import ObservableProperty, Observer
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kernel import faults
-from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, Interface, interface_of
+from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, UsageInterface, interface_of
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
 from jacaros.artifacts.kernel.publication import Setting, mistakes_in
 from jacaros.artifacts.kernel.registry import Registry
@@ -87,7 +87,9 @@ def artifact_type_of(
     return found
 
 
-def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, setting: Setting) -> Steps:
+def attach(
+    artifact_type: type[Artifact], artifact_id: ArtifactId, host: ArtifactHost, setting: Setting
+) -> Steps:
     """Create the object of an artifact and connect it with the kernel, which runs its operations.
 
     Raises:
@@ -434,7 +436,7 @@ def _beginnings(path: str) -> list[str]:
     return ["/".join(parts[:length]) for length in range(2, len(parts) + 1)]
 
 
-Watcher = Callable[[ArtifactId, bool], None]
+ArtifactWatcher = Callable[[ArtifactId, bool], None]
 """Called with an artifact that is added (True) or removed (False)."""
 
 
@@ -458,9 +460,9 @@ class Workspace(ports.Workspace):
         self._indexes: dict[tuple[str, int], OperationIndex] = {}
         self._known: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
         self.known = MappingProxyType(self._known)
-        self._watchers: dict[object, Watcher] = {}
-        self._watchers_of_all: dict[object, Watcher] = {}
-        self._telling: tuple[Iterator[Watcher], ArtifactId, bool] | None = None
+        self._watchers: dict[object, ArtifactWatcher] = {}
+        self._watchers_of_all: dict[object, ArtifactWatcher] = {}
+        self._telling: tuple[Iterator[ArtifactWatcher], ArtifactId, bool] | None = None
 
     # ---- artifacts come and go
 
@@ -617,7 +619,7 @@ class Workspace(ports.Workspace):
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
 
-    def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
+    def watch(self, watcher: ArtifactWatcher, personal: bool = False) -> Callable[[], None]:
         """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.
 
         Args:
@@ -667,7 +669,7 @@ class Workspace(ports.Workspace):
             self._indexes.clear()
             self._known.clear()
 
-    def interface(self, artifact_id: ArtifactId) -> Interface:
+    def interface(self, artifact_id: ArtifactId) -> UsageInterface:
         """Return the operations of an artifact.
 
         Raises:
@@ -798,7 +800,7 @@ class Workspace(ports.Workspace):
             self._setting.listener.artifact(artifact_id, present)
         self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)
 
-    def _tell(self, watchers: tuple[Watcher, ...], artifact_id: ArtifactId, present: bool) -> None:
+    def _tell(self, watchers: tuple[ArtifactWatcher, ...], artifact_id: ArtifactId, present: bool) -> None:
         # A watcher may dispose the new artifact: notify the others of its creation first.
         self._tell_rest()
         self._telling = iter(watchers), artifact_id, present

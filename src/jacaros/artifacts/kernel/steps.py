@@ -26,7 +26,7 @@ from jacaros.artifacts.env.operation import (
 from jacaros.artifacts.env.property import Signal, check_name
 from jacaros.artifacts.env.values import Atom, Structure, plain
 from jacaros.artifacts.kernel import faults
-from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, WrongArguments
+from jacaros.artifacts.kernel.declaration import ArgumentMismatch, DeclaredOperation, UsageInterface
 from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
@@ -106,7 +106,7 @@ class Steps:
         self,
         artifact_id: ArtifactId,
         artifact: Any,
-        interface: Interface,
+        interface: UsageInterface,
         ports: tuple[str, ...],
         setting: Setting,
     ) -> None:
@@ -247,7 +247,7 @@ class Steps:
         if count:
             try:
                 arguments = declared.signature.bind(arguments)
-            except WrongArguments as wrong:
+            except ArgumentMismatch as wrong:
                 return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
@@ -340,7 +340,7 @@ class Steps:
         self.setting.know_loop()
         try:
             arguments = declared.signature.bind(request.arguments)
-        except WrongArguments as wrong:
+        except ArgumentMismatch as wrong:
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         execution = OperationExecution(self, request, declared, arguments, request.cause)
         self.turns.enter(execution, None)

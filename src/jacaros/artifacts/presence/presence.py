@@ -20,7 +20,7 @@ from jacaros.artifacts.env.errors import (
     resolve_path,
 )
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
-from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, Waiting, Workspace
+from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, WaitingRequest, Workspace
 from jacaros.artifacts.env.property import (
     Change,
     ObservableProperty,
@@ -611,7 +611,7 @@ class Presence:
         with suppress(UnknownArtifact):
             begin(workspace.lookup(name))
             return ENDED
-        waiting = Waiting(workspace.watch(look))
+        waiting = WaitingRequest(workspace.watch(look))
         return waiting
 
     # ---- unknown operations
@@ -666,7 +666,7 @@ identifies it, and the reason of a failure as text.
 """
 
 
-class Activity(Protocol):
+class ActivityCounter(Protocol):
     """Counts what runs, so that a run can detect idleness.
 
     Attributes:

@@ -34,7 +34,7 @@ from jacaros.look.why.about_waiting import explain_idleness, explain_waiting
 from jacaros.look.why.chains import is_written
 from jacaros.look.why.explanation import Explanation
 from jacaros.look.why.past import Past
-from jacaros.look.why.patterns import Pattern, Question, literal_at, name_of
+from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
 
@@ -180,7 +180,7 @@ def _named(past: Past, asked: Question) -> Question:
     Raises:
         UsageError: it is unknown.
     """
-    pattern, name = Pattern(asked.about), asked.about
+    pattern, name = QuestionPattern(asked.about), asked.about
     if any(pattern.fits_literal(data.belief) for _, data in past.beliefs):
         return replace(asked, kind="belief")
     if any(name_of(data.goal) == name for _, data in past.goals):
@@ -212,7 +212,7 @@ def read_question(written: str, known: Iterable[str] = ()) -> Question:
     if found is not None:
         of_plan = "plan" in asked[: found.start()].split()
         event = found[0] + literal_at(asked, found.end())
-        Pattern(event)  # raises if it is not a literal
+        QuestionPattern(event)  # raises if it is not a literal
         return Question(written, "plan" if of_plan else "event", event)
     words = asked.split()
     if words[:1] == ["plan"] and len(words) > 1:
@@ -282,7 +282,7 @@ class Announcer:
         self, so_far: Callable[[], Sequence[Record]], events: Sequence[str], tell: Callable[[str], None]
     ) -> None:
         self._so_far, self._tell = so_far, tell
-        self._wanted = {event: Pattern(event) for event in events}
+        self._wanted = {event: QuestionPattern(event) for event in events}
         self._unmet = dict.fromkeys(events)
 
     def hear(self, t: float, event: str, data: Mapping[str, Any]) -> None:
@@ -301,14 +301,14 @@ class Announcer:
                         self._unmet.pop(asked, None)
                         self._tell(explanation.text())
 
-    def _explain(self, asked: str, t: float, record: records.Event) -> Explanation | None:
+    def _explain(self, asked: str, t: float, record: records.EventRecord) -> Explanation | None:
         past = Past.of(self._so_far())
         match record:
-            case records.Deliberation():
+            case records.DeliberationRecord():
                 return explain_deliberation(past, asked, t, record)
-            case records.Belief() if not _has_plan(past, record):
+            case records.BeliefRecord() if not _has_plan(past, record):
                 return explain_event(past, Question(asked, about=asked, agent=record.agent))
-            case records.Goal():
+            case records.GoalRecord():
                 return Explanation(asked, f"{record.agent}: {goal_text(t, record)}", t)
         return None
 
@@ -321,7 +321,7 @@ _READERS: Mapping[str, Callable[[Any], str]] = {
 """Functions that return the trigger of an explained event, by kind of record."""
 
 
-def _has_plan(past: Past, change: records.Belief) -> bool:
+def _has_plan(past: Past, change: records.BeliefRecord) -> bool:
     """Return whether a plan may handle a belief change. Then the event is explained when it is handled."""
     name = name_of(change.belief)
     triggers = (plan.trigger for _, plan in past.plans(change.agent))

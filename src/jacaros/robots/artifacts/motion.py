@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 
 from jacaros.artifacts.env.arbiter import HOLDING, WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
+from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, TimedCommand, Unsettled
 from jacaros.robots.artifacts.drive_model import (
     STANDSTILL,
     DriveModel,
@@ -23,13 +23,13 @@ from jacaros.robots.artifacts.drive_model import (
     read_quality,
     write_quality,
 )
-from jacaros.robots.artifacts.maneuver import LEAST_PROGRESS, Maneuver, Progress, distance
+from jacaros.robots.artifacts.maneuver import LEAST_PROGRESS, Maneuver, ProgressChecker, distance
 from jacaros.robots.artifacts.odometry import (
     LOCALISED,
     Drift,
     Odometer,
     Odometry,
-    Placed,
+    PlaceOdometry,
     driving_frame,
 )
 from jacaros.robots.kit.connection import MATCH_OPTIONS
@@ -95,7 +95,7 @@ class MotionSettings:
 # of them drives: all use ``wheels``.
 
 
-class Claim:
+class MotionClaim:
     """One motion, from its request to its end.
 
     Args:
@@ -167,7 +167,7 @@ class Motions:
 
     def __init__(self) -> None:
         self.stops = 0
-        self.claims: dict[Claim, None] = {}
+        self.claims: dict[MotionClaim, None] = {}
         self.models: list[DriveModel] = []
 
     def watch(self, mover: RosArtifact, stand: Callable[[], None], halt: Callable[[], None]) -> None:
@@ -195,7 +195,7 @@ class Aborted(Exception):
     """Raised in a motion that was aborted."""
 
 
-class Driving(Claim):
+class Driving(MotionClaim):
     """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
 
     A context manager: the motion begins when it is entered, and stops when it is left.
@@ -321,7 +321,7 @@ class Motion:
         self._fresh = 0
         self._left_at: Pose | None = None
         self._watched = False
-        self._progress = Progress()
+        self._progress = ProgressChecker()
         self._sought = (0.0, 0.0)
 
     async def run(self) -> None:
@@ -376,7 +376,7 @@ class Motion:
             pause = next(pauses, None)
             if pause is None and seen and self._rests(braking):
                 return True
-            await self._command(Step(STANDSTILL, PERIOD if pause is None else pause), pause is None)
+            await self._command(TimedCommand(STANDSTILL, PERIOD if pause is None else pause), pause is None)
             braking += PERIOD if pause is None else pause
         return False
 
@@ -402,7 +402,7 @@ class Motion:
                 continue
             self._heed_gap()
             if not blind and not self._has_odometry():
-                await self._command(Step(STANDSTILL))
+                await self._command(TimedCommand(STANDSTILL))
                 continue
             step = maneuver.command(self._outlook())
             self._check(step)
@@ -415,7 +415,7 @@ class Motion:
         ahead, velocity = wheels.model.ahead(now)
         return Outlook(wheels.model, wheels.settings.limits, now, wheels.model.pose, ahead, velocity)
 
-    async def _command(self, step: Step, periodic: bool = True) -> None:
+    async def _command(self, step: TimedCommand, periodic: bool = True) -> None:
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(step.velocity)
         await self.driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
@@ -511,7 +511,7 @@ class Motion:
             text = f"odometry changed its frame from {self._frame} to {frame}"
             self._fail(text, "no_odometry", round(self._active - since, 1))
 
-    def _check(self, step: Step | None) -> None:
+    def _check(self, step: TimedCommand | None) -> None:
         """Fail if the motion takes too long or makes no progress."""
         settings, maneuver = self._wheels.settings, self._maneuver
         allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
@@ -639,7 +639,7 @@ class WheeledArtifact(RosArtifact):
         self._drove = False
         self.motions.watch(self, self._stand, self._halt)
 
-    def _placed(self) -> Placed | None:
+    def _placed(self) -> PlaceOdometry | None:
         """Return the conversion of odometry to the frame of the option; None without it."""
         if "frame" not in self.options:
             return None

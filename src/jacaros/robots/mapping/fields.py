@@ -9,24 +9,24 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 
 from jacaros.robots.ros.errors import NameInvalid
 from jacaros.robots.ros.names import action_type, message_type, service_type
-from jacaros.runtime.files.entries import Entry, values
+from jacaros.runtime.files.entries import FieldSpec, values
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.files.yaml import Node, Problem
+from jacaros.runtime.files.yaml import Problem, YamlNode
 
 P = TypeVar("P")
 
 
-def entry(read: Callable[[Node], object], key: str = "") -> Entry:
+def entry(read: Callable[[YamlNode], object], key: str = "") -> FieldSpec:
     """Return the entry of a key (by default the name of the field) whose value *read* converts."""
-    return Entry("", "", key, lambda node, _: read(node))
+    return FieldSpec("", "", key, lambda node, _: read(node))
 
 
-def with_entries(part: P, entries: dict[str, Node]) -> P:
+def with_entries(part: P, entries: dict[str, YamlNode]) -> P:
     """Return a part with the values of the entries that are declared at its fields."""
     return replace(part, **values(entries, part))  # type: ignore[type-var]
 
 
-class Place(NamedTuple):
+class FilePosition(NamedTuple):
     """A position in the file, counted from 1."""
 
     line: int
@@ -37,7 +37,7 @@ class Place(NamedTuple):
         return Problem(self.line, self.column, message, help)
 
 
-START = Place(1, 1)
+START = FilePosition(1, 1)
 """The first character of the file."""
 
 
@@ -46,18 +46,18 @@ class Written:
     """A text and its position."""
 
     text: str
-    place: Place
+    place: FilePosition
 
 
 NOTHING = Written("", START)
 
 
-def place_of(node: Node) -> Place:
+def place_of(node: YamlNode) -> FilePosition:
     """Return the position of a value."""
-    return Place(node.line, node.column)
+    return FilePosition(node.line, node.column)
 
 
-def written(node: Node) -> Written:
+def written(node: YamlNode) -> Written:
     """Read a text with its position."""
     return Written(node.text(), place_of(node))
 
@@ -72,7 +72,7 @@ HERE = "i"
 _PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
 _INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
 
-Step = str | int
+PathStep = str | int
 """The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
 
 
@@ -85,7 +85,7 @@ class WrongPath(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Path:
+class FieldPath:
     """A path.
 
     Attributes:
@@ -95,7 +95,7 @@ class Path:
     """
 
     text: str
-    steps: tuple[Step, ...]
+    steps: tuple[PathStep, ...]
     of_message: bool = False
 
     @property
@@ -104,10 +104,10 @@ class Path:
         return self.steps.count(ALL)
 
 
-WHOLE = Path(".", ())
+WHOLE = FieldPath(".", ())
 
 
-def read_path(text: str) -> Path:
+def read_path(text: str) -> FieldPath:
     """Read a path.
 
     Raises:
@@ -118,8 +118,8 @@ def read_path(text: str) -> Path:
     if rest in (".", ""):
         if not text:
             raise WrongPath("empty path", "write the path of a field, or . for the whole message")
-        return Path(text, (), of_message)
-    steps: list[Step] = []
+        return FieldPath(text, (), of_message)
+    steps: list[PathStep] = []
     for part in rest.split("."):
         found = _PART.fullmatch(part)
         if found is None:
@@ -128,10 +128,10 @@ def read_path(text: str) -> Path:
         steps.append(f".{found['name']}")
         for index in _INDEX.findall(found["indices"]):
             steps.append(index if index in (ALL, HERE) else int(index))
-    return Path(text, tuple(steps), of_message)
+    return FieldPath(text, tuple(steps), of_message)
 
 
-def path_of(node: Node, help: str = "") -> Path:
+def path_of(node: YamlNode, help: str = "") -> FieldPath:
     """Read a path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         text = f"{node.what} must be a path, found {shown(node.value)}"
@@ -153,7 +153,7 @@ def shown(value: Any) -> str:
     return "nothing" if value is None else repr(value)
 
 
-def each_of(node: Node) -> list[Node]:
+def each_of(node: YamlNode) -> list[YamlNode]:
     """Return the items of a list; a single one needs no brackets."""
     return list(node.sequence()) if isinstance(node.value, list) else [node]
 
@@ -170,7 +170,7 @@ FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LinearConversion:
     """``factor * value + shift``, from the message's number to the agent's."""
 
     factor: float = 1.0
@@ -184,13 +184,13 @@ class Line:
         """Convert to the message's number."""
         return (value - self.shift) / self.factor
 
-    def then(self, other: "Line") -> "Line":
+    def then(self, other: "LinearConversion") -> "LinearConversion":
         """Return this conversion followed by *other*."""
-        return Line(self.factor * other.factor, self.shift * other.factor + other.shift)
+        return LinearConversion(self.factor * other.factor, self.shift * other.factor + other.shift)
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
+class ConvertedUnit:
     """A unit of messages, of agents, or of both.
 
     Attributes:
@@ -211,32 +211,32 @@ class Unit:
 
 
 _UNITS = (
-    Unit("", ""),
-    Unit("rad", "radians", "angle", 1.0),
-    Unit("degrees", "degrees", "angle", 3.141592653589793 / 180.0),
-    Unit("rad/s", "radians per second", "angle"),
-    Unit("rad/s²", "radians per second squared"),
-    Unit("m", "metres", "length", 1.0),
-    Unit("cm", "centimetres", "length", 0.01),
-    Unit("mm", "millimetres", "length", 0.001),
-    Unit("m/s", "metres per second", "speed", 1.0),
-    Unit("km/h", "kilometres per hour", "speed", 1.0 / 3.6),
-    Unit("m/s²", "metres per second squared"),
-    Unit("s", "seconds", "time", 1.0),
-    Unit("ms", "milliseconds", "time", 0.001),
-    Unit("min", "minutes", "time", 60.0),
-    Unit("°C", "degrees Celsius", "temperature", 1.0, key="celsius"),
-    Unit("K", "kelvin", "temperature", 1.0, -273.15),
-    Unit("0 to 1", "0 to 1", "share", 1.0, key="share"),
-    Unit("%", "percent", "share", 0.01),
-    Unit("N", "newtons"),
-    Unit("N m", "newton metres"),
-    Unit("V", "volts"),
-    Unit("A", "amperes"),
-    Unit("Ah", "ampere hours"),
-    Unit("T", "teslas"),
-    Unit("Pa", "pascals"),
-    Unit("lx", "lux"),
+    ConvertedUnit("", ""),
+    ConvertedUnit("rad", "radians", "angle", 1.0),
+    ConvertedUnit("degrees", "degrees", "angle", 3.141592653589793 / 180.0),
+    ConvertedUnit("rad/s", "radians per second", "angle"),
+    ConvertedUnit("rad/s²", "radians per second squared"),
+    ConvertedUnit("m", "metres", "length", 1.0),
+    ConvertedUnit("cm", "centimetres", "length", 0.01),
+    ConvertedUnit("mm", "millimetres", "length", 0.001),
+    ConvertedUnit("m/s", "metres per second", "speed", 1.0),
+    ConvertedUnit("km/h", "kilometres per hour", "speed", 1.0 / 3.6),
+    ConvertedUnit("m/s²", "metres per second squared"),
+    ConvertedUnit("s", "seconds", "time", 1.0),
+    ConvertedUnit("ms", "milliseconds", "time", 0.001),
+    ConvertedUnit("min", "minutes", "time", 60.0),
+    ConvertedUnit("°C", "degrees Celsius", "temperature", 1.0, key="celsius"),
+    ConvertedUnit("K", "kelvin", "temperature", 1.0, -273.15),
+    ConvertedUnit("0 to 1", "0 to 1", "share", 1.0, key="share"),
+    ConvertedUnit("%", "percent", "share", 0.01),
+    ConvertedUnit("N", "newtons"),
+    ConvertedUnit("N m", "newton metres"),
+    ConvertedUnit("V", "volts"),
+    ConvertedUnit("A", "amperes"),
+    ConvertedUnit("Ah", "ampere hours"),
+    ConvertedUnit("T", "teslas"),
+    ConvertedUnit("Pa", "pascals"),
+    ConvertedUnit("lx", "lux"),
 )
 """All units; the first of a kind is the usual one in messages."""
 UNITS = {each.key or each.words.replace(" ", "_"): each for each in _UNITS if each.size}
@@ -250,10 +250,10 @@ def units_of(*kinds: str) -> list[str]:
     return [name for name, each in UNITS.items() if each.kind in kinds]
 
 
-def conversion(of_message: str, of_agent: str) -> Line:
+def conversion(of_message: str, of_agent: str) -> LinearConversion:
     """Return the conversion from one unit to another of the same kind."""
     here, there = UNITS[of_message], UNITS[of_agent]
-    return Line(here.size / there.size, (here.zero - there.zero) / there.size)
+    return LinearConversion(here.size / there.size, (here.zero - there.zero) / there.size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +275,7 @@ class Conversion:
     kind: str = ""
     prefix: str = ""
     names: tuple[tuple[object, str], ...] = ()
-    line: Line | None = None
+    line: LinearConversion | None = None
     digits: int | None = None
     unit: str = ""
     knows_message_unit: bool = False
@@ -291,7 +291,7 @@ AS_IT_IS = Conversion()
 """No conversion."""
 
 
-def _shares(node: Node) -> tuple[float, ...]:
+def _shares(node: YamlNode) -> tuple[float, ...]:
     if isinstance(node.value, list):
         found = tuple(item.number(0.0, 1.0) for item in node.sequence())
         if not found:
@@ -301,7 +301,7 @@ def _shares(node: Node) -> tuple[float, ...]:
     return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
 
 
-def _otherwise(node: Node) -> float | Path:
+def _otherwise(node: YamlNode) -> float | FieldPath:
     if isinstance(node.value, str):
         return path_of(node)
     return node.number()
@@ -318,13 +318,13 @@ class FieldPart:
         name: name for the manual.
     """
 
-    path: Path
-    place: Place
+    path: FieldPath
+    place: FilePosition
     conversion: Conversion = AS_IT_IS
     shares: Annotated[tuple[float, ...] | None, entry(_shares, "sample")] = None
-    otherwise: Annotated[float | Path | None, entry(_otherwise)] = None
+    otherwise: Annotated[float | FieldPath | None, entry(_otherwise)] = None
     dead_band: Annotated[float | None, entry(lambda node: node.number(0.0))] = None
-    name: Annotated[str, entry(Node.text)] = ""
+    name: Annotated[str, entry(YamlNode.text)] = ""
 
     @property
     def count(self) -> int:
@@ -354,12 +354,12 @@ def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
     return found
 
 
-def read_fields(node: Node) -> tuple[FieldPart, ...]:
+def read_fields(node: YamlNode) -> tuple[FieldPart, ...]:
     """Read a list of fields."""
     return tuple(map(read_field, each_of(node)))
 
 
-def read_field(node: Node) -> FieldPart:
+def read_field(node: YamlNode) -> FieldPart:
     """Read one field."""
     place = place_of(node)
     if not isinstance(node.value, dict):
@@ -375,7 +375,7 @@ def read_field(node: Node) -> FieldPart:
     return with_entries(part, entries)
 
 
-def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
+def _name(path: FieldPath, entries: dict[str, YamlNode] | None = None) -> str:
     """Return a word for a value, for the manual."""
     kind = entries["as"].value if entries is not None and "as" in entries else ""
     if kind in (*ANGLES, "count", "object"):
@@ -384,7 +384,7 @@ def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
     return names[-1] if names else "value"
 
 
-def read_conversion(entries: dict[str, Node]) -> Conversion:
+def read_conversion(entries: dict[str, YamlNode]) -> Conversion:
     """Read the keys that fields of properties and values of operations share."""
     kind = entries["as"].choice(*KINDS) if "as" in entries else ""
     digits, unit = entries.get("round"), entries.get("unit")
@@ -402,11 +402,11 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
     )
 
 
-def _digits(node: Node) -> int:
+def _digits(node: YamlNode) -> int:
     return 0 if node.value == DOWN else node.whole(0, 0)
 
 
-def _names(node: Node) -> tuple[tuple[object, str], ...]:
+def _names(node: YamlNode) -> tuple[tuple[object, str], ...]:
     found = []
     for key, value in node.entries():
         if not isinstance(value.value, str):
@@ -417,17 +417,17 @@ def _names(node: Node) -> tuple[tuple[object, str], ...]:
     return tuple(found)
 
 
-def _line(entries: dict[str, Node], kind: str) -> Line | None:
+def _line(entries: dict[str, YamlNode], kind: str) -> LinearConversion | None:
     steps = [
         _units(entries, kind),
-        Line(_factor(entries["scale"])) if "scale" in entries else None,
-        Line(1.0, entries["offset"].number()) if "offset" in entries else None,
+        LinearConversion(_factor(entries["scale"])) if "scale" in entries else None,
+        LinearConversion(1.0, entries["offset"].number()) if "offset" in entries else None,
     ]
     there = [step for step in steps if step is not None]
-    return reduce(Line.then, there) if there else None
+    return reduce(LinearConversion.then, there) if there else None
 
 
-def _factor(node: Node) -> float:
+def _factor(node: YamlNode) -> float:
     factor = node.number(default=1.0)
     if factor == 0.0:
         node.wrong("`scale` is 0, which removes the value", "write another number")
@@ -435,7 +435,7 @@ def _factor(node: Node) -> float:
     return factor
 
 
-def _units(entries: dict[str, Node], kind: str) -> Line | None:
+def _units(entries: dict[str, YamlNode], kind: str) -> LinearConversion | None:
     there, here = entries.get("unit"), entries.get("message_unit")
     if there is None:
         if here is not None:
@@ -461,7 +461,7 @@ def _of_kind(kind: str) -> str:
     return f"units of {kind} are {', '.join(units_of(kind))}"
 
 
-def _unit(node: Node) -> str | None:
+def _unit(node: YamlNode) -> str | None:
     if isinstance(node.value, str) and node.value in UNITS:
         return str(node.value)
     meant, listed = suggestion(str(node.value), UNITS), ", ".join(UNITS)
@@ -470,7 +470,7 @@ def _unit(node: Node) -> str | None:
     return None
 
 
-def constant(node: Node, expected: str = "a number, a text or a list", help: str = "") -> object:
+def constant(node: YamlNode, expected: str = "a number, a text or a list", help: str = "") -> object:
     """Read a constant: a number, truth value, text, or a list of them."""
     value = node.value
     if isinstance(value, list):
@@ -505,7 +505,7 @@ _KINDS: dict[str, tuple[Callable[[str], str], str, str]] = {
 """Kinds of types: how one is read, what it is the type of, and an example."""
 
 
-def belief_name(node: Node) -> str:
+def belief_name(node: YamlNode) -> str:
     """Read the name of a property, signal or operation."""
     if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
         if isinstance(node.value, bool):
@@ -523,7 +523,7 @@ def belief_name(node: Node) -> str:
     return str(node.value)
 
 
-def ros_name(node: Node) -> Written:
+def ros_name(node: YamlNode) -> Written:
     """Read the name of a topic, service, action or node."""
     value = node.value
     if not isinstance(value, str) or not _ROS.fullmatch(value):
@@ -534,7 +534,7 @@ def ros_name(node: Node) -> Written:
     return Written(str(value), place_of(node))
 
 
-def read_namespace(node: Node) -> str:
+def read_namespace(node: YamlNode) -> str:
     """Read a namespace; empty if none exists."""
     value = node.value
     if value in (None, "", "/"):
@@ -545,12 +545,12 @@ def read_namespace(node: Node) -> str:
     return str(value).strip("/")
 
 
-def type_of(kind: str) -> Entry:
+def type_of(kind: str) -> FieldSpec:
     """Return the entry of a type; *kind* is ``msg``, ``srv`` or ``action``."""
     return entry(lambda node: type_written(node, kind), "type")
 
 
-def type_written(node: Node, kind: str) -> Written | None:
+def type_written(node: YamlNode, kind: str) -> Written | None:
     """Read a type in full form. None after a mistake."""
     full = _full_type(node.value, kind)
     if full is None:

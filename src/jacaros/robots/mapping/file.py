@@ -11,7 +11,7 @@ from jacaros.robots.mapping.fields import (
     NOTHING,
     START,
     UNNAMED,
-    Place,
+    FilePosition,
     Written,
     each_of,
     entry,
@@ -32,9 +32,9 @@ from jacaros.robots.mapping.properties import (
     read_signal,
 )
 from jacaros.robots.streams import OPERATORS, Spec
-from jacaros.runtime.files.entries import Entry, declared_entries, values
+from jacaros.runtime.files.entries import FieldSpec, declared_entries, values
 from jacaros.runtime.files.texts import is_file, suggestion
-from jacaros.runtime.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys
+from jacaros.runtime.files.yaml import Problem, YamlFileError, YamlNode, read_document, read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Folder of the mappings that come with the package."""
@@ -42,26 +42,26 @@ SHIPPED = Path(__file__).parent.parent / "mappings"
 _NAME = re.compile(r"[^\s#/]+")
 
 
-def _operations(node: Node) -> tuple[OperationPart, ...]:
+def _operations(node: YamlNode) -> tuple[OperationPart, ...]:
     """Read operations; a list has several of one name."""
     found: list[OperationPart] = []
     for name, value in node.entries():
         if isinstance(value.value, list) and any(isinstance(item, dict) for item in value.value):
             for item in value.sequence():
-                named = Node(name.value, item.line, item.column, item.problems, name.what)
+                named = YamlNode(name.value, item.line, item.column, item.problems, name.what)
                 found.append(read_operation(named, item))
         else:
             found.append(read_operation(name, value))
     return tuple(found)
 
 
-def _tf_prefix(node: Node) -> str:
+def _tf_prefix(node: YamlNode) -> str:
     if node.value is not None:
         node.text()
     return str(node.value).strip("/") if node.value else ""
 
 
-def _connected(node: Node) -> bool | float:
+def _connected(node: YamlNode) -> bool | float:
     if isinstance(node.value, bool):
         return node.value
     value = node.value
@@ -72,7 +72,7 @@ def _connected(node: Node) -> bool | float:
     return True
 
 
-def _named(read: Callable[[Node, Node], object]) -> Entry:
+def _named(read: Callable[[YamlNode, YamlNode], object]) -> FieldSpec:
     """Return the entry of a mapping from names to parts, each read by *read*."""
     return entry(lambda node: tuple(read(*pair) for pair in node.entries()))
 
@@ -91,12 +91,12 @@ class ArtifactPart:
     """
 
     name: str
-    place: Place
-    description: Annotated[str, entry(Node.text)] = ""
+    place: FilePosition
+    description: Annotated[str, entry(YamlNode.text)] = ""
     namespace: Annotated[str, entry(read_namespace)] = ""
     tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
     connected: Annotated[bool | float, entry(_connected)] = False
-    interfaces: Annotated[tuple[Path, ...], Entry("")] = ()
+    interfaces: Annotated[tuple[Path, ...], FieldSpec("")] = ()
     properties: Annotated[tuple[TopicPart, ...], _named(read_property)] = ()
     signals: Annotated[tuple[TopicPart, ...], _named(read_signal)] = ()
     frames: Annotated[tuple[FramePart, ...], _named(read_frame)] = ()
@@ -141,7 +141,7 @@ class MappingFile:
     text: str = field(repr=False)
     artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
 
-    def where(self, place: Place) -> str:
+    def where(self, place: FilePosition) -> str:
         """Format a position for the log."""
         return f"{self.file}:{place.line}"
 
@@ -218,7 +218,7 @@ def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
     return MappingFile(name, text, artifacts)
 
 
-def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
+def _read(document: YamlNode, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
     if document.value is None:
         if not problems:
             document.wrong("the file is empty", "begin with properties: or operations:")
@@ -242,7 +242,7 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
     return found
 
 
-def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
+def _interfaces(node: YamlNode, folder: Path) -> tuple[Path, ...]:
     """Return the folders with definitions of types; relative paths start at the file's folder."""
     found = []
     for item in each_of(node):
@@ -256,7 +256,7 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
 
 
 def _artifact(
-    name: str, place: Place, node: Node, folder: Path, shared: tuple[Path, ...] = ()
+    name: str, place: FilePosition, node: YamlNode, folder: Path, shared: tuple[Path, ...] = ()
 ) -> ArtifactPart:
     part = ArtifactPart(name, place, interfaces=shared)
     found = values(
@@ -273,7 +273,7 @@ def _artifact(
 # What is checked of a whole artifact.
 
 
-def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
+def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, FilePosition]]:
     """Yield kind, name and position of everything that agents perceive."""
     for topic in part.topics:
         yield ("signal" if topic.signal else "property"), topic.name, topic.place
@@ -292,7 +292,7 @@ def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
 def _names(part: ArtifactPart) -> Iterator[Problem]:
     """Yield names that are used twice in an artifact. A signal may share one with a property, as events do with
     beliefs."""
-    seen: dict[str, tuple[str, Place]] = {}
+    seen: dict[str, tuple[str, FilePosition]] = {}
     for kind, name, place in _observable(part):
         if name == UNNAMED:
             continue  # already reported
@@ -305,7 +305,7 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
 
 def _arities(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations that agents cannot tell apart: same name, same number of arguments."""
-    seen: dict[tuple[str, int], Place] = {}
+    seen: dict[tuple[str, int], FilePosition] = {}
     for operation in part.operations:
         key = (operation.name, part.arity(operation))
         before = seen.setdefault(key, operation.place)
@@ -401,7 +401,7 @@ def _unknown_stream(source: Written, known: list[str]) -> Problem:
     return source.place.problem(f"unknown property `{source.text}`", suggestion(source.text, known, listed))
 
 
-def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
+def _unfit(spec: Spec, topic: TopicPart, place: FilePosition) -> Iterator[Problem]:
     if topic.each is not None and spec.operator not in _EVENTS:
         text = f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one"
         yield place.problem(text, f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from jacaros.agents.body.values import References, atom_of, to_term, to_value
 from jacaros.agents.language.loader import parse_literal
-from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.terms.collections import MapValue, SetValue
 from jacaros.agents.terms.substitution import equal
 from jacaros.agents.terms.text import text
@@ -159,7 +159,7 @@ def test_names_are_plain_texts_and_annotations_come_back():
     assert type(term(Atom("neverNamedBefore")).name) is str
     assert type(term(Structure(Atom("norThis"), (1,)))[0].name) is str
     assert type(atom_of(Atom("andThis")).name) is str
-    value = to_value(lower_value(parse_literal("ns(1, q(2)[b])[a(2), c]"), Names()))
+    value = to_value(lower_value(parse_literal("ns(1, q(2)[b])[a(2), c]"), Variables()))
     assert value == Structure("ns", (1, Structure("q", (2,))))
     assert str(value) == "ns(1,q(2)[b])[a(2),c]"
     assert text(to_term(plain([value]), References())) == "[ns(1,q(2)[b])[a(2),c]]"

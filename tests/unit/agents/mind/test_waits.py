@@ -6,7 +6,7 @@ from recording_host import believed, mind, printed
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.pending import cancel, listen, notify_listeners
 from jacaros.agents.mind.state.act import Percept
-from jacaros.agents.mind.state.pending import Listener
+from jacaros.agents.mind.state.pending import PendingEvent
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.values import BY_SELF, SOURCE_PERCEPT, Var, atom, functor, structure
 
@@ -109,14 +109,14 @@ ADDED = trigger("+", "", functor("a", 1))
 OTHER = trigger("+", "", functor("b", 1))
 
 
-def wait(agent: Mind, kind: object, heard: list[Listener]) -> Listener:
+def wait(agent: Mind, kind: object, heard: list[PendingEvent]) -> PendingEvent:
     made = listen(agent, kind, Var(), lambda _: heard.append(made))  # type: ignore[arg-type]
     return made
 
 
 def test_waits_keep_their_order_and_leave_nothing_behind():
     agent = mind("").agent
-    heard: list[Listener] = []
+    heard: list[PendingEvent] = []
     first, any_kind, other, last = (wait(agent, kind, heard) for kind in (ADDED, None, OTHER, ADDED))
     notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
     assert heard == [first, any_kind, last]
@@ -124,7 +124,7 @@ def test_waits_keep_their_order_and_leave_nothing_behind():
     assert heard == [first, any_kind, last, other]
     assert not agent.waits.events
     agent = mind("").agent
-    heard: list[Listener] = []
+    heard: list[PendingEvent] = []
     first, second = wait(agent, ADDED, heard), wait(agent, ADDED, heard)
     cancel(agent, first)
     cancel(agent, first)

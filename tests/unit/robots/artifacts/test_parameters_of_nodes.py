@@ -15,7 +15,7 @@ from jacaros.robots.ros.errors import (
     ServiceUnavailable,
     TransformUnavailable,
 )
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ from jacaros.robots.ros.parameter import Declaration
 )
 async def test_a_value_keeps_the_parameters_type(lab: Lab, before: Any, written: Any, after: Any) -> None:
     node = await lab.node("n")
-    node.parameters().declare("p", Declaration(before))
+    node.parameters().declare("p", DeclaredParameter(before))
     artifact = await lab.make(ArtRos)
     await lab.do(artifact, "set_parameter", "n", "p", written)
     found = await node.parameters().get("p")

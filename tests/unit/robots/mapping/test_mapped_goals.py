@@ -13,7 +13,7 @@ from jacaros.robots.mapping.checking import check_mapping
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.ros.action import Abort, ActionPolicy, ServerGoal
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 COUNT = """
 operations:
@@ -290,7 +290,7 @@ TOPIC_AND_PARAMETER = """\
 @made(count("suspend: {pause: hold, resume: go_on}", TOPIC_AND_PARAMETER))
 async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab, artifact: ArtifactId) -> None:
     own = lab.backend.parameters()
-    own.declare("speed", Declaration(0))
+    own.declare("speed", DeclaredParameter(0))
     held = lab.hear("hold", "std_msgs/msg/Bool")
     offer(lab)
     run = await lab.begun(0.5, artifact, "count", 3, 1, Out())

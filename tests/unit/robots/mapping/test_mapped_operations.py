@@ -11,7 +11,7 @@ from jacaros.artifacts import ArtifactId, Atom, Out, Structure
 from jacaros.robots.artifacts.motion import motions_of
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.ros.guarded import guarded_by
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 DRIVE = """
 operations:
@@ -346,7 +346,7 @@ operations:
 @made(mapped(PARAMETERS))
 async def test_parameters_of_nodes_are_set_and_given(lab: Lab, artifact: ArtifactId) -> None:
     own = lab.backend.parameters()
-    own.declare("speed", Declaration(0.5, maximum=2.0))
+    own.declare("speed", DeclaredParameter(0.5, maximum=2.0))
     await lab.do(artifact, "limit", 75)
     assert await own.get("speed") == 0.75
     await lab.do(artifact, "set", 1)
@@ -366,7 +366,7 @@ operations:
 @made(mapped(TURN))
 async def test_a_parameter_that_is_not_a_number_has_no_unit(lab: Lab, artifact: ArtifactId) -> None:
     own, out = lab.backend.parameters(), Out()
-    own.declare("turn", Declaration("left"))
+    own.declare("turn", DeclaredParameter("left"))
     failed = await lab.call(artifact, "turn", out)
     assert failed.reason == 'wrong_value("turn")'
     assert 'parameter `turn`: expected a number, found "left": leave out its unit' in failed.message
@@ -374,7 +374,7 @@ async def test_a_parameter_that_is_not_a_number_has_no_unit(lab: Lab, artifact: 
     await lab.do(artifact, "turn", out)
     assert out.value == Atom("nowhere")
     own.withdraw("turn")
-    own.declare("turn", Declaration([0.0, math.pi]))
+    own.declare("turn", DeclaredParameter([0.0, math.pi]))
     await lab.do(artifact, "turn", out)
     assert out.value == [0, 180]
 

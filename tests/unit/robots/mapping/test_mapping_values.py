@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.mapping.decoding import MessageHandle, Row, Unshowable, extractor
+from jacaros.robots.mapping.decoding import MessageHandle, Unshowable, ValueRow, extractor
 from jacaros.robots.mapping.encoding import WrongValue, builder
 from jacaros.robots.mapping.fields import FieldPart
 from jacaros.robots.mapping.file import read_mapping
@@ -24,7 +24,7 @@ def topic(fields: str, more: str = "") -> TopicPart:
     return read_mapping(text).artifacts["mapping"].properties[0]
 
 
-def rows(part: TopicPart, type_name: str, message: Any = None, **fields: Any) -> list[Row]:
+def rows(part: TopicPart, type_name: str, message: Any = None, **fields: Any) -> list[ValueRow]:
     """What a part makes of a message."""
     problems: list[Any] = []
     extract = extractor(part, type_name, stored_interfaces(), problems)

@@ -9,7 +9,7 @@ from jacaros.robots.ros.message import stamp
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.robots.ros.services import call_when_offered
-from jacaros.robots.ros.waiting import Waiting
+from jacaros.robots.ros.waiting import WaitLog
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -210,7 +210,7 @@ async def test_attempts_to_call_end_in_time_when_the_clock_jumps_back(lab: Lab) 
         raise ServiceUnavailable("no node is there")
 
     lab.move_to(100.0)
-    call = asyncio.ensure_future(call_when_offered(Waiting(lab, lab.lines.append, "service /x"), nobody, 1.0))
+    call = asyncio.ensure_future(call_when_offered(WaitLog(lab, lab.lines.append, "service /x"), nobody, 1.0))
     await pass_by(lab, 100.0, 100.5, 5.0, 5.2)
     assert not call.done()
     await pass_by(lab, 5.6)

@@ -26,7 +26,7 @@ from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import NUMBERS, String, Term, double, is_list, list_items
 
 Function = Callable[..., Any]
-Declared = TypeVar("Declared", bound=Function)
+F = TypeVar("F", bound=Function)
 Written = tuple[Term | None, ...]
 """The arguments of a call as far as the program fixes them; None for those known only at run time."""
 
@@ -86,7 +86,7 @@ class InternalAction(Declaration):
     pure: bool = False
     restricted: int | None = None
 
-    def __call__(self, function: Declared) -> Declared:
+    def __call__(self, function: F) -> F:
         """Register *function* under the name."""
         _declared[self.name] = replace(self, function=function)
         return function
@@ -98,8 +98,8 @@ class InternalAction(Declaration):
 
 internal_action = InternalAction
 
-Registry = dict[str, InternalAction]
-_declared: Registry = {}
+InternalActions = dict[str, InternalAction]
+_declared: InternalActions = {}
 STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 """The internal actions of the language; an agent may have more."""
 

@@ -10,7 +10,7 @@ from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.generated.matching import functor_of_literal
 from jacaros.agents.mind.generated.selection import (
-    Written,
+    CompiledUnit,
     given_positions,
     write_body,
     write_rule,
@@ -33,7 +33,7 @@ from jacaros.agents.terms.values import CONS, NIL, List, String, Term, Var, func
 Function = Callable[..., Any]
 
 
-def executed(made: Written) -> Function:
+def executed(made: CompiledUnit) -> Function:
     """The function of a unit, which is executed; its plans have their steps afterwards."""
     names = made.unit.globals
     for part in made.unit.code():

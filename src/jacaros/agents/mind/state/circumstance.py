@@ -194,7 +194,7 @@ class Observers:
 
 
 @dataclass(slots=True, eq=False)
-class Counts:
+class MindCounts:
     """How much an agent has done.
 
     Attributes:
@@ -302,7 +302,7 @@ class Circumstance(_Rules):
     waits: Waits = field(default_factory=Waits)
     features: Features = field(default_factory=Features)
     functions: Functions = field(default_factory=Functions)
-    counts: Counts = field(default_factory=Counts)
+    counts: MindCounts = field(default_factory=MindCounts)
     sleep: Sleep = "awake"
     outer_frame: Any = None
     context: Any = None

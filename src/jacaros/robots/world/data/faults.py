@@ -8,10 +8,10 @@ from typing import Annotated, Final, NamedTuple
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.world.data.world import PersonDescription
-from jacaros.runtime.files.entries import Entry, choice, number, whole
+from jacaros.runtime.files.entries import FieldSpec, choice, number, whole
 
 
-class Kind(NamedTuple):
+class FaultKind(NamedTuple):
     """A kind of faults.
 
     Attributes:
@@ -25,31 +25,31 @@ class Kind(NamedTuple):
     lasts: bool = True
 
 
-MESSAGES: Final[Mapping[str, Kind]] = {
-    "dead": Kind(("topic",), True),
-    "frozen": Kind(("topic",), True),
-    "nan": Kind(("topic",), True),
-    "lost": Kind(("topic", "share"), True),
-    "delayed": Kind(("topic", "seconds", "jitter"), True),
-    "duplicated": Kind(("topic", "copies"), True),
+MESSAGES: Final[Mapping[str, FaultKind]] = {
+    "dead": FaultKind(("topic",), True),
+    "frozen": FaultKind(("topic",), True),
+    "nan": FaultKind(("topic",), True),
+    "lost": FaultKind(("topic", "share"), True),
+    "delayed": FaultKind(("topic", "seconds", "jitter"), True),
+    "duplicated": FaultKind(("topic", "copies"), True),
 }
 """Kinds that affect the messages of a topic."""
 
-KINDS: Final[Mapping[str, Kind]] = {
-    "wheel_slip": Kind(("share",), True),
-    "blocked_wheel": Kind(("wheel",), True),
-    "kidnapped_robot": Kind(("to",), True, lasts=False),
-    "battery_drop": Kind(("to",), True, lasts=False),
-    "dead_dock": Kind(("dock",)),
-    "closed_door": Kind(("door",)),
-    "stuck_door": Kind(("door", "share")),
-    "person": Kind(("path", "radius", "speed", "loop", "careless")),
+KINDS: Final[Mapping[str, FaultKind]] = {
+    "wheel_slip": FaultKind(("share",), True),
+    "blocked_wheel": FaultKind(("wheel",), True),
+    "kidnapped_robot": FaultKind(("to",), True, lasts=False),
+    "battery_drop": FaultKind(("to",), True, lasts=False),
+    "dead_dock": FaultKind(("dock",)),
+    "closed_door": FaultKind(("door",)),
+    "stuck_door": FaultKind(("door", "share")),
+    "person": FaultKind(("path", "radius", "speed", "loop", "careless")),
     **MESSAGES,
-    "aborted_action": Kind(("action", "share"), True),
+    "aborted_action": FaultKind(("action", "share"), True),
 }
 
 
-def _seconds(help: str, key: str = "") -> Entry:
+def _seconds(help: str, key: str = "") -> FieldSpec:
     return number(0.0, math.inf, "s", help, key)
 
 
@@ -79,10 +79,10 @@ class Fault:
     at: Annotated[float | None, _seconds("beginning; without it, only on request")] = None
     lasts: Annotated[float | None, _seconds("duration; without it, until you end it", "for")] = None
     robot: str = ""
-    topic: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
-    action: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
-    door: Annotated[str, Entry("text", "name of a door")] = ""
-    dock: Annotated[str, Entry("text", "name of a dock")] = ""
+    topic: Annotated[str, FieldSpec("text", "absolute, or below the robot's namespace")] = ""
+    action: Annotated[str, FieldSpec("text", "absolute, or below the robot's namespace")] = ""
+    door: Annotated[str, FieldSpec("text", "name of a door")] = ""
+    dock: Annotated[str, FieldSpec("text", "name of a dock")] = ""
     share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
     wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
     pose: Pose = ORIGIN

@@ -15,11 +15,11 @@ from jacaros.robots.plane.pose import Pose
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import file_text
 
-Record = dict[str, Any]
+JsonRecord = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""
 
 
-class Event(NamedTuple):
+class RobotEvent(NamedTuple):
     """An event of a robot (``""`` for none), ``time`` seconds after the start of the world, with the true pose.
 
     The kinds, with the names in their data, are those of `FIELDS`.
@@ -91,7 +91,7 @@ class RobotState(NamedTuple):
     touching: bool = False
 
 
-class Sample(NamedTuple):
+class PathSample(NamedTuple):
     """A point of a robot's path; ``odometer`` is the true distance driven so far, in metres."""
 
     time: float
@@ -115,18 +115,18 @@ class GroundTruth:
             days; listeners still receive every event.
     """
 
-    def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
-        self.events: list[Event] = []
-        self.world: Record = world or {}
+    def __init__(self, robots: Iterable[str] = (), world: JsonRecord | None = None) -> None:
+        self.events: list[RobotEvent] = []
+        self.world: JsonRecord = world or {}
         self.dirt: dict[tuple[str, str], float] = {
             (room["name"], dirt["kind"]): dirt["grams"]
             for room in self.world.get("rooms", ())
             for dirt in room.get("dirt", ())
         }
-        self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
-        self._latest: dict[str, Sample] = {}
-        self._listeners: list[Callable[[Record], None]] = []
-        self._event_listeners: list[Callable[[Record], None]] = []
+        self._paths: dict[str, list[PathSample]] = {robot: [] for robot in robots}
+        self._latest: dict[str, PathSample] = {}
+        self._listeners: list[Callable[[JsonRecord], None]] = []
+        self._event_listeners: list[Callable[[JsonRecord], None]] = []
         self.keep: int | None = None
 
     @property
@@ -134,11 +134,11 @@ class GroundTruth:
         """Names of the robots, in the order of the world file."""
         return list(self._paths)
 
-    def path(self, robot: str | None = None) -> list[Sample]:
+    def path(self, robot: str | None = None) -> list[PathSample]:
         """Return the path of *robot* (default: the first): ten samples per second in motion, one at rest."""
         return self._paths[robot or self._first()]
 
-    def latest(self, robot: str | None = None) -> Sample:
+    def latest(self, robot: str | None = None) -> PathSample:
         """Return the newest sample of *robot* (default: the first)."""
         return self._latest[robot or self._first()]
 
@@ -155,7 +155,7 @@ class GroundTruth:
         """Return the battery level of *robot*, in percent."""
         return self.latest(robot).battery
 
-    def events_of(self, *kinds: str, robot: str | None = None) -> list[Event]:
+    def events_of(self, *kinds: str, robot: str | None = None) -> list[RobotEvent]:
         """Return the events of the given kinds (default: all), of one robot or of all."""
         return [
             event
@@ -174,22 +174,22 @@ class GroundTruth:
                 content.update(repr(tuple(sample)).encode())
         return content.hexdigest()
 
-    def listen(self, listener: Callable[[Record], None]) -> Callable[[], None]:
+    def listen(self, listener: Callable[[JsonRecord], None]) -> Callable[[], None]:
         """Call *listener* with every record from now on; return a function that removes it."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
-    def listen_to_events(self, listener: Callable[[Record], None]) -> Callable[[], None]:
+    def listen_to_events(self, listener: Callable[[JsonRecord], None]) -> Callable[[], None]:
         """Call *listener* with the record of every event from now on; return a function that removes it."""
         self._event_listeners.append(listener)
         return lambda: self._event_listeners.remove(listener)
 
-    def record_event(self, event: Event) -> None:
+    def record_event(self, event: RobotEvent) -> None:
         """Record an event; one of `FIELDS` has the data of its kind."""
         assert event.data.keys() >= set(FIELDS.get(event.kind, ())), event
         self._add(event)
 
-    def _add(self, event: Event) -> None:
+    def _add(self, event: RobotEvent) -> None:
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
@@ -200,7 +200,7 @@ class GroundTruth:
             for listener in tuple(self._event_listeners):
                 listener(record)
 
-    def record_sample(self, robot: str, sample: Sample) -> None:
+    def record_sample(self, robot: str, sample: PathSample) -> None:
         """Add a point to the path of *robot*."""
         path = self._paths.setdefault(robot, [])
         path.append(sample)
@@ -209,7 +209,7 @@ class GroundTruth:
         if self._listeners:
             self._tell({"kind": "sample", "robot": robot, **sample._asdict()})
 
-    def update_latest(self, robot: str, sample: Sample) -> None:
+    def update_latest(self, robot: str, sample: PathSample) -> None:
         """Update the pose of *robot* without adding a point to its path."""
         self._latest[robot] = sample
 
@@ -218,7 +218,7 @@ class GroundTruth:
         if self.keep is not None and len(items) >= 2 * self.keep:
             del items[: -self.keep]
 
-    def _tell(self, record: Record) -> None:
+    def _tell(self, record: JsonRecord) -> None:
         for listener in tuple(self._listeners):
             listener(record)
 
@@ -239,7 +239,7 @@ class GroundTruth:
             raise JacarosError(message) from None
 
     @classmethod
-    def _of_records(cls, records: list[Record]) -> "GroundTruth":
+    def _of_records(cls, records: list[JsonRecord]) -> "GroundTruth":
         if not records or records[0].get("kind") != "world":
             raise ValueError("its first line does not describe a world")
         truth = cls([robot["name"] for robot in records[0]["world"]["robots"]], records[0]["world"])
@@ -247,17 +247,17 @@ class GroundTruth:
             truth._take(record)
         return truth
 
-    def _take(self, record: Record) -> None:
+    def _take(self, record: JsonRecord) -> None:
         if record["kind"] == "sample":
-            self.record_sample(record["robot"], Sample(*(record[name] for name in Sample._fields)))
+            self.record_sample(record["robot"], PathSample(*(record[name] for name in PathSample._fields)))
         elif record["kind"] == "event":
             record = {**record, "kind": present_kind(record["event"], record["data"])}
-            self._add(Event(*(record[name] for name in Event._fields)))
+            self._add(RobotEvent(*(record[name] for name in RobotEvent._fields)))
         elif record["kind"] == "end":
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 
 
-def _records(path: str | Path) -> list[Record]:
+def _records(path: str | Path) -> list[JsonRecord]:
     lines = file_text(path, 2**32).splitlines()
     records = []
     for number, line in enumerate(lines, 1):
@@ -270,11 +270,11 @@ def _records(path: str | Path) -> list[Record]:
     return records
 
 
-def event_record(event: Event) -> Record:
+def event_record(event: RobotEvent) -> JsonRecord:
     """Return the record of an event."""
     return {**event._asdict(), "kind": "event", "event": event.kind}
 
 
-def header(world: Record, seed: int, epoch: float) -> Record:
+def header(world: JsonRecord, seed: int, epoch: float) -> JsonRecord:
     """Return the first record of a file; *epoch* is the clock's time (seconds) at which the world's time was 0."""
     return {"kind": "world", "world": world, "seed": seed, "epoch": epoch}

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Final
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.plane.trigonometry import PI, TWO_PI, radians
-from jacaros.runtime.files.entries import Entry, either, flag, number, section, text, whole
+from jacaros.runtime.files.entries import FieldSpec, either, flag, number, section, text, whole
 
 
-def _angle(unit: str, help: str, key: str, least: float = 0.0, most: float = 1e9) -> Entry:
+def _angle(unit: str, help: str, key: str, least: float = 0.0, most: float = 1e9) -> FieldSpec:
     """Return the entry of an angle: degrees in the file, radians in Python."""
     return number(least, most, unit, help, key, radians)
 
@@ -113,7 +113,7 @@ class CleaningTool:
     """
 
     name: str
-    removes: Annotated[tuple[str, ...], Entry("list of texts", "kinds of dirt")]
+    removes: Annotated[tuple[str, ...], FieldSpec("list of texts", "kinds of dirt")]
     rate: Annotated[float, number(0.0, 1e6, "g/s", "dirt removed")] = 5.0
     reach: Annotated[float, number(0.01, 10.0, "m", "from the robot's centre")] = 0.3
 
@@ -175,7 +175,7 @@ class Added:
 
 
 @dataclass(frozen=True, slots=True)
-class Interface:
+class RobotInterface:
     """The names of one robot's topics, services and actions.
 
     Attributes:
@@ -203,7 +203,7 @@ class Interface:
         return absolute(self.renamed.get(plain, plain), prefix)
 
 
-EVERYTHING: Final = Interface()
+EVERYTHING: Final = RobotInterface()
 """All names of the simulator."""
 
 
@@ -222,18 +222,22 @@ class RobotDescription:
     """
 
     name: Annotated[str, text("unique name")] = "turtlebot"
-    namespace: Annotated[str, Entry("text", "prefix of its topics, services and actions")] = ""
-    pose: Annotated[Pose, Entry("`{x, y, yaw_degrees}`", "initial pose")] = ORIGIN
+    namespace: Annotated[str, FieldSpec("text", "prefix of its topics, services and actions")] = ""
+    pose: Annotated[Pose, FieldSpec("`{x, y, yaw_degrees}`", "initial pose")] = ORIGIN
     radius: Annotated[float, number(0.02, 2.0, "m", "of a round robot")] = 0.17
     limits: Annotated[RobotLimits, section("limits of the base")] = RobotLimits()
     battery: Annotated[BatterySettings, section("charge and discharge")] = BatterySettings()
     odometry: Annotated[OdometrySettings, section("origin and errors of odometry")] = OdometrySettings()
     laser: Annotated[LaserSettings, section("laser range finder")] = LaserSettings()
-    navigation: Annotated[NavigationSettings, Entry("mapping or flag", "navigation")] = NavigationSettings()
-    tools: Annotated[tuple[CleaningTool, ...], Entry("mapping", "cleaning tools by name")] = ()
-    gripper_reach: Annotated[float, Entry("mapping or flag", "gripper", "gripper")] = 0.0
-    footprint: Annotated[tuple[float, float] | None, Entry("`[length, width]` m", "of a rectangle")] = None
-    interface: Interface = EVERYTHING
+    navigation: Annotated[NavigationSettings, FieldSpec("mapping or flag", "navigation")] = (
+        NavigationSettings()
+    )
+    tools: Annotated[tuple[CleaningTool, ...], FieldSpec("mapping", "cleaning tools by name")] = ()
+    gripper_reach: Annotated[float, FieldSpec("mapping or flag", "gripper", "gripper")] = 0.0
+    footprint: Annotated[tuple[float, float] | None, FieldSpec("`[length, width]` m", "of a rectangle")] = (
+        None
+    )
+    interface: RobotInterface = EVERYTHING
 
 
 USUAL: Final = "turtlebot"
@@ -245,7 +249,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         radius=0.177,
         limits=RobotLimits(speed=0.7, turn_rate=PI, acceleration=0.8, command_timeout=0.6),
         laser=LaserSettings(field=radians(57.0), range_min=0.45, range_max=10.0),
-        interface=Interface(CREATE3 | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(CREATE3 | TURTLEBOT3 | SONAR),
     ),
     # Burger: its specification, the acceleration of its Nav2 parameters, and the LDS-01.
     "turtlebot3": RobotDescription(
@@ -253,7 +257,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.22, turn_rate=2.84, acceleration=2.5, turn_acceleration=3.2),
         laser=LaserSettings(range_min=0.12, range_max=3.5),
         navigation=NavigationSettings(speed=0.22),
-        interface=Interface(KOBUKI | CREATE3 | CAMERA | SONAR),
+        interface=RobotInterface(KOBUKI | CREATE3 | CAMERA | SONAR),
     ),
     # Create 3 with its safety features on, and the RPLIDAR A1.
     "turtlebot4": RobotDescription(
@@ -261,7 +265,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.306, turn_rate=1.9, acceleration=0.9),
         laser=LaserSettings(range_min=0.15, range_max=12.0),
         navigation=NavigationSettings(speed=0.26),
-        interface=Interface(KOBUKI | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(KOBUKI | TURTLEBOT3 | SONAR),
     ),
 }
 """Robots that a world file names by kind, with the data of their makers and drivers.

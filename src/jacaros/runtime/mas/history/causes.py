@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import call_text, limited, message_text, request_text
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause
@@ -20,7 +20,7 @@ RECORDED = ("event", "message")
 LARGE = 4096
 """Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
 
-Link = tuple[Cause, float, Any]
+CauseLink = tuple[Cause, float, Any]
 """A cause, its time (by the clock, which continues during a pause on a real graph), and its subject."""
 
 
@@ -93,7 +93,7 @@ class CauseRecords:
         self,
         clock: Clock,
         beginning: float,
-        tell: Tell,
+        tell: RecordSink,
         find_listener: Callable[[Any], Callable[[str, Any], None] | None] = lambda message: None,
     ) -> None:
         self._clock, self._tell, self._find_listener = clock, tell, find_listener
@@ -103,8 +103,8 @@ class CauseRecords:
         self.with_effect: Callable[[float, str, Any], None] | None = None
         self._last = 0
         # Two generations: the older one is dropped as a whole, at no cost per cause.
-        self._young: dict[int, Link] = {}
-        self._old: dict[int, Link] = {}
+        self._young: dict[int, CauseLink] = {}
+        self._old: dict[int, CauseLink] = {}
         self._samples: set[int] = set()
         """Messages that have led to something. Each is kept, or recorded, once."""
 
@@ -186,17 +186,17 @@ class CauseRecords:
         if isinstance(cause, _Received):
             self._keep_sample(cause)
         number = cause.id
-        chain: list[Link] = []
+        chain: list[CauseLink] = []
         while (link := self._young.pop(number, None) or self._old.pop(number, None)) is not None:
             chain.append(link)
             number = link[0].parent
         for link in reversed(chain):
             self._record(link)
 
-    def _record(self, link: Link) -> None:
+    def _record(self, link: CauseLink) -> None:
         (number, parent, kind, what), moment, about = link
         at = round(moment - self._beginning, 3)
-        record = records.Cause(number, kind, what, parent, at)
+        record = records.CauseRecord(number, kind, what, parent, at)
         if about is not None and kind in _DETAILS:
             for field, value in _DETAILS[kind](what, about).items():
                 setattr(record, field, value)

@@ -44,28 +44,28 @@ def history():
 
 def log(history, *texts):
     for text in texts:
-        history.record(records.Log("info", text))
+        history.record(records.LogRecord("info", text))
 
 
 async def test_old_records_are_dropped_except_those_that_describe_present_agents(history):
-    history.record(records.Agent("ann", "began"))
-    history.record(records.Agent("bob", "began"))
+    history.record(records.AgentRecord("ann", "began"))
+    history.record(records.AgentRecord("bob", "began"))
     log(history, "0", "1", "2")
     present = [{"agent": name, "state": "began"} for name in ("ann", "bob")]
     assert [data for _, _, data in history.all()][:2] == present
     assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
-    history.record(records.Agent("ann", "ended"))
+    history.record(records.AgentRecord("ann", "ended"))
     log(history, "0", "1", "2")
     assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
 
 
 async def test_nothing_of_an_ended_agent_lasts(history):
     for name in ("ann", "bob"):
-        history.record(records.Agent(name, "began"))
-        history.record(records.Belief(name, "+", "kind"))
-        history.record(records.Goal(name, "!go", "pursued", 1))
-        history.record(records.Goal(name, "!go", "suspended", 1))
-    history.record(records.Agent("ann", "ended"))
+        history.record(records.AgentRecord(name, "began"))
+        history.record(records.BeliefRecord(name, "+", "kind"))
+        history.record(records.GoalRecord(name, "!go", "pursued", 1))
+        history.record(records.GoalRecord(name, "!go", "suspended", 1))
+    history.record(records.AgentRecord("ann", "ended"))
     log(history, "0", "1", "2")
     assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
         ("agent", "began"),
@@ -78,8 +78,8 @@ async def test_nothing_of_an_ended_agent_lasts(history):
 
 async def test_an_artifact_that_was_disposed_is_not_kept(history):
     for state in ("made", "disposed"):
-        history.record(records.Artifact("/main/lamp", state=state))
-    history.record(records.Artifact("/main/door", state="made"))
+        history.record(records.ArtifactRecord("/main/lamp", state=state))
+    history.record(records.ArtifactRecord("/main/door", state="made"))
     log(history, "0", "1", "2")
     assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
 
