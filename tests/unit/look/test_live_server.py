@@ -347,7 +347,7 @@ def test_a_blocked_page_is_disconnected(monkeypatch: pytest.MonkeyPatch) -> None
         socket.transport.pause_reading()
         async with live_page(address) as page:
             for index in range(3000):
-                mas.system.history().record(records.Log("info", f"{index} {'x' * 4000}"))
+                mas.system.history().record(records.LogRecord("info", f"{index} {'x' * 4000}"))
                 if index % 300 == 0:
                     await asyncio.sleep(0)
             await page.until(lambda: any(f"2999 {'x' * 9}" in str(each) for each in page.records[-500:]))

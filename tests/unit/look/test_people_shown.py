@@ -11,7 +11,7 @@ from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import SceneState
 from jacaros.look.page.terminal_view import TerminalView
 from jacaros.robots.world import World
-from jacaros.robots.world.data.ground_truth import Record
+from jacaros.robots.world.data.ground_truth import JsonRecord
 
 WORLD = """
 name: people
@@ -26,7 +26,7 @@ def test_a_person_is_shown_at_its_position() -> None:
     world = World.load(WORLD)
     seen = SceneState(world.description.drawing())
 
-    def take(record: Record) -> None:
+    def take(record: JsonRecord) -> None:
         if record["kind"] == "event":
             seen.event(record["time"], record["event"], record["data"])
 

@@ -10,13 +10,13 @@ from random import Random
 import msgspec
 import pytest
 
-from jacaros.look import recording as reading
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import EmbeddedScene, RobotView
 from jacaros.look.page.watch import Watch
+from jacaros.look.records import recording as reading
 from jacaros.look.records.line_format import CompressedLines, Lines, unpacked
 from jacaros.look.records.recording import Recording
-from jacaros.look.records.records import Happened, Text
+from jacaros.look.records.records import EventLine, TextLine
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.world import SimNode, World
 from jacaros.runtime.clock import VirtualClock, run
@@ -335,9 +335,9 @@ def test_errors_in_a_file_have_a_location_and_help(tmp_path: Path) -> None:
 
 def test_a_text_that_looks_like_a_record_stays_in_its_record() -> None:
     records = [
-        Happened(1.0, "x", {"data": [{"kind": "a"}, {"kind": "b"}]}),
-        Text(1.0, "ann", '}, {"kind": "x'),
-        Text(1.0, "ann", "\ud800 and ü"),
+        EventLine(1.0, "x", {"data": [{"kind": "a"}, {"kind": "b"}]}),
+        TextLine(1.0, "ann", '}, {"kind": "x'),
+        TextLine(1.0, "ann", "\ud800 and ü"),
     ]
     lines = Lines().pack(records).decode("utf-8").splitlines()
     assert [json.loads(line) for line in lines] == msgspec.to_builtins(records)

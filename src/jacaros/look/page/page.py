@@ -18,7 +18,7 @@ from typing import Any
 
 from jacaros.look.records.line_format import encoded
 from jacaros.look.records.recording import Recording
-from jacaros.look.records.records import VERSION, Happened, Line, Text, World
+from jacaros.look.records.records import VERSION, EventLine, RecordingLine, TextLine, WorldLine
 from jacaros.runtime.errors import JacarosError
 
 STATIC = Path(__file__).parent / "static"
@@ -86,11 +86,11 @@ def packed(recording: Recording) -> str:
     return base64.b64encode(gzip.compress(lines, 9, mtime=0)).decode("ascii")
 
 
-def lines_of(recording: Recording) -> Iterator[Line]:
+def lines_of(recording: Recording) -> Iterator[RecordingLine]:
     """Yield the records of a recording except frames, in time order, as in its file."""
-    yield World(version=VERSION, world=recording.world)
-    texts = (Text(*text) for text in recording.texts)
-    events = (Happened(*event) for event in recording.events)
+    yield WorldLine(version=VERSION, world=recording.world)
+    texts = (TextLine(*text) for text in recording.texts)
+    events = (EventLine(*event) for event in recording.events)
     yield from sorted((*texts, *events), key=attrgetter("t"))
 
 

@@ -18,7 +18,15 @@ from jacaros.look.page.scene import RobotView, row_of
 from jacaros.look.page.watch import watch_of
 from jacaros.look.records.line_format import CompressedLines, Lines
 from jacaros.look.records.recording import Recording, older_part
-from jacaros.look.records.records import VERSION, Frame, Happened, Heard, Line, Text, World
+from jacaros.look.records.records import (
+    VERSION,
+    EventLine,
+    Frame,
+    MessageLine,
+    RecordingLine,
+    TextLine,
+    WorldLine,
+)
 from jacaros.robots.ros.message import type_of
 from jacaros.robots.world.data.ground_truth import RobotState
 from jacaros.runtime.errors import UsageError
@@ -39,7 +47,7 @@ _BATCH = 64
 class Format(Protocol):
     """Converts records to bytes; one object for each file."""
 
-    def pack(self, records: Sequence[Line]) -> bytes:
+    def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return records as bytes, so that a file that ends after them is readable."""
 
     def end(self) -> bytes:
@@ -107,7 +115,7 @@ class Recorder:
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Record the world (see `WorldDescription.drawing`), before everything else; the last call wins."""
         self.recording.world = dict(drawing)
-        self._write(World(version=VERSION, world=self.recording.world))
+        self._write(WorldLine(version=VERSION, world=self.recording.world))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Record the robots at a time, in the order of the world."""
@@ -141,18 +149,18 @@ class Recorder:
         """Record a line of an agent's output."""
         if self._keep:
             self.recording.texts.append((t, agent, text))
-        self._write(Text(round(t, 3), agent, text))
+        self._write(TextLine(round(t, 3), agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Record an event at a whole millisecond; *data* is plain JSON data that must not change afterwards."""
         if self._keep:
             self.recording.events.append((t, kind, dict(data)))
-        self._write(Happened(t, kind, data))
+        self._write(EventLine(t, kind, data))
 
     def message(self, t: float, topic: str, message: Any) -> None:
         """Record a ROS message that had an effect."""
         if self.takes_messages:
-            self._write(Heard(round(t, 3), topic, type_of(message), message))
+            self._write(MessageLine(round(t, 3), topic, type_of(message), message))
 
     def close(self) -> None:
         """Write the last frame and close the file; closing twice is harmless."""
@@ -161,7 +169,7 @@ class Recorder:
             self._file.close()
             self._file = None
 
-    def _write(self, record: Line) -> None:
+    def _write(self, record: RecordingLine) -> None:
         if self._file is not None:
             self._file.write(record)
 
@@ -197,9 +205,9 @@ class RecordingFile:
         self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
         self._batch = max(1, min(_BATCH, limit // 100_000))
         self._format = make_format()
-        self._header = World(world={})
+        self._header = WorldLine(world={})
         self._part, self._size = 1, 0
-        self._pending: deque[Line] = deque()
+        self._pending: deque[RecordingLine] = deque()
         self._packing = threading.Lock()
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
@@ -209,7 +217,7 @@ class RecordingFile:
         self._output: Output | None = None
         self._open()
 
-    def write(self, record: Line) -> None:
+    def write(self, record: RecordingLine) -> None:
         """Queue a record, to be written by the next due `flush`, or by the thread."""
         self._pending.append(record)
         if len(self._pending) >= self._batch:
@@ -252,9 +260,9 @@ class RecordingFile:
             self._packing.release()
         return True
 
-    def _put(self, batch: Sequence[Line]) -> None:
+    def _put(self, batch: Sequence[RecordingLine]) -> None:
         for record in batch:
-            if isinstance(record, World):
+            if isinstance(record, WorldLine):
                 self._header = record
         data = self._format.pack(batch)
         self._send(data)

@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from jacaros.look.records.records import Line
+from jacaros.look.records.records import RecordingLine
 
 _MEMBER = 1 << 20
 """Size of the lines in one independently readable part of a compressed file, in bytes."""
@@ -42,7 +42,7 @@ def encoded(data: object, spaced: bool = False) -> bytes:
 class Lines:
     """A file of lines (see `jacaros.look.page.recorder.RecordingFile`)."""
 
-    def pack(self, records: Sequence[Line]) -> bytes:
+    def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return lines of JSON; each begins with its ``kind``."""
         return b"".join(encoded(each, spaced=True) + b"\n" for each in records)
 
@@ -62,7 +62,7 @@ class CompressedLines(Lines):
         self._packer: Any = None
         self._size = 0
 
-    def pack(self, records: Sequence[Line]) -> bytes:
+    def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return lines, compressed."""
         data = super().pack(records)
         if self._packer is None:

@@ -7,7 +7,7 @@ from typing import Any
 from mcap.writer import CompressionType, Writer
 
 from jacaros.look.records.line_format import encoded
-from jacaros.look.records.records import Frame, Happened, Heard, Line, Text, World
+from jacaros.look.records.records import EventLine, Frame, MessageLine, RecordingLine, TextLine, WorldLine
 from jacaros.robots.ros.message import plain
 from jacaros.robots.world.data.ground_truth import RobotState
 from jacaros.version import VERSION as JACAROS
@@ -35,7 +35,7 @@ class McapFile:
         self._robots: list[str] = []
         self._t = 0.0
 
-    def pack(self, records: Sequence[Line]) -> bytes:
+    def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return the bytes for the records; the last records may wait for a full chunk."""
         for record in records:
             self._t = float(getattr(record, "t", self._t))
@@ -50,20 +50,20 @@ class McapFile:
         self._writer.finish()  # type: ignore[no-untyped-call]
         return self._stream.take()
 
-    def _packed(self, record: Line) -> Iterator[Packed]:
+    def _packed(self, record: RecordingLine) -> Iterator[Packed]:
         match record:
-            case Heard():
+            case MessageLine():
                 yield record.topic, record.type, plain(record.message)
-            case Happened():
+            case EventLine():
                 yield _own(record.event, {"t": record.t, **record.data})
-            case World(world=world):
+            case WorldLine(world=world):
                 self._robots = [str(robot["name"]) for robot in world.get("robots", ())]
                 yield _own("world", {"version": record.version, "part": record.part, "world": world})
                 yield "/jacaros/scene", SCENE, scene(world, self._t)
             case Frame(t=t, robots=robots):
                 yield _own("frame", {"t": t, "robots": robots})
                 yield "/jacaros/transforms", TRANSFORMS, transforms(self._robots, robots, self._t)
-            case Text(t=t, agent=agent, text=text):
+            case TextLine(t=t, agent=agent, text=text):
                 yield _own("text", {"t": t, "agent": agent, "text": text})
                 yield "/jacaros/output", LOG, log_line(agent, text, self._t)
 

@@ -10,7 +10,17 @@ import msgspec
 from msgspec import Struct, ValidationError, convert
 
 from jacaros.look.records.line_format import MAGIC, unpacked
-from jacaros.look.records.records import VERSION, AnyLine, Data, Frame, Happened, Number, Text, World, decoded
+from jacaros.look.records.records import (
+    VERSION,
+    AnyLine,
+    Data,
+    EventLine,
+    FiniteNumber,
+    Frame,
+    TextLine,
+    WorldLine,
+    decoded,
+)
 from jacaros.robots.world.data.ground_truth import RobotState, present_kind
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import LARGEST, file_bytes, printable, text_of
@@ -28,13 +38,13 @@ class _Robot(Struct):
     """A robot of a drawing, as far as viewers rely on it."""
 
     name: str
-    radius: Number = 0.0
-    footprint: Sequence[Number] = ()
+    radius: FiniteNumber = 0.0
+    footprint: Sequence[FiniteNumber] = ()
 
 
 class _Drawing(Struct):
     robots: Sequence[_Robot] = ()
-    bounds: Sequence[Number] = ()
+    bounds: Sequence[FiniteNumber] = ()
 
 
 class _Kind(Struct):
@@ -142,7 +152,7 @@ class Recording:
             try:
                 record = _record(line)
                 self._take(record)
-                described = described or isinstance(record, World)
+                described = described or isinstance(record, WorldLine)
             except (ValueError, RecursionError) as error:
                 cut_off = number == len(lines) or line.startswith(_BEGINNING)
                 if (cut_off and isinstance(error, json.JSONDecodeError)) or self.warnings:
@@ -156,15 +166,15 @@ class Recording:
 
     def _take(self, record: AnyLine | None) -> None:
         match record:
-            case World():
+            case WorldLine():
                 convert(record.world, _Drawing)
                 self.world = record.world
             case Frame():
                 rows = tuple(_row(row, exactly=not self.warnings) for row in record.robots)
                 self.frames.append(Frame(record.t, rows))
-            case Text():
+            case TextLine():
                 self.texts.append((record.t, record.agent, record.text))
-            case Happened():
+            case EventLine():
                 self._take_event(record.t, present_kind(record.event, record.data), record.data)
 
     def _take_event(self, t: float, kind: str, data: Data) -> None:
@@ -195,7 +205,7 @@ def _record(line: str) -> AnyLine | None:
 
 def _row(values: Any, exactly: bool) -> RobotState:
     """Return a robot's row of a frame; unless it has to have *exactly* its columns, further ones are dropped."""
-    row = convert(values, list[Number])
+    row = convert(values, list[FiniteNumber])
     if len(row) < _COLUMNS or (exactly and len(row) != _COLUMNS):
         raise ValidationError(f"a robot has {_COLUMNS} numbers, not {len(row)}")
     return RobotState._make(row[:_COLUMNS])

@@ -18,7 +18,7 @@ Data = Mapping[str, Any]
 """The data of an event as plain JSON data."""
 Record = tuple[float, str, Data]
 """``t`` in seconds since the run began, the kind of the event and its data."""
-Number = Annotated[float, Meta(gt=-1e15, lt=1e15)]
+FiniteNumber = Annotated[float, Meta(gt=-1e15, lt=1e15)]
 """A number that pages and pictures can scale."""
 Id = int | str | None
 Maybe = str | None
@@ -27,11 +27,11 @@ Maybe = str | None
 # ---- lines of a recording, told apart by their field ``kind``
 
 
-class Line(Struct, tag_field="kind", tag=str.lower):
+class RecordingLine(Struct, tag_field="kind", tag=lambda name: name.removesuffix("Line").lower()):
     """A line of a recording."""
 
 
-class World(Line, kw_only=True, omit_defaults=True):
+class WorldLine(RecordingLine, kw_only=True, omit_defaults=True):
     """The drawing of the world, see `WorldDescription.drawing`; *part* counts the files of a long recording."""
 
     version: int = 1
@@ -39,36 +39,36 @@ class World(Line, kw_only=True, omit_defaults=True):
     world: dict[str, Any]
 
 
-class Frame(Line):
+class Frame(RecordingLine):
     """The robots at a time, each a `jacaros.robots.world.ground_truth.RobotState`."""
 
-    t: Number
+    t: FiniteNumber
     robots: Sequence[Any]
 
 
-class Text(Line):
+class TextLine(RecordingLine):
     """A line of an agent's output."""
 
-    t: Number
+    t: FiniteNumber
     agent: str
     text: str
 
 
-class Happened(Line, tag="event"):
+class EventLine(RecordingLine):
     """An event of a kind that `EVENTS` describes."""
 
-    t: Number
+    t: FiniteNumber
     event: str
     data: Data
 
 
-AnyLine = World | Frame | Text | Happened
+AnyLine = WorldLine | Frame | TextLine | EventLine
 
 
-class Heard(Line, tag="message"):
+class MessageLine(RecordingLine):
     """A ROS message that had an effect; only in files of MCAP."""
 
-    t: Number
+    t: FiniteNumber
     topic: str
     type: str
     message: Any
@@ -77,26 +77,26 @@ class Heard(Line, tag="message"):
 # ---- data of events
 
 
-class Event(Struct, omit_defaults=True):
-    """The data of an event; its ``kind`` is the name of the class."""
+class EventRecord(Struct, omit_defaults=True):
+    """The data of an event; its ``kind`` is the name of the class without ``Record``."""
 
     kind: ClassVar[str]
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Name the kind."""
         super().__init_subclass__(**options)
-        cls.kind = cls.__name__.lower()
+        cls.kind = cls.__name__.removesuffix("Record").lower()
 
     def plain(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return to_builtins(self)  # type: ignore[no-any-return]
 
 
-Tell = Callable[[Event], None]
+RecordSink = Callable[[EventRecord], None]
 """Takes the events of a run."""
 
 
-class Run(Event, omit_defaults=False):
+class RunRecord(EventRecord, omit_defaults=False):
     """once, at the start: `name`; `clock` (`real`, `fast`, `ros`); `ros` (`memory`, `ros1`, ...); `seed`; `jacaros`, the
     version
     """
@@ -108,27 +108,27 @@ class Run(Event, omit_defaults=False):
     jacaros: Maybe = None
 
 
-class Source(Event):
+class SourceRecord(EventRecord):
     """`file`, `text`: a file of AgentSpeak; once, and again after a reload"""
 
     file: str
     text: str
 
 
-class Log(Event):
+class LogRecord(EventRecord):
     """`level` (`info`, `warning`, `error`), `text`"""
 
     level: str
     text: str
 
 
-class Ended(Event):
+class EndedRecord(EventRecord):
     """`code`: the exit code"""
 
     code: int | None = None
 
 
-class Agent(Event):
+class AgentRecord(EventRecord):
     """`agent`; `what` (`asl`, `python`); `state` (`began`, `ended`)"""
 
     agent: str
@@ -136,7 +136,7 @@ class Agent(Event):
     what: Maybe = None
 
 
-class Plan(Struct):
+class PlanRecord(Struct):
     """A plan of a program."""
 
     id: Id
@@ -148,17 +148,17 @@ class Plan(Struct):
     end: int | None = None
 
 
-class Program(Event):
+class ProgramRecord(EventRecord):
     """`agent`; `plans`: a list of `id`, `label`, `trigger`, `context` (text, empty without one), `file`, `line`, `end`
     (last line); `rules`: a list of texts. Repeated when its plans change
     """
 
     agent: str
-    plans: Sequence[Plan] | None
+    plans: Sequence[PlanRecord] | None
     rules: Sequence[str] | None = None
 
 
-class Belief(Event):
+class BeliefRecord(EventRecord):
     """`agent`; `op` (`+`, `-`); `belief`, with its annotations, as text; `cause`, or `intention`, `file` and `line` of the
     step that changed it; neither for an initial belief
     """
@@ -172,7 +172,7 @@ class Belief(Event):
     line: int | None = None
 
 
-class Goal(Event):
+class GoalRecord(EventRecord):
     """`agent`; `goal`; `state`: `pursued`, `suspended`, `resumed`, `achieved`, `failed`, `recovered`, `dropped` or
     `replaced` (by a tail call); `id` tells goals apart; `intention`; for a failure, `why`, in lines
     """
@@ -185,14 +185,14 @@ class Goal(Event):
     why: Maybe = None
 
 
-class Option(Struct):
+class OptionRecord(Struct):
     """A relevant plan that came before the chosen one, and why it did not apply."""
 
     plan: Id
     why: Maybe = None
 
 
-class Deliberation(Event, omit_defaults=False):
+class DeliberationRecord(EventRecord, omit_defaults=False):
     """of a goal, or of an event that has a plan: `id`, also that of its link; `parent`; `agent`; `trigger`, such as
     `+battery(12)` or `+!go(dock)`, as text; `intention` (null for an external event); `chosen`: the plan, or null;
     `options`: a list of `plan` and `why`, for each relevant plan that came before the chosen one: why its context does not
@@ -206,11 +206,11 @@ class Deliberation(Event, omit_defaults=False):
     parent: int | None = None
     intention: Id = None
     chosen: Id = None
-    options: Sequence[Option] | None = None
+    options: Sequence[OptionRecord] | None = None
     untried: Sequence[Id] | None = None
 
 
-class Step(Struct):
+class StackedGoal(Struct):
     """A goal on a stack, with the current step of its plan."""
 
     goal: str
@@ -220,7 +220,7 @@ class Step(Struct):
     step: Maybe = None
 
 
-class Intention(Event):
+class IntentionRecord(EventRecord):
     """`agent`; `id`; `state` (`runs`, `waits`, `suspended`, `over`); `stack`: the goals from the bottom up, each with
     `goal`, `plan`, `file`, `line`, `step` (text of the current step); `waits`: the reason for waiting, in words; `since`;
     `reason` of the suspension; `urgency`; `cause`. At most ten times per second, and only for lasting intentions
@@ -229,7 +229,7 @@ class Intention(Event):
     agent: str
     id: Id
     state: str
-    stack: Sequence[Step] | None = None
+    stack: Sequence[StackedGoal] | None = None
     waits: Maybe = None
     since: float | None = None
     reason: Maybe = None
@@ -237,7 +237,7 @@ class Intention(Event):
     cause: int | None = None
 
 
-class Message(Event, omit_defaults=False):
+class MessageRecord(EventRecord, omit_defaults=False):
     """`id`, also that of its link; `from`, `to`, `performative`, `content`; `reply_to`: the `id` of the question that it
     answers, or null; `state` (`sent`, `read`); `cause` of the sending
     """
@@ -252,7 +252,7 @@ class Message(Event, omit_defaults=False):
     cause: int | None = None
 
 
-class Artifact(Event, omit_defaults=False):
+class ArtifactRecord(EventRecord, omit_defaults=False):
     """`artifact`, its path; `type`; `state` (`made`, `disposed`); `robot`: the robot that it drives or senses, or null"""
 
     artifact: str
@@ -261,7 +261,7 @@ class Artifact(Event, omit_defaults=False):
     robot: Maybe = None
 
 
-class Focus(Event):
+class FocusRecord(EventRecord):
     """`agent`, `artifact`, `on`"""
 
     agent: str
@@ -269,7 +269,7 @@ class Focus(Event):
     on: bool
 
 
-class Property(Event, omit_defaults=False):
+class PropertyRecord(EventRecord, omit_defaults=False):
     """`artifact`, `name`, `key` (tells properties of one name apart), `values` (a list; null when the property is removed),
     `cause`. At most two values per second for a property that changes continuously
     """
@@ -281,7 +281,7 @@ class Property(Event, omit_defaults=False):
     cause: int | None = None
 
 
-class Signal(Event, omit_defaults=False):
+class SignalRecord(EventRecord, omit_defaults=False):
     """`artifact`, `signal` as text, `cause`"""
 
     artifact: str
@@ -289,7 +289,7 @@ class Signal(Event, omit_defaults=False):
     cause: int | None = None
 
 
-class Operation(Event):
+class OperationRecord(EventRecord):
     """`id`; `artifact`; `operation` as text; `agent`; `state` (`began`, `done`, `failed`); `reason` of a failure
     (`cancelled` when its intention was dropped), and `term`, the plans' `env_failure_reason`; `outputs`: the values of its
     output parameters when it is done, as texts; `cause`
@@ -306,7 +306,7 @@ class Operation(Event):
     outputs: Sequence[Maybe] | None = None
 
 
-class Cause(Event):
+class CauseRecord(EventRecord):
     """`id`, `parent`, `kind`, `what`, `at` (seconds), and if known, `agent`, `intention`, `plan`, `file`, `line`,
     `artifact`, `topic`
     """
@@ -325,7 +325,7 @@ class Cause(Event):
     topic: Maybe = None
 
 
-class Laser(Event):
+class LaserRecord(EventRecord):
     """`robot`; `from`, `step` (radians, from the robot's heading); `ranges` in centimetres, integers, 0 for no echo"""
 
     robot: str
@@ -334,25 +334,25 @@ class Laser(Event):
     ranges: Sequence[int]
 
 
-class Path(Event):
+class PathRecord(EventRecord):
     """`robot`, `points`: the planned path, empty if none"""
 
     robot: str
-    points: Sequence[tuple[Number, Number]]
+    points: Sequence[tuple[FiniteNumber, FiniteNumber]]
 
 
-class Believed(Event, omit_defaults=False):
+class BelievedRecord(EventRecord, omit_defaults=False):
     """`robot`, `x`, `y`, `yaw`: the pose from localisation. In the embedded world only while it is more than 5 cm or 5
     degrees off, then once with null
     """
 
     robot: str
-    x: Number | None = None
-    y: Number | None = None
-    yaw: Number | None = None
+    x: FiniteNumber | None = None
+    y: FiniteNumber | None = None
+    yaw: FiniteNumber | None = None
 
 
-class Topic(Struct):
+class TopicRecord(Struct):
     """A topic of the graph."""
 
     name: str
@@ -363,16 +363,16 @@ class Topic(Struct):
     rate: float
 
 
-class Graph(Event):
+class GraphRecord(EventRecord):
     """`node`; `topics`: a list of `name`, `type`, `publishers`, `subscribers`, `ours` (used by the run: `in`, `out`, or
     `""`), and for these `rate` in Hz
     """
 
     node: str
-    topics: Sequence[Topic]
+    topics: Sequence[TopicRecord]
 
 
-class Debug(Event):
+class DebugRecord(EventRecord):
     """`state` (`paused`, `running`), `why` (such as `breakpoint patrol.asl:14`), `speed` (0 for the virtual clock),
     `cannot`: a list of things that a pause does not stop; `agent`, `intention`, `file` and `line` of the step before which
     an agent is held (`""` and 0 if none); `breakpoints`, a list of `line`, `plan`, `event` or `condition` with their
@@ -390,22 +390,22 @@ class Debug(Event):
     breakpoints: Sequence[dict[str, Any]] | None = None
 
 
-class Intervention(Event):
+class InterventionRecord(EventRecord):
     """`what`: your change from the page, as text"""
 
     what: str
 
 
 _OF_WORLD: Mapping[str, Any] = {
-    **dict.fromkeys(("x", "y", "yaw", "radius", "vx", "vy", "level", "grams", "percent"), Number),
+    **dict.fromkeys(("x", "y", "yaw", "radius", "vx", "vy", "level", "grams", "percent"), FiniteNumber),
     **dict.fromkeys(
         ("dock", "door", "object", "obstacle", "person", "room", "dirt", "task", "fault", "state"), str
     ),
-    "path": Sequence[tuple[Number, Number]],
+    "path": Sequence[tuple[FiniteNumber, FiniteNumber]],
 }
 """Types of the data of the world's events; of others, any."""
 EVENTS: Mapping[str, type[Struct]] = {
-    **{each.kind: each for each in Event.__subclasses__()},
+    **{each.kind: each for each in EventRecord.__subclasses__()},
     **{
         kind: defstruct(kind, [(name, _OF_WORLD.get(name, Any)) for name in names])
         for kind, names in FIELDS.items()

@@ -33,7 +33,7 @@ def explain_event(past: Past, asked: Question) -> Explanation:
 
 
 def explain_deliberation(
-    past: Past, question: str, t: float, deliberation: records.Deliberation
+    past: Past, question: str, t: float, deliberation: records.DeliberationRecord
 ) -> Explanation:
     """Explain one handled event."""
     facts = tuple(candidates(past, deliberation))
@@ -44,7 +44,7 @@ def _times(count: int) -> str:
     return "once" if count == 1 else f"{count} times"
 
 
-def _headline(past: Past, t: float, deliberation: records.Deliberation) -> str:
+def _headline(past: Past, t: float, deliberation: records.DeliberationRecord) -> str:
     agent, trigger = deliberation.agent, shown(deliberation.trigger)
     plan = past.plan(agent, deliberation.chosen)
     if plan:
@@ -56,7 +56,7 @@ def _headline(past: Past, t: float, deliberation: records.Deliberation) -> str:
     return f"{agent} has no {relevant} plan for `{trigger}` at {seconds(t)}"
 
 
-def unexamined(past: Past, deliberation: records.Deliberation) -> list[records.Plan]:
+def unexamined(past: Past, deliberation: records.DeliberationRecord) -> list[records.PlanRecord]:
     """Return the plans for an event that a busy agent did not record."""
     if deliberation.chosen is not None:
         return []
@@ -74,7 +74,7 @@ def _is_for(trigger: str, event: str) -> bool:
         return False
 
 
-def candidates(past: Past, deliberation: records.Deliberation) -> Iterator[Fact]:
+def candidates(past: Past, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
     """Return the relevant plans of an event in order, each with the reason why it was not chosen."""
     agent, options = deliberation.agent, deliberation.options or ()
     unknown = "did not apply" if deliberation.chosen is None else _SELECTED
@@ -96,11 +96,11 @@ def candidates(past: Past, deliberation: records.Deliberation) -> Iterator[Fact]
 _SELECTED = "applicable too, but another plan was selected"
 
 
-def _candidate(plan: records.Plan | None, what: str) -> Fact:
+def _candidate(plan: records.PlanRecord | None, what: str) -> Fact:
     return Fact("plan", f"`{plan_text(plan)}`: {what}", None, "", *place_of(plan))
 
 
-def _outcome(past: Past, t: float, deliberation: records.Deliberation) -> Iterator[Fact]:
+def _outcome(past: Past, t: float, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
     """Return the outcome of the goal of an event."""
     goal = unsigned(deliberation.trigger)
     for later, data in past.goals if goal.startswith("!") else ():
@@ -110,7 +110,7 @@ def _outcome(past: Past, t: float, deliberation: records.Deliberation) -> Iterat
             return
 
 
-def goal_text(t: float, goal: records.Goal) -> str:
+def goal_text(t: float, goal: records.GoalRecord) -> str:
     """Return a change of a goal as text."""
     return f"{goal.goal} {goal.state} at {seconds(t)}{f': {goal.why}' if goal.why else ''}"
 
@@ -204,7 +204,9 @@ def explain_plan(past: Past, asked: Question) -> Explanation:
 _COUNTED = {CHOSEN: "chosen", REFUSED: "refused", UNTRIED: "not tried"}
 
 
-def _considered(past: Past, agent: str, plan: records.Plan) -> list[tuple[float, records.Deliberation, str]]:
+def _considered(
+    past: Past, agent: str, plan: records.PlanRecord
+) -> list[tuple[float, records.DeliberationRecord, str]]:
     """Return the events that a plan was relevant for, each with how the plan was treated."""
     found = []
     for t, data in of_agent(past.deliberations, agent):
@@ -218,7 +220,7 @@ def _considered(past: Past, agent: str, plan: records.Plan) -> list[tuple[float,
 
 
 def _reasons(
-    past: Past, agent: str, deliberation: records.Deliberation, plan: records.Plan, how: str
+    past: Past, agent: str, deliberation: records.DeliberationRecord, plan: records.PlanRecord, how: str
 ) -> Iterator[Fact]:
     options = deliberation.options or ()
     if how == REFUSED:
@@ -232,7 +234,7 @@ def _reasons(
             yield Fact("plan", told, None, "", *place_of(other))
 
 
-def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.Plan]]:
+def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.PlanRecord]]:
     """Return the plans that *about* may mean, each with its agent; at least one."""
     plans = list(past.plans(agent))
     for is_it in (_has_label, _is_at, _has_trigger):
@@ -252,11 +254,11 @@ def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.Plan]]:
     raise UsageError(f"error: unknown plan: `{about}`\n  = help: {listed}")
 
 
-def _has_label(plan: records.Plan, about: str) -> bool:
+def _has_label(plan: records.PlanRecord, about: str) -> bool:
     return (plan.label or "").partition("[")[0] == about.removeprefix("@")
 
 
-def _is_at(plan: records.Plan, about: str) -> bool:
+def _is_at(plan: records.PlanRecord, about: str) -> bool:
     """Return whether a location is in a plan. The file may be named without its folders."""
     file, _, line = about.rpartition(":")
     if not line.isdigit() or not file:
@@ -266,7 +268,7 @@ def _is_at(plan: records.Plan, about: str) -> bool:
     return same and first <= int(line) <= (plan.end or first)
 
 
-def _has_trigger(plan: records.Plan, about: str) -> bool:
+def _has_trigger(plan: records.PlanRecord, about: str) -> bool:
     trigger, wanted = plan.trigger, about.strip()
     name = trigger.partition("(")[0]
     return wanted in (trigger, trigger.removeprefix("+"), name) or name == f"+{wanted}"
@@ -290,7 +292,7 @@ def explain_belief(past: Past, asked: Question) -> Explanation:
     return Explanation(asked.written, answer, t, facts, chain(past, last.cause))
 
 
-def _changing_step(past: Past, t: float, change: records.Belief) -> Iterator[Fact]:
+def _changing_step(past: Past, t: float, change: records.BeliefRecord) -> Iterator[Fact]:
     """Return the step of a plan that changed a belief."""
     file, line = place_of(change)
     if file:
@@ -302,7 +304,7 @@ def _changing_step(past: Past, t: float, change: records.Belief) -> Iterator[Fac
         yield Fact("note", "it is an initial belief, or was added from outside of the plans")
 
 
-def _before(changes: Timed[records.Belief]) -> Iterator[Fact]:
+def _before(changes: Timed[records.BeliefRecord]) -> Iterator[Fact]:
     for t, data in reversed(changes[:-1][-MOST_CHANGES:]):
         yield Fact("belief", f"before: {data.op}{shown(data.belief)} at {seconds(t)}", t, data.agent)
     left = len(changes) - 1 - MOST_CHANGES

@@ -165,7 +165,7 @@ def _goals_interrupted(past: Past, t: float, link: int, agent: str, only_own: bo
     """
     acts = (each.cause for each in past.chain(link) if each.cause.sort == "act")
     own = {(each.agent, each.intention) for each in acts}
-    ended: dict[object, Timed[records.Goal]] = {}
+    ended: dict[object, Timed[records.GoalRecord]] = {}
     for at, data in past.goals:
         intention = data.agent, data.intention
         over = data.state in ("dropped", "suspended", "failed") and agent in ("", data.agent)
@@ -174,7 +174,7 @@ def _goals_interrupted(past: Past, t: float, link: int, agent: str, only_own: bo
     return [_interrupted(goals) for goals in ended.values()]
 
 
-def _interrupted(goals: Timed[records.Goal]) -> Fact:
+def _interrupted(goals: Timed[records.GoalRecord]) -> Fact:
     at, data = goals[0]
     count = len(goals) - 1
     more = f" with {count} goal{'s' if count > 1 else ''} above it" if count else ""
@@ -182,7 +182,7 @@ def _interrupted(goals: Timed[records.Goal]) -> Fact:
     return Fact("goal", f"{shown(data.goal)}{more} {data.state} at {seconds(at)}{why}", at, data.agent)
 
 
-def _events_before(past: Past, t: float, link: int, agent: str) -> Timed[records.Deliberation]:
+def _events_before(past: Past, t: float, link: int, agent: str) -> Timed[records.DeliberationRecord]:
     """Return the belief events that agents handled just before a stop; those of the same message, if there are any."""
     events = [
         (at, data)
@@ -197,7 +197,7 @@ def _events_before(past: Past, t: float, link: int, agent: str) -> Timed[records
     return related or events
 
 
-def _event_fact(past: Past, t: float, deliberation: records.Deliberation) -> Fact:
+def _event_fact(past: Past, t: float, deliberation: records.DeliberationRecord) -> Fact:
     """Return a handled event with its plan."""
     plan = past.plan(deliberation.agent, deliberation.chosen)
     name = plan_name(plan) if plan else "`?`"
@@ -205,7 +205,7 @@ def _event_fact(past: Past, t: float, deliberation: records.Deliberation) -> Fac
     return Fact("event", handled, t, deliberation.agent, *place_of(plan))
 
 
-def _interrupting_step(past: Past, deliberation: records.Deliberation) -> Iterator[Fact]:
+def _interrupting_step(past: Past, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
     """Return the step of a chosen plan that suspends or drops intentions, or takes resources from them, if there is
     exactly one.
     """

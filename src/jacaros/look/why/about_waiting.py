@@ -29,11 +29,11 @@ def explain_waiting(past: Past, asked: Question) -> Explanation:
     return Explanation(question, answer, past.end, facts)
 
 
-def _open(past: Past, agent: str) -> Timed[records.Intention]:
+def _open(past: Past, agent: str) -> Timed[records.IntentionRecord]:
     return of_agent([*past.intentions.values()], agent)
 
 
-def _intentions(past: Past, found: Timed[records.Intention]) -> Iterator[Fact]:
+def _intentions(past: Past, found: Timed[records.IntentionRecord]) -> Iterator[Fact]:
     for t, data in found:
         stack = data.stack or ()
         top = stack[-1] if stack else None
@@ -48,7 +48,7 @@ def _intentions(past: Past, found: Timed[records.Intention]) -> Iterator[Fact]:
         yield Fact("intention", f"{told}{f', in `{step}`' if step else ''}", time, data.agent, file, line)
 
 
-def _state(data: records.Intention) -> str:
+def _state(data: records.IntentionRecord) -> str:
     if data.state == "runs":
         return "runs"
     if data.state == "suspended":
@@ -77,8 +77,8 @@ def explain_idleness(past: Past, asked: Question) -> Explanation:
 def _why_idle(
     past: Past,
     agent: str,
-    found: Timed[records.Intention],
-    last: tuple[float, records.Deliberation] | None,
+    found: Timed[records.IntentionRecord],
+    last: tuple[float, records.DeliberationRecord] | None,
 ) -> str:
     now = seconds(past.end)
     if past.exit_code is not None:
@@ -103,7 +103,7 @@ def _ends(past: Past, agent: str) -> Iterator[Fact]:
 
 def _lost(past: Past, agent: str) -> Iterator[Fact]:
     """Return the last failure of each agent that was not recovered."""
-    lost: dict[object, tuple[float, records.Goal]] = {}
+    lost: dict[object, tuple[float, records.GoalRecord]] = {}
     for t, data in of_agent(past.goals, agent):
         if data.state == "failed":
             lost[data.agent, data.id] = t, data

@@ -59,11 +59,11 @@ def _fact(past: Past, link: Link) -> Fact:
     t, cause, record = link
     agent = cause.agent or ""
     match cause.sort, record:
-        case _, records.Deliberation():
+        case _, records.DeliberationRecord():
             plan = past.plan(agent, record.chosen)
             how = f", handled by {plan_name(plan)}" if plan else ""
             return Fact("event", f"{shown(record.trigger)}{how}", t, agent, *place_of(plan))
-        case _, records.Message():
+        case _, records.MessageRecord():
             return Fact("message", message_text(record), t)
         case "act", _:
             plan, file, line = past.plan(agent, cause.plan), *place_of(cause)
@@ -80,12 +80,12 @@ def _fact(past: Past, link: Link) -> Fact:
     return Fact(cause.sort, cause.what, t)
 
 
-def message_text(message: records.Message) -> str:
+def message_text(message: records.MessageRecord) -> str:
     """Return a message between agents as text."""
     return f"{message.sender} to {message.receiver}: {message.performative} {message.content}"
 
 
-def plan_name(plan: records.Plan) -> str:
+def plan_name(plan: records.PlanRecord) -> str:
     """Return a plan as text: label, or trigger, with its context."""
     return f"@{plan.label}" if is_written(plan.label) else f"`{plan_text(plan)}`"
 
@@ -95,7 +95,7 @@ def is_written(label: str | None) -> bool:
     return bool(label) and not str(label).startswith("p__")
 
 
-def plan_text(plan: records.Plan | None) -> str:
+def plan_text(plan: records.PlanRecord | None) -> str:
     """Return trigger and context of a plan."""
     if plan is None:
         return "?"
@@ -107,7 +107,9 @@ def shown(text: object) -> str:
     return _OF_PERCEPTS.sub("[source(percept)]", named(str(text)))
 
 
-def place_of(record: records.Plan | records.Cause | records.Belief | records.Step | None) -> tuple[str, int]:
+def place_of(
+    record: records.PlanRecord | records.CauseRecord | records.BeliefRecord | records.StackedGoal | None,
+) -> tuple[str, int]:
     """Return the file and line that a record names; empty and 0 without one."""
     return ("", 0) if record is None else (record.file or "", record.line or 0)
 

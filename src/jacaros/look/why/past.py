@@ -19,8 +19,8 @@ class Link(NamedTuple):
     """A link of a causal chain: its time, its record of a cause, and for an event or a message its own record."""
 
     t: float
-    cause: records.Cause
-    of: records.Deliberation | records.Message | None = None
+    cause: records.CauseRecord
+    of: records.DeliberationRecord | records.MessageRecord | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +33,10 @@ class Operation:
         last: record of its end; None while it runs.
     """
 
-    data: records.Operation
+    data: records.OperationRecord
     began: float
     ended: float | None = None
-    last: records.Operation | None = None
+    last: records.OperationRecord | None = None
 
     @property
     def reason(self) -> str:
@@ -76,12 +76,12 @@ class Past:
 
     end: float = 0.0
     links: dict[Any, Link] = field(default_factory=dict)
-    deliberations: Timed[records.Deliberation] = field(default_factory=list)
-    beliefs: Timed[records.Belief] = field(default_factory=list)
-    goals: Timed[records.Goal] = field(default_factory=list)
-    programs: dict[str, dict[Any, records.Plan]] = field(default_factory=dict)
+    deliberations: Timed[records.DeliberationRecord] = field(default_factory=list)
+    beliefs: Timed[records.BeliefRecord] = field(default_factory=list)
+    goals: Timed[records.GoalRecord] = field(default_factory=list)
+    programs: dict[str, dict[Any, records.PlanRecord]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
-    intentions: dict[tuple[str, Any], tuple[float, records.Intention]] = field(default_factory=dict)
+    intentions: dict[tuple[str, Any], tuple[float, records.IntentionRecord]] = field(default_factory=dict)
     operations: dict[Any, Operation] = field(default_factory=dict)
     agents: dict[str, tuple[float, str]] = field(default_factory=dict)
     began: dict[str, float] = field(default_factory=dict)
@@ -89,7 +89,7 @@ class Past:
     sources: dict[str, list[str]] = field(default_factory=dict)
     world: list[tuple[float, str, str]] = field(default_factory=list)
     robots: set[str] = field(default_factory=set)
-    debug: records.Debug | None = None
+    debug: records.DebugRecord | None = None
     exit_code: int | None = None
 
     @classmethod
@@ -111,60 +111,62 @@ class Past:
 
     def _take(self, t: float, data: Any) -> None:
         match data:
-            case records.Cause():
+            case records.CauseRecord():
                 known = self.links.get(data.id)
                 at = t if data.at is None else data.at
                 # The record of a deliberation or an operation has more details than its link.
                 self.links[data.id] = Link(at, data) if known is None else known._replace(t=at)
-            case records.Deliberation():
+            case records.DeliberationRecord():
                 self.deliberations.append((t, data))
-                cause = records.Cause(data.id, "event", data.trigger, data.parent or 0, agent=data.agent)
+                cause = records.CauseRecord(
+                    data.id, "event", data.trigger, data.parent or 0, agent=data.agent
+                )
                 self.links[data.id] = Link(self.links[data.id].t if data.id in self.links else t, cause, data)
-            case records.Operation():
+            case records.OperationRecord():
                 self._take_operation(t, data)
-            case records.Message(id=int(number)) if number not in self.links:
-                cause = records.Cause(number, "message", data.content, data.cause or 0)
+            case records.MessageRecord(id=int(number)) if number not in self.links:
+                cause = records.CauseRecord(number, "message", data.content, data.cause or 0)
                 self.links[number] = Link(t, cause, data)
             case _:
                 self._take_state(t, data)
 
     def _take_state(self, t: float, data: Any) -> None:
         match data:
-            case records.Program():
+            case records.ProgramRecord():
                 self.programs[data.agent] = {each.id: each for each in data.plans or ()}
                 self.rules[data.agent] = list(data.rules or ())
-            case records.Intention(state="over"):
+            case records.IntentionRecord(state="over"):
                 self.intentions.pop((data.agent, data.id), None)
-            case records.Intention():
+            case records.IntentionRecord():
                 self.intentions[data.agent, data.id] = t, data
-            case records.Agent():
+            case records.AgentRecord():
                 self.agents[data.agent] = t, data.state
                 self.began.setdefault(data.agent, t)
                 if data.state == "ended":
                     for key in [key for key in self.intentions if key[0] == data.agent]:
                         del self.intentions[key]
-            case records.Source():
+            case records.SourceRecord():
                 self.sources[data.file] = data.text.split("\n")
-            case records.Artifact(robot=str(robot)):  # the record of a disposed artifact has no robot
+            case records.ArtifactRecord(robot=str(robot)):  # the record of a disposed artifact has no robot
                 self.robots_of[data.artifact] = robot
                 self.robots.add(robot)
-            case records.Debug():
+            case records.DebugRecord():
                 self.debug = data
-            case records.Ended():
+            case records.EndedRecord():
                 self.exit_code = data.code
-            case records.Belief():
+            case records.BeliefRecord():
                 self.beliefs.append((t, data))
-            case records.Goal():
+            case records.GoalRecord():
                 self.goals.append((t, data))
 
-    def _take_operation(self, t: float, data: records.Operation) -> None:
+    def _take_operation(self, t: float, data: records.OperationRecord) -> None:
         if data.state != "began":
             known = self.operations.get(data.id, Operation(data, t))
             self.operations[data.id] = Operation(known.data, known.began, t, data)
             return
         self.operations[data.id] = Operation(data, t)
         if data.id not in self.links:
-            cause = records.Cause(
+            cause = records.CauseRecord(
                 data.id,
                 "operation",
                 data.operation,
@@ -174,11 +176,11 @@ class Past:
             )
             self.links[data.id] = Link(t, cause)
 
-    def plan(self, agent: str | None, plan: Any) -> records.Plan | None:
+    def plan(self, agent: str | None, plan: Any) -> records.PlanRecord | None:
         """Return a plan of an agent; None if it is unknown."""
         return self.programs.get(agent or "", {}).get(plan)
 
-    def plans(self, agent: str = "") -> Iterator[tuple[str, records.Plan]]:
+    def plans(self, agent: str = "") -> Iterator[tuple[str, records.PlanRecord]]:
         """Iterate over all plans with their agents, or the plans of *agent*."""
         for name, plans in self.programs.items():
             if agent in ("", name):

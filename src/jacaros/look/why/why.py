@@ -301,14 +301,14 @@ class Announcer:
                         self._unmet.pop(asked, None)
                         self._tell(explanation.text())
 
-    def _explain(self, asked: str, t: float, record: records.Event) -> Explanation | None:
+    def _explain(self, asked: str, t: float, record: records.EventRecord) -> Explanation | None:
         past = Past.of(self._so_far())
         match record:
-            case records.Deliberation():
+            case records.DeliberationRecord():
                 return explain_deliberation(past, asked, t, record)
-            case records.Belief() if not _has_plan(past, record):
+            case records.BeliefRecord() if not _has_plan(past, record):
                 return explain_event(past, Question(asked, about=asked, agent=record.agent))
-            case records.Goal():
+            case records.GoalRecord():
                 return Explanation(asked, f"{record.agent}: {goal_text(t, record)}", t)
         return None
 
@@ -321,7 +321,7 @@ _READERS: Mapping[str, Callable[[Any], str]] = {
 """Functions that return the trigger of an explained event, by kind of record."""
 
 
-def _has_plan(past: Past, change: records.Belief) -> bool:
+def _has_plan(past: Past, change: records.BeliefRecord) -> bool:
     """Return whether a plan may handle a belief change. Then the event is explained when it is handled."""
     name = name_of(change.belief)
     triggers = (plan.trigger for _, plan in past.plans(change.agent))

@@ -15,7 +15,7 @@ from types import FrameType, TracebackType
 from jacaros.robots.ros import lifetime
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.message import stamp
-from jacaros.robots.world.data.ground_truth import Record, event_record, header
+from jacaros.robots.world.data.ground_truth import JsonRecord, event_record, header
 from jacaros.robots.world.node import SimNode
 from jacaros.robots.world.physics.world import World
 from jacaros.runtime.clock import Clock, Timer
@@ -54,7 +54,7 @@ class GroundTruthFile:
             self._write(event_record(event))
         self._stop_listening = truth.listen(self._write)
 
-    def _write(self, record: Record) -> None:
+    def _write(self, record: JsonRecord) -> None:
         self._output.write(json.dumps(record) + "\n")
 
     def __enter__(self) -> "GroundTruthFile":

@@ -22,7 +22,7 @@ from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest
 from jacaros.artifacts.env.values import text as value_text
-from jacaros.look.records.records import Number
+from jacaros.look.records.records import FiniteNumber
 from jacaros.robots.world import World
 from jacaros.robots.world.data.world import PersonDescription
 from jacaros.runtime.clock import of_run
@@ -163,7 +163,7 @@ def debug_commands(debugger: Debugger) -> Mapping[str, Command]:
     def step(what: Step, agent: Text | None = None) -> None:
         debugger.step(what, agent)
 
-    def speed(factor: Number) -> None:
+    def speed(factor: FiniteNumber) -> None:
         debugger.speed = factor
 
     def breakpoint(at: dict[str, Any], op: Literal["add", "remove"]) -> list[str]:
@@ -194,14 +194,19 @@ def world_commands(system: System, world: World, show: Callable[[], None]) -> Ma
         _refuse(world.move_door(name, open))
 
     def obstacle(
-        x: Number | None = None, y: Number | None = None, radius: Number = RADIUS, remove: Text | None = None
+        x: FiniteNumber | None = None,
+        y: FiniteNumber | None = None,
+        radius: FiniteNumber = RADIUS,
+        remove: Text | None = None,
     ) -> str:
         if remove is None:
             return world.add_obstacle(*_place(x, y), radius)
         world.remove_obstacle(remove)
         return remove
 
-    def person(x: Number | None = None, y: Number | None = None, remove: Text | None = None) -> str:
+    def person(
+        x: FiniteNumber | None = None, y: FiniteNumber | None = None, remove: Text | None = None
+    ) -> str:
         if remove is not None:
             world.remove_person(remove)
             return remove
@@ -218,10 +223,10 @@ def world_commands(system: System, world: World, show: Callable[[], None]) -> Ma
         else:
             world.faults.end(name)
 
-    def move_robot(robot: Text, x: Number, y: Number, yaw: Number | None = None) -> None:
+    def move_robot(robot: Text, x: FiniteNumber, y: FiniteNumber, yaw: FiniteNumber | None = None) -> None:
         world.place(robot, x, y, yaw)
 
-    def battery(robot: Text, level: Number) -> None:
+    def battery(robot: Text, level: FiniteNumber) -> None:
         world.set_battery(robot, level)
 
     found: list[Command] = [obstacle, person]

@@ -16,7 +16,7 @@ from msgspec import to_builtins
 from jacaros.look.page.scene import row_of
 from jacaros.look.records.lasting import Lasting
 from jacaros.look.records.line_format import encoded
-from jacaros.look.records.records import Frame, Happened, Line
+from jacaros.look.records.records import EventLine, Frame, RecordingLine
 from jacaros.runtime.clock import real_time
 
 QUEUED = 10_000
@@ -43,7 +43,7 @@ class LiveRecord:
 
     __slots__ = ("_text", "data", "newest", "number")
 
-    def __init__(self, number: int, data: Line, newest: str | None = None) -> None:
+    def __init__(self, number: int, data: RecordingLine, newest: str | None = None) -> None:
         self.number, self.data, self.newest = number, data, newest
         self._text: str | None = None
 
@@ -186,7 +186,7 @@ class Past:
         if len(kept) > limit:
             forgotten = kept.popleft()
             match forgotten.data:
-                case Happened(event=event, data=data):
+                case EventLine(event=event, data=data):
                     self._before.take(event, data, forgotten)
                 case data:
                     self._before.take(type(data).__name__, {}, forgotten)

@@ -12,7 +12,7 @@ from jacaros.look.page.page import lines_of, title_of
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records import records
 from jacaros.look.records.recording import Recording
-from jacaros.look.records.records import VERSION, Frame, Number
+from jacaros.look.records.records import VERSION, FiniteNumber, Frame
 from jacaros.look.why.why import explain
 
 _NEWEST = ("laser", "believed")
@@ -41,7 +41,7 @@ class LiveView:
     def of_recording(cls, recording: Recording) -> "LiveView":
         """Return a view of a recording, which answers questions."""
 
-        def why(question: Text, at: Number | None = None) -> str:
+        def why(question: Text, at: FiniteNumber | None = None) -> str:
             return explain(recording.events, question, at).text()
 
         commands = Commands()
@@ -57,7 +57,7 @@ class LiveView:
 
     def world(self, drawing: Mapping[str, Any]) -> None:
         """Show the world."""
-        self.take(records.World(version=VERSION, world=dict(drawing)))
+        self.take(records.WorldLine(version=VERSION, world=dict(drawing)))
 
     def frame(self, t: float, robots: Iterable[RobotView]) -> None:
         """Show the robots at a time."""
@@ -74,12 +74,12 @@ class LiveView:
 
     def text(self, t: float, agent: str, text: str) -> None:
         """Show a line of an agent's output."""
-        self.take(records.Text(round(t, 3), agent, text))
+        self.take(records.TextLine(round(t, 3), agent, text))
 
     def event(self, t: float, kind: str, data: Mapping[str, Any]) -> None:
         """Show an event."""
         newest = f"{kind} {data.get('robot')}" if kind in _NEWEST else None
-        self.take(records.Happened(t, kind, data), newest)
+        self.take(records.EventLine(t, kind, data), newest)
 
     def commands_changed(self) -> None:
         """Tell the pages which commands are available from now on."""
@@ -89,13 +89,13 @@ class LiveView:
     def close(self) -> None:
         """Do nothing: there is nothing to close."""
 
-    def take(self, data: records.Line, newest: str | None = None) -> None:
+    def take(self, data: records.RecordingLine, newest: str | None = None) -> None:
         """Keep and deliver a record. Of those with the same subject in *newest*, only the last one matters."""
         record = self._record(data, newest)
         self._past.take(record)
         self._offer(record)
 
-    def _record(self, data: records.Line, newest: str | None) -> LiveRecord:
+    def _record(self, data: records.RecordingLine, newest: str | None) -> LiveRecord:
         self._number += 1
         return LiveRecord(self._number, data, newest)
 

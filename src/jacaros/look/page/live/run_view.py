@@ -19,7 +19,7 @@ from jacaros.look.page.live.mind_commands import mind_commands
 from jacaros.look.page.live.server import LiveServer, bound_socket
 from jacaros.look.page.watch import Watch, watch_of
 from jacaros.look.records import records
-from jacaros.look.records.records import Number, Record
+from jacaros.look.records.records import FiniteNumber, Record
 from jacaros.look.why.why import explain
 from jacaros.robots.world import World
 from jacaros.runtime.clock import outside_run, start_thread
@@ -92,8 +92,8 @@ class RunView:
         """Add the debugger's commands, and show its state."""
         debugger, history = self._system.debugger, self._system.history()
         self.commands.add(debug_commands(debugger))
-        history.record(records.Debug(**debugger.state.data()))
-        self._end_debug = debugger.listen(lambda state: history.record(records.Debug(**state.data())))
+        history.record(records.DebugRecord(**debugger.state.data()))
+        self._end_debug = debugger.listen(lambda state: history.record(records.DebugRecord(**state.data())))
 
     async def close(self) -> None:
         """Send waiting records, and disconnect the pages."""
@@ -115,7 +115,7 @@ class RunView:
             else:
                 await self._server.close()
 
-    async def _why(self, question: Text, at: Number | None = None) -> str:
+    async def _why(self, question: Text, at: FiniteNumber | None = None) -> str:
         """Answer a question about the run so far, as lines; in a thread, because many records take seconds."""
         async with self._explaining:
             records = self._system.keep_history().all()
@@ -132,7 +132,7 @@ class RunView:
             self._rested_at = now + REST * (now - begun)
 
     def _note(self, what: str) -> None:
-        self._system.history().record(records.Intervention(what))
+        self._system.history().record(records.InterventionRecord(what))
 
 
 @asynccontextmanager

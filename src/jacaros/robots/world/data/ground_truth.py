@@ -15,7 +15,7 @@ from jacaros.robots.plane.pose import Pose
 from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.texts import file_text
 
-Record = dict[str, Any]
+JsonRecord = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""
 
 
@@ -115,9 +115,9 @@ class GroundTruth:
             days; listeners still receive every event.
     """
 
-    def __init__(self, robots: Iterable[str] = (), world: Record | None = None) -> None:
+    def __init__(self, robots: Iterable[str] = (), world: JsonRecord | None = None) -> None:
         self.events: list[Event] = []
-        self.world: Record = world or {}
+        self.world: JsonRecord = world or {}
         self.dirt: dict[tuple[str, str], float] = {
             (room["name"], dirt["kind"]): dirt["grams"]
             for room in self.world.get("rooms", ())
@@ -125,8 +125,8 @@ class GroundTruth:
         }
         self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
         self._latest: dict[str, Sample] = {}
-        self._listeners: list[Callable[[Record], None]] = []
-        self._event_listeners: list[Callable[[Record], None]] = []
+        self._listeners: list[Callable[[JsonRecord], None]] = []
+        self._event_listeners: list[Callable[[JsonRecord], None]] = []
         self.keep: int | None = None
 
     @property
@@ -174,12 +174,12 @@ class GroundTruth:
                 content.update(repr(tuple(sample)).encode())
         return content.hexdigest()
 
-    def listen(self, listener: Callable[[Record], None]) -> Callable[[], None]:
+    def listen(self, listener: Callable[[JsonRecord], None]) -> Callable[[], None]:
         """Call *listener* with every record from now on; return a function that removes it."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
-    def listen_to_events(self, listener: Callable[[Record], None]) -> Callable[[], None]:
+    def listen_to_events(self, listener: Callable[[JsonRecord], None]) -> Callable[[], None]:
         """Call *listener* with the record of every event from now on; return a function that removes it."""
         self._event_listeners.append(listener)
         return lambda: self._event_listeners.remove(listener)
@@ -218,7 +218,7 @@ class GroundTruth:
         if self.keep is not None and len(items) >= 2 * self.keep:
             del items[: -self.keep]
 
-    def _tell(self, record: Record) -> None:
+    def _tell(self, record: JsonRecord) -> None:
         for listener in tuple(self._listeners):
             listener(record)
 
@@ -239,7 +239,7 @@ class GroundTruth:
             raise JacarosError(message) from None
 
     @classmethod
-    def _of_records(cls, records: list[Record]) -> "GroundTruth":
+    def _of_records(cls, records: list[JsonRecord]) -> "GroundTruth":
         if not records or records[0].get("kind") != "world":
             raise ValueError("its first line does not describe a world")
         truth = cls([robot["name"] for robot in records[0]["world"]["robots"]], records[0]["world"])
@@ -247,7 +247,7 @@ class GroundTruth:
             truth._take(record)
         return truth
 
-    def _take(self, record: Record) -> None:
+    def _take(self, record: JsonRecord) -> None:
         if record["kind"] == "sample":
             self.record_sample(record["robot"], Sample(*(record[name] for name in Sample._fields)))
         elif record["kind"] == "event":
@@ -257,7 +257,7 @@ class GroundTruth:
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 
 
-def _records(path: str | Path) -> list[Record]:
+def _records(path: str | Path) -> list[JsonRecord]:
     lines = file_text(path, 2**32).splitlines()
     records = []
     for number, line in enumerate(lines, 1):
@@ -270,11 +270,11 @@ def _records(path: str | Path) -> list[Record]:
     return records
 
 
-def event_record(event: Event) -> Record:
+def event_record(event: Event) -> JsonRecord:
     """Return the record of an event."""
     return {**event._asdict(), "kind": "event", "event": event.kind}
 
 
-def header(world: Record, seed: int, epoch: float) -> Record:
+def header(world: JsonRecord, seed: int, epoch: float) -> JsonRecord:
     """Return the first record of a file; *epoch* is the clock's time (seconds) at which the world's time was 0."""
     return {"kind": "world", "world": world, "seed": seed, "epoch": epoch}

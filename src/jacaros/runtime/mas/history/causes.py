@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import call_text, limited, message_text, request_text
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause
@@ -93,7 +93,7 @@ class CauseRecords:
         self,
         clock: Clock,
         beginning: float,
-        tell: Tell,
+        tell: RecordSink,
         find_listener: Callable[[Any], Callable[[str, Any], None] | None] = lambda message: None,
     ) -> None:
         self._clock, self._tell, self._find_listener = clock, tell, find_listener
@@ -196,7 +196,7 @@ class CauseRecords:
     def _record(self, link: Link) -> None:
         (number, parent, kind, what), moment, about = link
         at = round(moment - self._beginning, 3)
-        record = records.Cause(number, kind, what, parent, at)
+        record = records.CauseRecord(number, kind, what, parent, at)
         if about is not None and kind in _DETAILS:
             for field, value in _DETAILS[kind](what, about).items():
                 setattr(record, field, value)

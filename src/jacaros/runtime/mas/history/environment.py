@@ -11,7 +11,7 @@ from jacaros.artifacts.env.operation import OperationOutcome
 from jacaros.artifacts.env.property import ObservableProperty, Observation
 from jacaros.artifacts.env.workspace import Workspace
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import call_text, json_values, limited, output_texts, request_text
 from jacaros.runtime.clock import Clock
 
@@ -30,7 +30,7 @@ class EnvironmentRecords:
         robot_of: returns the robot that an artifact drives or senses, or None.
     """
 
-    def __init__(self, clock: Clock, tell: Tell, robot_of: Callable[[object], str | None]) -> None:
+    def __init__(self, clock: Clock, tell: RecordSink, robot_of: Callable[[object], str | None]) -> None:
         self._clock, self._tell, self._robot_of = clock, tell, robot_of
         self._environment: Environment | None = None
         self._known: set[ArtifactId] = set()
@@ -38,7 +38,7 @@ class EnvironmentRecords:
         """Time of the last record of each property."""
         self._held: dict[_Key, tuple[ObservableProperty, int | None]] = {}
         """Values that came too soon after the last record, and their causes."""
-        self._running: dict[OperationExecution, records.Operation] = {}
+        self._running: dict[OperationExecution, records.OperationRecord] = {}
 
     def observe(self, environment: Environment) -> None:
         """Observe *environment*, and record its current state."""
@@ -62,7 +62,7 @@ class EnvironmentRecords:
         """Record that an artifact is created or disposed."""
         made = self._environment.artifact(artifact) if present and self._environment is not None else None
         state, robot = "made" if present else "disposed", self._robot_of(made) if made is not None else None
-        self._tell(records.Artifact(artifact.path, artifact.type_name, state, robot))
+        self._tell(records.ArtifactRecord(artifact.path, artifact.type_name, state, robot))
         if present:
             self._known.add(artifact)
             if made is not None:
@@ -84,7 +84,7 @@ class EnvironmentRecords:
     def focused(self, artifact: ArtifactId, agent: str, on: bool) -> None:
         """Record that an agent focuses an artifact, or stops focusing it."""
         if artifact in self._known:
-            self._tell(records.Focus(agent, artifact.path, on))
+            self._tell(records.FocusRecord(agent, artifact.path, on))
 
     def published(self, observation: Observation) -> None:
         """Record new values and signals."""
@@ -94,7 +94,7 @@ class EnvironmentRecords:
         number = cause.id if cause is not None else None
         for signal in observation.signals:
             written = call_text(signal.name, signal.arguments)
-            self._tell(records.Signal(artifact.path, written, number))
+            self._tell(records.SignalRecord(artifact.path, written, number))
         for _, new in observation.changed:
             self._property(artifact, new, number)
         for added in observation.added:
@@ -108,7 +108,7 @@ class EnvironmentRecords:
         if request.artifact not in self._known:
             return
         cause, parent = execution.cause, request.cause
-        self._running[execution] = began = records.Operation(
+        self._running[execution] = began = records.OperationRecord(
             cause.id if cause is not None else 0,
             request.artifact.path,
             request_text(request),
@@ -144,12 +144,12 @@ class EnvironmentRecords:
     def _record(self, key: _Key, new: ObservableProperty, cause: int | None, now: float) -> None:
         self._recorded[key] = now
         self._held.pop(key, None)
-        self._tell(records.Property(key[0].path, new.name, new.key, json_values(new.values), cause))
+        self._tell(records.PropertyRecord(key[0].path, new.name, new.key, json_values(new.values), cause))
 
     def _property_gone(self, artifact: ArtifactId, old: ObservableProperty, cause: int | None) -> None:
         self._recorded.pop((artifact, old.key), None)
         self._held.pop((artifact, old.key), None)
-        self._tell(records.Property(artifact.path, old.name, old.key, None, cause))
+        self._tell(records.PropertyRecord(artifact.path, old.name, old.key, None, cause))
 
     def flush(self, all_of_them: bool = False) -> None:
         """Record the newest values that were held back for `PERIOD` seconds. Call it a few times a second."""

@@ -9,7 +9,7 @@ from jacaros.agents.mind.rules.meta_events import observe_goals
 from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.substitution import is_ground
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import named
 from jacaros.runtime.mas.agents.host import AgentHost
 
@@ -39,10 +39,10 @@ class GoalRecords:
     its ``run``, its operations and the running behaviours of its trees, all on one stack.
 
     Args:
-        tell: takes each `records.Goal`, with ids counted from 1.
+        tell: takes each `records.GoalRecord`, with ids counted from 1.
     """
 
-    def __init__(self, tell: Tell) -> None:
+    def __init__(self, tell: RecordSink) -> None:
         self._tell = tell
         self._numbers = count(1)
         self._goals: dict[tuple[str, int], _Goal] = {}
@@ -97,7 +97,7 @@ class GoalRecords:
         is_news = known.state != shown and not (known.state in _AT_WORK and shown in _AT_WORK)
         known.state, known.text, known.intention = shown, goal, intention
         if is_news:
-            self._tell(records.Goal(agent, named(goal), shown, known.number, intention, why or None))
+            self._tell(records.GoalRecord(agent, named(goal), shown, known.number, intention, why or None))
         if state in _OVER:
             del self._goals[agent, which]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from jacaros.agents.mind.mind import Mind
 from jacaros.look.records import records
 from jacaros.look.records.lasting import Lasting
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.goals import GoalRecords
@@ -21,7 +21,7 @@ from jacaros.runtime.trace import Cause
 from jacaros.version import VERSION
 
 if TYPE_CHECKING:
-    from jacaros.robots.world.data.ground_truth import Record
+    from jacaros.robots.world.data.ground_truth import JsonRecord
     from jacaros.robots.world.physics.world import World
 
 KEPT = 50_000
@@ -46,11 +46,11 @@ Listener = Callable[[float, str, Mapping[str, Any]], None]
 """Called with ``t``, ``event`` and ``data`` of a record. See `Happening`."""
 
 
-def run_record(system: ObservedSystem) -> records.Run:
+def run_record(system: ObservedSystem) -> records.RunRecord:
     """Return the record ``run``."""
     clock, options = system.clock, system.options
     kind = "fast" if clock.virtual else "ros" if options.ros_clock else "real"
-    return records.Run(system.deployment.name, kind, options.ros, options.seed, VERSION)
+    return records.RunRecord(system.deployment.name, kind, options.ros, options.seed, VERSION)
 
 
 class History:
@@ -127,13 +127,13 @@ class History:
         """Record the end of the run. Open goals are dropped."""
         if self._starts and self._agents is not None:
             self._agents.run_ended()
-            self.record(records.Ended(code))
+            self.record(records.EndedRecord(code))
 
     def t(self, moment: float | None = None) -> float:
         """Return the seconds from the beginning to a moment of the run's clock, or to now, with millisecond precision."""
         return round((self._system.clock.now() if moment is None else moment) - self.beginning, 3)
 
-    def record(self, event: records.Event) -> None:
+    def record(self, event: records.EventRecord) -> None:
         """Keep a record of something that happened now, and pass it to the listeners."""
         self._take(event.kind, event.plain())
 
@@ -155,7 +155,7 @@ class History:
     def _observe_world(self, world: "World") -> None:
         self._ends.callback(world.ground_truth.listen_to_events(self._hear_world))
 
-    def _hear_world(self, record: "Record") -> None:
+    def _hear_world(self, record: "JsonRecord") -> None:
         if record["event"] != "battery":  # each percent of each robot, which is also in the frames
             self._take(record["event"], {"robot": record["robot"], **record["data"]})
 
@@ -170,7 +170,7 @@ class AgentRecords:
         tell: takes the records.
     """
 
-    def __init__(self, system: ObservedSystem, links: CauseRecords, t: Moments, tell: Tell) -> None:
+    def __init__(self, system: ObservedSystem, links: CauseRecords, t: Moments, tell: RecordSink) -> None:
         self._system, self._tell = system, tell
         self._looks = Looks(system.clock)
         self._goals = GoalRecords(tell)
@@ -216,7 +216,7 @@ class AgentRecords:
     def _began(self, host: AgentHost) -> None:
         mind = host.mind
         what = "asl" if isinstance(mind, Mind) else "python"
-        self._tell(records.Agent(host.name, "began", what))
+        self._tell(records.AgentRecord(host.name, "began", what))
         self._goals.listen(host)
         ends = self._ends[host.name] = ExitStack()
         if isinstance(mind, Mind):
@@ -235,7 +235,7 @@ class AgentRecords:
         self._minds.pop(name, None)
         self._ends.pop(name, ExitStack()).close()
         self._goals.drop(name)
-        self._tell(records.Agent(name, "ended", ""))
+        self._tell(records.AgentRecord(name, "ended", ""))
 
     def _cause(self, sender: str) -> Cause | None:
         mind = self._minds.get(sender)

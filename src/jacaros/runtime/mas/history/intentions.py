@@ -25,7 +25,7 @@ from jacaros.agents.mind.state.triggers import literal_of
 from jacaros.agents.terms.substitution import is_ground
 from jacaros.agents.terms.values import Term, annotations_of
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import cut, named, shown, shown_event
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.mas.history.programs import PlanNumbers
@@ -85,7 +85,7 @@ class _Level(NamedTuple):
     above: Frame | None
     step: object
     lasting: bool
-    data: records.Step
+    data: records.StackedGoal
 
     def is_still(self, frame: Frame, above: Frame | None) -> bool:
         """Return whether nothing of it has changed."""
@@ -118,7 +118,7 @@ class IntentionRecords:
         numbers: PlanNumbers,
         cause: Callable[[Intention], Cause | None],
         t: Moments,
-        tell: Tell,
+        tell: RecordSink,
         looks: Looks,
     ) -> None:
         self._mind, self._cause, self._t = mind, cause, t
@@ -138,7 +138,7 @@ class IntentionRecords:
         alive = self._mind.alive
         for number in [number for number in self._seen if number not in alive]:
             del self._seen[number]
-            self._tell(records.Intention(self._mind.name, number, "over"))
+            self._tell(records.IntentionRecord(self._mind.name, number, "over"))
         for _, intention in zip(range(MOST), list(alive.values()), strict=False):
             if frames := intention.frames:
                 parts = frames[-1], frames[-1][STEP], intention.waiting, intention.suspended
@@ -167,13 +167,13 @@ class IntentionRecords:
             span, step = place_of_call(frame, above[GOAL][0].functor), shown_goal(above)
             lasting = all(is_ground(literal_of(each[GOAL], ())) for each in (frame, above))
         file, line = (plan.file, 0) if span is None else (span.file.name, span.line)
-        data = records.Step(shown_goal(frame), self._numbers[plan], file, line, step)
+        data = records.StackedGoal(shown_goal(frame), self._numbers[plan], file, line, step)
         return _Level(frame, above, frame[STEP], lasting, data)
 
-    def _record(self, intention: Intention, stack: list[records.Step]) -> None:
+    def _record(self, intention: Intention, stack: list[records.StackedGoal]) -> None:
         waiting, suspended, cause = intention.waiting, intention.suspended, self._cause(intention)
         self._tell(
-            records.Intention(
+            records.IntentionRecord(
                 self._mind.name,
                 intention.id,
                 "suspended" if suspended is not None else "waits" if waiting is not None else "runs",

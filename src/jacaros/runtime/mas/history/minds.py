@@ -13,7 +13,7 @@ from jacaros.agents.mind.state.plan import OpenFact, Plan, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.terms.values import Annotated, Functor, Term, atom
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import shown, shown_event
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.intentions import IntentionRecords, Looks, Moments, place_of
@@ -82,7 +82,7 @@ class MessageRecords:
         tell: takes the records.
     """
 
-    def __init__(self, links: Tracer, cause: Callable[[str], Cause | None], tell: Tell) -> None:
+    def __init__(self, links: Tracer, cause: Callable[[str], Cause | None], tell: RecordSink) -> None:
         self._links, self._cause, self._tell = links, cause, tell
         self._known: dict[str, Cause] = {}
 
@@ -105,7 +105,7 @@ class MessageRecords:
     def _record(self, message: SpeechAct, link: Cause, state: str) -> None:
         question = self._known.get(message.in_reply_to) if message.in_reply_to is not None else None
         self._tell(
-            records.Message(
+            records.MessageRecord(
                 link.id,
                 message.sender,
                 message.receiver,
@@ -136,7 +136,7 @@ class Shared(NamedTuple):
         programs, messages, looks: record programs and messages, check intentions.
     """
 
-    tell: Tell
+    tell: RecordSink
     t: Moments
     links: CauseRecords
     examinations: Allowance
@@ -211,7 +211,7 @@ class MindRecords:
         chosen = None if frame is None else frame[PLAN]
         place = plans.index(chosen) if chosen in plans else len(plans) if chosen is None else 0
         self._shared.tell(
-            records.Deliberation(
+            records.DeliberationRecord(
                 link.id,
                 self._mind.name,
                 trigger,
@@ -243,7 +243,7 @@ class MindRecords:
     ) -> None:
         """Record a belief that was added or deleted."""
         told = self._shown_fact(operator, symbol, row) + self._shown_annotations(annotations)
-        record = records.Belief(self._mind.name, operator, told, None if cause is None else cause.id)
+        record = records.BeliefRecord(self._mind.name, operator, told, None if cause is None else cause.id)
         current = self._mind.current
         if current is not None:
             place = place_of(current, self._numbers)
@@ -275,8 +275,10 @@ class MindRecords:
             found = self._candidates[kind] = self._mind.library.relevant(kind)
         return found
 
-    def _options(self, goal: Goal, annotations: EventAnnotations, plans: list[Plan]) -> list[records.Option]:
-        options: list[records.Option] = []
+    def _options(
+        self, goal: Goal, annotations: EventAnnotations, plans: list[Plan]
+    ) -> list[records.OptionRecord]:
+        options: list[records.OptionRecord] = []
         if not plans:
             return options
         contexts = FailingContexts(self._mind, goal, annotations)
@@ -284,7 +286,7 @@ class MindRecords:
             if not (self._allowance.take() and self._shared.examinations.take()):
                 break
             if contexts.fits(plan):
-                options.append(records.Option(self._numbers[plan], contexts.stop(plan)))
+                options.append(records.OptionRecord(self._numbers[plan], contexts.stop(plan)))
         return options
 
     # ---- beliefs
@@ -298,7 +300,7 @@ class MindRecords:
                 if not isinstance(entry, Rule):
                     fact = entry.head() if isinstance(entry, OpenFact) else literal(symbol, entry)
                     told = shown(fact) + self._shown_annotations(annotations)
-                    self._shared.tell(records.Belief(self._mind.name, "+", told))
+                    self._shared.tell(records.BeliefRecord(self._mind.name, "+", told))
 
     def _shown_fact(self, operator: str, symbol: Functor, row: tuple[Term, ...]) -> str:
         known = self._facts.pop(id(row), None)

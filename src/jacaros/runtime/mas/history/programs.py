@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.plan import Plan, Rule, every_plan
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.terms.text import text
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import named
 
 
@@ -22,10 +22,10 @@ class ProgramRecords:
         tell: takes the records.
     """
 
-    def __init__(self, tell: Tell) -> None:
+    def __init__(self, tell: RecordSink) -> None:
         self._tell = tell
         self._files: dict[str, str] = {}
-        self._known: dict[int, tuple[ProgramPlans, list[records.Plan]]] = {}
+        self._known: dict[int, tuple[ProgramPlans, list[records.PlanRecord]]] = {}
 
     def begin(self, mind: Mind) -> "PlanNumbers":
         """Record the program of an agent. Return the numbers of its plans."""
@@ -44,9 +44,9 @@ class ProgramRecords:
         for span in (each.span for each in (*(plan.node for plan in library.plans), *rules)):
             if span is not None:
                 self._source(span.file)
-        self._tell(records.Program(mind.name, plans, [_written(rule) for rule in rules]))
+        self._tell(records.ProgramRecord(mind.name, plans, [_written(rule) for rule in rules]))
 
-    def _of_program(self, program: ProgramPlans) -> list[records.Plan]:
+    def _of_program(self, program: ProgramPlans) -> list[records.PlanRecord]:
         known = self._known.get(id(program))
         if known is None:
             numbers = PlanNumbers(program.plans)
@@ -57,7 +57,7 @@ class ProgramRecords:
     def _source(self, file: SourceFile) -> None:
         if self._files.get(file.name) != file.text:
             self._files[file.name] = file.text
-            self._tell(records.Source(file.name, file.text))
+            self._tell(records.SourceRecord(file.name, file.text))
 
 
 class PlanNumbers(dict[Plan, int]):
@@ -77,12 +77,12 @@ class PlanNumbers(dict[Plan, int]):
         return number
 
 
-def _plan(plan: Plan, number: int) -> records.Plan:
+def _plan(plan: Plan, number: int) -> records.PlanRecord:
     node, span = plan.node, plan.node.span
     context = "" if node.context is None else _written(node.context)
     first, last = (0, 0) if span is None else (span.line, span.end_line)
     trigger = named(format_term(node.trigger))
-    return records.Plan(number, trigger, text(plan.label), context, plan.file, first, last)
+    return records.PlanRecord(number, trigger, text(plan.label), context, plan.file, first, last)
 
 
 def _written(node: nodes.Node) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from msgspec.structs import replace
 
 from jacaros.look.records import records
-from jacaros.look.records.records import Tell
+from jacaros.look.records.records import RecordSink
 from jacaros.robots.ros.backend import Backend, GraphContents
 from jacaros.robots.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer
@@ -67,7 +67,7 @@ class RunEnvironmentRecords:
         causes: numbers the causes of the run.
     """
 
-    def __init__(self, system: ObservedSystem, beginning: float, tell: Tell) -> None:
+    def __init__(self, system: ObservedSystem, beginning: float, tell: RecordSink) -> None:
         self._system, self._tell = system, tell
         self._clock = system.clock
         self._moving = RobotRecords(system.clock, tell, self._robot_at, lambda: system.ros.node, self._truths)
@@ -109,7 +109,7 @@ class RunEnvironmentRecords:
 
     def _logged(self, text: str, level: str) -> None:
         if level != "debug":
-            self._tell(records.Log(level, text))
+            self._tell(records.LogRecord(level, text))
 
     # ---- robots
 
@@ -151,9 +151,9 @@ class GraphRecords:
         pause: seconds until the next check; longer while nothing changes.
     """
 
-    def __init__(self, tell: Tell, messages: CauseRecords) -> None:
+    def __init__(self, tell: RecordSink, messages: CauseRecords) -> None:
         self._tell, self._messages = tell, messages
-        self._recorded: list[records.Topic] | None = None
+        self._recorded: list[records.TopicRecord] | None = None
         self.pause = GRAPH_PERIOD
 
     async def look(self, backend: Backend, seconds: float) -> None:
@@ -169,7 +169,7 @@ class GraphRecords:
             if self._recorded is None or len(self._recorded) != len(topics):
                 self.pause = GRAPH_PERIOD
             self._recorded = topics
-            self._tell(records.Graph(backend.node_name, topics))
+            self._tell(records.GraphRecord(backend.node_name, topics))
 
     def _counts(self, backend: Backend) -> dict[tuple[str, str], float]:
         """Return the number of messages since the last call, by topic and direction."""
@@ -185,7 +185,7 @@ class GraphRecords:
 
     def _topics(
         self, contents: GraphContents, counts: Mapping[tuple[str, str], float], seconds: float, node: str
-    ) -> list[records.Topic]:
+    ) -> list[records.TopicRecord]:
         rows = []
         for name, info in sorted(contents.topics.items())[:_MOST_TOPICS]:
             ours = ""
@@ -195,11 +195,11 @@ class GraphRecords:
                 ours = "out"
             rate = round(counts.get((name, ours), 0) / seconds, 1) if ours else 0.0
             publishers, subscribers = len(info.publishers), len(info.subscriptions)
-            rows.append(records.Topic(name, ", ".join(info.types), publishers, subscribers, ours, rate))
+            rows.append(records.TopicRecord(name, ", ".join(info.types), publishers, subscribers, ours, rate))
         return rows
 
 
-def _differ(before: list[records.Topic], now: list[records.Topic]) -> bool:
+def _differ(before: list[records.TopicRecord], now: list[records.TopicRecord]) -> bool:
     if len(before) != len(now):
         return True
     return any(
@@ -236,7 +236,7 @@ class RobotRecords:
     def __init__(
         self,
         clock: Clock,
-        tell: Tell,
+        tell: RecordSink,
         robot_at: Callable[[str], str],
         find_robots: "Callable[[], SimNode | None]",
         truths: Truths,
@@ -285,18 +285,18 @@ class RobotRecords:
 
     def _path(self, robot: str, path: Sequence[tuple[float, float]]) -> None:
         self._paths[robot] = path
-        self._tell(records.Path(robot, [(round(x, 3), round(y, 3)) for x, y in path]))
+        self._tell(records.PathRecord(robot, [(round(x, 3), round(y, 3)) for x, y in path]))
 
     def _belief(self, robot: str, x: float, y: float, yaw: float, astray: bool) -> None:
         if astray:
             self._astray.add(robot)
-            self._tell(records.Believed(robot, round(x, 3), round(y, 3), round(yaw, 3)))
+            self._tell(records.BelievedRecord(robot, round(x, 3), round(y, 3), round(yaw, 3)))
         elif robot in self._astray:
             self._astray.discard(robot)
-            self._tell(records.Believed(robot))
+            self._tell(records.BelievedRecord(robot))
 
 
-def thinned(robot: str, scan: Any) -> records.Laser:
+def thinned(robot: str, scan: Any) -> records.LaserRecord:
     """Return a scan with at most `MOST_RAYS` rays: of adjacent rays the shortest, in whole centimetres."""
     ranges = scan.ranges
     share = max(1, math.ceil(len(ranges) / MOST_RAYS))
@@ -308,4 +308,4 @@ def thinned(robot: str, scan: Any) -> records.Laser:
         rays.append(round(100.0 * float(min(seen))) if seen else 0)
     middle = 0.5 * (share - 1) * scan.angle_increment
     first, step = float(scan.angle_min + middle), float(scan.angle_increment * share)
-    return records.Laser(robot, round(first, 5), round(step, 6), rays)
+    return records.LaserRecord(robot, round(first, 5), round(step, 6), rays)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from jacaros.look.records.records import Deliberation, Plan, Record
+from jacaros.look.records.records import DeliberationRecord, PlanRecord, Record
 from jacaros.look.why.about_events import candidates
 from jacaros.look.why.chains import is_written, place_of, plan_name, plan_text, shown
 from jacaros.look.why.explanation import Fact, seconds
@@ -110,22 +110,24 @@ def compare(
     return Comparison(agent, same, tuple(decisions), only_then, only_now, tuple(waiting), unreadable)
 
 
-def _by_event(past: Past, agent: str) -> dict[str, Timed[Deliberation]]:
-    found: dict[str, Timed[Deliberation]] = defaultdict(list)
+def _by_event(past: Past, agent: str) -> dict[str, Timed[DeliberationRecord]]:
+    found: dict[str, Timed[DeliberationRecord]] = defaultdict(list)
     for t, data in past.deliberations:
         if data.agent == agent:
             found[shown(data.trigger)].append((t, data))
     return found
 
 
-def _rest(first: dict[str, Timed[Deliberation]], other: dict[str, Timed[Deliberation]]) -> tuple[str, ...]:
+def _rest(
+    first: dict[str, Timed[DeliberationRecord]], other: dict[str, Timed[DeliberationRecord]]
+) -> tuple[str, ...]:
     """Return the events that only the first run has, the oldest first."""
     left = [(t, event) for event, handled in first.items() for t, _ in handled[len(other.get(event, ())) :]]
     return tuple(f"{event} at {seconds(t)}" for t, event in sorted(left))
 
 
 def _decision(
-    old: Past, new: Past, t: float, event: str, was: Deliberation, is_now: Deliberation
+    old: Past, new: Past, t: float, event: str, was: DeliberationRecord, is_now: DeliberationRecord
 ) -> Decision:
     then, now = (_chosen(past, data) for past, data in ((old, was), (new, is_now)))
     reasons = tuple(
@@ -134,7 +136,7 @@ def _decision(
     return Decision(t, event, then, now, reasons)
 
 
-def _chosen(past: Past, deliberation: Deliberation) -> Fact | None:
+def _chosen(past: Past, deliberation: DeliberationRecord) -> Fact | None:
     plan = past.plan(deliberation.agent, deliberation.chosen)
     return Fact("plan", plan_name(plan), None, "", *place_of(plan)) if plan else None
 
@@ -154,7 +156,7 @@ class _Identity:
         return self._then.get(then) == self._now.get(now)
 
 
-def _names(plans: dict[Any, Plan], ordered: set[str]) -> Iterator[tuple[Any, tuple[str, str]]]:
+def _names(plans: dict[Any, PlanRecord], ordered: set[str]) -> Iterator[tuple[Any, tuple[str, str]]]:
     seen: Counter[str] = Counter()
     for number, plan in plans.items():
         trigger, label = _trigger(plan), plan.label or ""
@@ -167,7 +169,7 @@ def _names(plans: dict[Any, Plan], ordered: set[str]) -> Iterator[tuple[Any, tup
             yield number, ("text", plan_text(plan))
 
 
-def _trigger(plan: Plan) -> str:
+def _trigger(plan: PlanRecord) -> str:
     """Return the kind of event that a plan is for: name and arguments without values."""
     return shown(plan.trigger).partition("(")[0]
 

@@ -12,7 +12,7 @@ from jacaros.agents.language.lowering import lower_value
 from jacaros.agents.mind.state.act import Act, Completion
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import String, Term, Var, deref, functor
-from jacaros.look.records.records import Data, Operation, Record
+from jacaros.look.records.records import Data, OperationRecord, Record
 from jacaros.look.why.chains import shown
 from jacaros.look.why.past import Past
 from jacaros.look.why.patterns import name_of
@@ -139,7 +139,7 @@ class RecordedAct:
     written: str
     began: float
     ended: float | None
-    end: Operation | None = None
+    end: OperationRecord | None = None
 
 
 class RecordedActs:

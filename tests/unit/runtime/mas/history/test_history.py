@@ -42,18 +42,18 @@ def observed(act):
 
 def test_old_records_are_dropped_except_those_that_describe_present_agents():
     def act(history):
-        history.record(records.Agent("ann", "began"))
-        history.record(records.Agent("bob", "began"))
+        history.record(records.AgentRecord("ann", "began"))
+        history.record(records.AgentRecord("bob", "began"))
         for number in range(3):
-            history.record(records.Log("info", str(number)))
+            history.record(records.LogRecord("info", str(number)))
         assert [data for _, _, data in history.all()][:2] == [
             {"agent": "ann", "state": "began"},
             {"agent": "bob", "state": "began"},
         ]
         assert [data.get("text") for _, _, data in history.events] == ["0", "1", "2"]
-        history.record(records.Agent("ann", "ended"))
+        history.record(records.AgentRecord("ann", "ended"))
         for number in range(3):
-            history.record(records.Log("info", str(number)))
+            history.record(records.LogRecord("info", str(number)))
         assert [data.get("agent") for _, _, data in history.all()] == ["bob", None, None, None]
 
     observed(act)
@@ -62,13 +62,13 @@ def test_old_records_are_dropped_except_those_that_describe_present_agents():
 def test_nothing_of_an_ended_agent_lasts():
     def act(history):
         for name in ("ann", "bob"):
-            history.record(records.Agent(name, "began"))
-            history.record(records.Belief(name, "+", "kind"))
-            history.record(records.Goal(name, "!go", "pursued", 1))
-            history.record(records.Goal(name, "!go", "suspended", 1))
-        history.record(records.Agent("ann", "ended"))
+            history.record(records.AgentRecord(name, "began"))
+            history.record(records.BeliefRecord(name, "+", "kind"))
+            history.record(records.GoalRecord(name, "!go", "pursued", 1))
+            history.record(records.GoalRecord(name, "!go", "suspended", 1))
+        history.record(records.AgentRecord("ann", "ended"))
         for number in range(3):
-            history.record(records.Log("info", str(number)))
+            history.record(records.LogRecord("info", str(number)))
         assert [(event, data.get("state")) for _, event, data in history.all()[:-3]] == [
             ("agent", "began"),
             ("belief", None),
@@ -84,10 +84,10 @@ def test_a_listener_hears_until_it_ends():
     def act(history):
         heard = []
         end = history.listen(lambda t, event, data: heard.append(data["text"]))
-        history.record(records.Log("info", "one"))
+        history.record(records.LogRecord("info", "one"))
         end()
         end()
-        history.record(records.Log("info", "two"))
+        history.record(records.LogRecord("info", "two"))
         assert heard == ["one"]
 
     observed(act)
@@ -113,10 +113,10 @@ def test_the_last_stop_ends_the_observation(starts):
 def test_an_artifact_that_was_disposed_is_not_kept():
     def act(history):
         for state in ("made", "disposed"):
-            history.record(records.Artifact("/main/lamp", state=state))
-        history.record(records.Artifact("/main/door", state="made"))
+            history.record(records.ArtifactRecord("/main/lamp", state=state))
+        history.record(records.ArtifactRecord("/main/door", state="made"))
         for number in range(3):
-            history.record(records.Log("info", str(number)))
+            history.record(records.LogRecord("info", str(number)))
         assert [data.get("artifact") for _, _, data in history.all()] == ["/main/door", None, None, None]
 
     observed(act)
