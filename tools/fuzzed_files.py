@@ -24,7 +24,7 @@ from jacaros.robots.ros.drivers.rosbridge.link import Link
 from jacaros.robots.ros.parameter import checked_value
 from jacaros.robots.ros.protocols.rosbridge_messages import Translator
 from jacaros.robots.ros.typestore import DefinitionSchema
-from jacaros.robots.world.data.ground_truth import GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, PathSample
 from jacaros.robots.world.files.world import load_world
 from jacaros.runtime.cli.ros_arguments import read_parameters
 from jacaros.runtime.errors import JacarosError
@@ -337,7 +337,7 @@ def _ground_truths() -> list[bytes]:
     records = [
         {"kind": "world", "world": world, "seed": 1, "epoch": 0.0},
         {"kind": "sample", "robot": "turtlebot"}
-        | dict.fromkeys(Sample._fields, 1.0)
+        | dict.fromkeys(PathSample._fields, 1.0)
         | {"charging": False, "touching": False},
         {
             "kind": "event",

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from jacaros.robots.world import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import Stay, distance, judge_recharging, to_segment
 
@@ -48,7 +48,7 @@ def check(truth: GroundTruth, cycles: int = 10, near: float = REACHED) -> Verdic
     return verdict
 
 
-def visits(path: Sequence[Sample], near: float = REACHED) -> list[Visit]:
+def visits(path: Sequence[PathSample], near: float = REACHED) -> list[Visit]:
     """Return all visits to corners, oldest first."""
     found: list[Visit] = []
     at = None
@@ -64,7 +64,7 @@ def visits(path: Sequence[Sample], near: float = REACHED) -> list[Visit]:
 
 
 def judge_next(
-    verdict: Verdict, before: Visit, after: Visit, between: Sequence[Stay], path: Sequence[Sample]
+    verdict: Verdict, before: Visit, after: Visit, between: Sequence[Stay], path: Sequence[PathSample]
 ) -> None:
     """Expect the visit *after* at the corner that the robot was heading for when it left *before*."""
     heading_for = [(before.corner + 1) % len(CORNERS)]
@@ -77,7 +77,7 @@ def judge_next(
     )
 
 
-def straight_to_dock(before: Visit, stay: Stay, path: Sequence[Sample]) -> bool:
+def straight_to_dock(before: Visit, stay: Stay, path: Sequence[PathSample]) -> bool:
     """Return whether the robot drove straight from the corner to the dock."""
     way = [sample for sample in path if before.end <= sample.time <= stay.begin]
     dock = way[-1].x, way[-1].y

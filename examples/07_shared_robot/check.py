@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from math import hypot, remainder, tau
 
-from jacaros.robots.world import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, judge_recharging
 
@@ -49,7 +49,7 @@ def check(truth: GroundTruth, rounds: int = 4, recharges: int = 2) -> Verdict:
     return verdict
 
 
-def corners_of(path: Sequence[Sample]) -> list[int]:
+def corners_of(path: Sequence[PathSample]) -> list[int]:
     """Return the corners in the order of their visits; consecutive visits to one corner count once."""
     near = (
         next((n for n, (x, y) in enumerate(CORNERS) if distance(sample, x, y) <= REACHED), None)
@@ -58,7 +58,7 @@ def corners_of(path: Sequence[Sample]) -> list[int]:
     return [corner for corner, _ in groupby(each for each in near if each is not None)]
 
 
-def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tuple[float, float]:
+def beside_the_visitor(path: Sequence[PathSample], visitor: Sequence[PathSample]) -> tuple[float, float]:
     """Return the least distance to the visitor (m), and how long the robot stood within a metre of it (s)."""
     times = [sample.time for sample in visitor]
     nearest, waited = float("inf"), 0.0
@@ -71,7 +71,7 @@ def beside_the_visitor(path: Sequence[Sample], visitor: Sequence[Sample]) -> tup
     return nearest, waited
 
 
-def speed_at_end(path: Sequence[Sample]) -> tuple[float, float]:
+def speed_at_end(path: Sequence[PathSample]) -> tuple[float, float]:
     """Return the speed (m/s) and the turning rate (rad/s) at the end of the path."""
     last = path[-1]
     before = next(sample for sample in reversed(path) if sample.time < last.time)

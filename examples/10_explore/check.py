@@ -10,7 +10,7 @@ from pathlib import Path
 
 from jacaros.robots.map.cells import OBSTACLE, Cell
 from jacaros.robots.map.map_files import load
-from jacaros.robots.world import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance
 
@@ -45,7 +45,7 @@ def check(truth: GroundTruth, saved: Path = SAVED) -> Verdict:
     return verdict
 
 
-def judge_map(verdict: Verdict, truth: GroundTruth, start: Sample, saved: Path) -> None:
+def judge_map(verdict: Verdict, truth: GroundTruth, start: PathSample, saved: Path) -> None:
     """Expect the seen cells to agree with the world, and most of the floor to be seen."""
     seen = load(saved).grid.labels(SIZE)
     wrong = sum(is_obstacle(truth, start, cell) != (label == OBSTACLE) for cell, label in seen.items())
@@ -56,7 +56,7 @@ def judge_map(verdict: Verdict, truth: GroundTruth, start: Sample, saved: Path) 
     verdict.expect(share >= 0.9, f"only {share:.0%} of the floor was seen")
 
 
-def is_obstacle(truth: GroundTruth, start: Sample, cell: Cell) -> bool:
+def is_obstacle(truth: GroundTruth, start: PathSample, cell: Cell) -> bool:
     """Return whether a map cell has a wall or furniture in it; the origin of the map is the robot's start."""
     x, y = in_world(start, cell[0] * SIZE, cell[1] * SIZE)
     if any(left <= x <= right and low <= y <= high for left, low, right, high in truth.world["boxes"]):
@@ -64,7 +64,7 @@ def is_obstacle(truth: GroundTruth, start: Sample, cell: Cell) -> bool:
     return any(is_in_square(start, x, y, *wall) for wall in truth.world["walls"])
 
 
-def is_in_square(start: Sample, x: float, y: float, ax: float, ay: float, bx: float, by: float) -> bool:
+def is_in_square(start: PathSample, x: float, y: float, ax: float, ay: float, bx: float, by: float) -> bool:
     """Return whether a wall segment crosses the cell around x, y (Liang-Barsky clipping)."""
     sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
     ax, ay = cosine * (ax - x) + sine * (ay - y), cosine * (ay - y) - sine * (ax - x)
@@ -80,7 +80,7 @@ def is_in_square(start: Sample, x: float, y: float, ax: float, ay: float, bx: fl
     return first <= last
 
 
-def in_world(start: Sample, x: float, y: float) -> tuple[float, float]:
+def in_world(start: PathSample, x: float, y: float) -> tuple[float, float]:
     """Convert a point of the map, whose origin is the robot's start, to world coordinates."""
     sine, cosine = math.sin(start.yaw), math.cos(start.yaw)
     return start.x + cosine * x - sine * y, start.y + sine * x + cosine * y

@@ -8,7 +8,7 @@ from bisect import bisect_right
 from itertools import pairwise
 from typing import NamedTuple
 
-from jacaros.robots.world import GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance
 
@@ -90,7 +90,7 @@ def judge_waiting(verdict: Verdict, found: dict[str, list[Crossing]]) -> None:
     verdict.expect(met >= 1, "no robot waited together with the medicine")
 
 
-def is_inside(truth: GroundTruth, sample: Sample) -> bool:
+def is_inside(truth: GroundTruth, sample: PathSample) -> bool:
     """Return whether any part of a robot is in the passage."""
     (passage,) = (room for room in truth.world["rooms"] if room["name"] == "passage")
     west, south, east, north = passage["area"]
@@ -101,7 +101,7 @@ def crossings(truth: GroundTruth, robot: str) -> list[Crossing]:
     """Return all crossings of a robot, from one room to the other."""
     found: list[Crossing] = []
     came = left = 0.0
-    begin: Sample | None = None
+    begin: PathSample | None = None
     at_front = False
     for before, sample in pairwise(truth.path(robot)):
         was_at_front, at_front = at_front, distance(sample, front_of(sample), LANES[robot]) < NEAR
@@ -119,7 +119,7 @@ def crossings(truth: GroundTruth, robot: str) -> list[Crossing]:
     return found
 
 
-def front_of(sample: Sample) -> float:
+def front_of(sample: PathSample) -> float:
     """Return where robots wait in the room of a sample: x, in metres."""
     return -FRONT if sample.x < 0 else FRONT
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from jacaros.robots.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalOutcome, GoalStatus
 from virtual_rclpy.messages import Interface
 from virtual_rclpy.node import Node
 from virtual_rclpy.task import Future
@@ -86,7 +86,7 @@ class ActionClient:
         if callback is not None:
             self.graph.call(callback, SimpleNamespace(feedback=message))
 
-    def ended(self, goal_id: str, outcome: Outcome) -> None:
+    def ended(self, goal_id: str, outcome: GoalOutcome) -> None:
         """A goal is over."""
         handle = self._handles[goal_id]
         handle.result.set_result(SimpleNamespace(status=_STATUS[outcome.status], result=outcome.result))

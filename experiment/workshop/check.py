@@ -8,7 +8,7 @@ from functools import partial
 from math import dist
 from typing import Final, NamedTuple
 
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.testing import Verdict, judge
 
 NEAR: Final = 1.0
@@ -69,7 +69,7 @@ def judge_things(verdict: Verdict, truth: GroundTruth, places: dict[str, str]) -
             verdict.expect(is_open(truth, door, move.time), through)
 
 
-def rooms_of(truth: GroundTruth, move: Event) -> list[str]:
+def rooms_of(truth: GroundTruth, move: RobotEvent) -> list[str]:
     """The rooms in which a thing was taken or put down."""
     x, y = move.data["x"], move.data["y"]
     areas = ((room["name"], room["area"]) for room in truth.world["rooms"])

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.runtime.clock import Clock
 
 
@@ -28,7 +28,7 @@ class GraphCommands:
         def accept(value: Any) -> str | None:
             return "it is odd" if value % 2 else None
 
-        declaration = Declaration(default, accept=accept if only_even else None, **more)
+        declaration = DeclaredParameter(default, accept=accept if only_even else None, **more)
         return self._backend.parameters(node).declare(name, declaration)
 
     def withdraw(self, name: str, node: str | None = None) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.robots.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.robots.ros.action import Abort, ActionPolicy, GoalOutcome, GoalStatus
 from jacaros.runtime.mas.system import System
 from jacaros.testing import RunResult, run_project
 
@@ -112,8 +112,8 @@ class CancelledElsewhere:
 
     goal_id = "1"
 
-    async def outcome(self, timeout: float | None = None) -> Outcome:
-        return Outcome(GoalStatus.CANCELED, None)
+    async def outcome(self, timeout: float | None = None) -> GoalOutcome:
+        return GoalOutcome(GoalStatus.CANCELED, None)
 
 
 def test_a_goal_cancelled_by_another_client_fails_as_canceled(

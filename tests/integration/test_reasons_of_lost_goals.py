@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from jacaros.robots.ros.action import Abort, ActionPolicy, GoalStatus, Outcome
+from jacaros.robots.ros.action import Abort, ActionPolicy, GoalOutcome, GoalStatus
 from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
@@ -93,8 +93,8 @@ def test_a_goal_cancelled_by_another_client(tmp_path: Path, monkeypatch: pytest.
     class Cancelled:
         goal_id = "1"
 
-        async def outcome(self, timeout: float | None = None) -> Outcome:
-            return Outcome(GoalStatus.CANCELED, None)
+        async def outcome(self, timeout: float | None = None) -> GoalOutcome:
+            return GoalOutcome(GoalStatus.CANCELED, None)
 
     async def send(*arguments: object) -> Cancelled:
         return Cancelled()

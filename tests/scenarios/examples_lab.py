@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.runtime.mas.deployment import Deployment
 from jacaros.runtime.mas.launch import launch, load_deployment
 from jacaros.runtime.mas.options import RunOptions
@@ -142,9 +142,9 @@ def world_with(folder: Path, original: Path, old: str, new: str) -> Path:
 
 def falsified(
     truth: GroundTruth,
-    sample: Callable[[Sample], Sample | None] = lambda sample: sample,
-    event: Callable[[Event], Event | None] = lambda event: event,
-    more: Iterable[Event] = (),
+    sample: Callable[[PathSample], PathSample | None] = lambda sample: sample,
+    event: Callable[[RobotEvent], RobotEvent | None] = lambda event: event,
+    more: Iterable[RobotEvent] = (),
 ) -> GroundTruth:
     """A ground truth in which something else happened.
 

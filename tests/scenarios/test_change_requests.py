@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import pytest
 from examples_lab import EXAMPLES, falsified
 
-from jacaros.robots.world import Event
+from jacaros.robots.world import RobotEvent
 from jacaros.runtime.errors import JacarosError
 from jacaros.testing import RunResult, run_project
 
@@ -110,7 +110,7 @@ def test_the_checker_sees_a_robot_that_stays_where_it_was_released() -> None:
     assert "it did not continue after the bump at 5.9 s" in complaints
 
 
-def second_robot_without(result: RunResult, wrong: Event, **changes: object) -> list[str]:
+def second_robot_without(result: RunResult, wrong: RobotEvent, **changes: object) -> list[str]:
     truth = falsified(
         result.ground_truth,
         event=lambda e: e._replace(**changes) if e is wrong else e,  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ import pytest
 from examples_lab import checker, doing_at, falsified, run, run_of, spoilt, world_with
 
 import jacaros.robots.world
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "05_house_cleaning/house_cleaning.jcm"
@@ -94,7 +94,7 @@ def test_the_checker_sees_a_robot_that_does_not_go_back_into_the_room(tmp_path: 
     ]
 
 
-def cleaned(event: Event, room: str, dirt: str) -> bool:
+def cleaned(event: RobotEvent, room: str, dirt: str) -> bool:
     return event.kind == "cleaned" and (event.data["room"], event.data["dirt"]) == (room, dirt)
 
 
@@ -137,7 +137,7 @@ def test_the_checker_sees_a_robot_that_cleans_from_afar() -> None:
     assert check(false).complaints == ["the robot cleaned the kitchen 0.5 m from its corner"]
 
 
-def tasks(truth: GroundTruth) -> list[Event]:
+def tasks(truth: GroundTruth) -> list[RobotEvent]:
     return truth.events_of("task")
 
 
@@ -161,7 +161,7 @@ def test_the_checker_sees_tasks_in_the_wrong_order() -> None:
     truth = truth_of_example()
     scrub, mop = tasks(truth)[2:4]
 
-    def swapped(event: Event) -> Event:
+    def swapped(event: RobotEvent) -> RobotEvent:
         if event is scrub:
             return event._replace(data=mop.data)
         return event._replace(data=scrub.data) if event is mop else event
@@ -179,7 +179,7 @@ def test_the_checker_sees_a_task_left_out() -> None:
 
 
 def test_the_checker_sees_an_unwanted_task() -> None:
-    more = Event(199.0, "turtlebot", "task", 0, 0, 0, {"task": "mop floor hallway", "room": "hallway"})
+    more = RobotEvent(199.0, "turtlebot", "task", 0, 0, 0, {"task": "mop floor hallway", "room": "hallway"})
     assert not check(falsified(truth_of_example(), more=[more])).passed
 
 
@@ -188,7 +188,7 @@ def test_the_checker_sees_that_nothing_was_done() -> None:
 
 
 def test_the_checker_sees_an_empty_battery() -> None:
-    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
     assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import LONGEST, checker, falsified, run, run_of, spoilt
 
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "11_narrow_passage/narrow_passage.jcm"
@@ -67,7 +67,7 @@ def test_without_urgency_the_medicine_waits_for_its_turn(tmp_path: Path) -> None
 
 
 def test_the_checker_sees_a_bump() -> None:
-    bump = Event(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
+    bump = RobotEvent(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
     assert check(falsified(truth_of_example(), more=[bump])).complaints == ["a robot bumped into something"]
 
 
@@ -75,7 +75,7 @@ def test_the_checker_sees_a_second_robot_in_the_passage() -> None:
     truth = truth_of_example()
     first = module.crossings(truth, "robot_1")[0]
 
-    def moved(sample: Sample) -> Sample:
+    def moved(sample: PathSample) -> PathSample:
         if first.begin < sample.time < first.end and round(sample.y, 1) == module.LANES["robot_3"]:
             return sample._replace(x=0.9, y=0.0)
         return sample

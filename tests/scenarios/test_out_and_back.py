@@ -5,7 +5,7 @@ import re
 
 from examples_lab import checker, falsified, run, run_of
 
-from jacaros.robots.world import Event
+from jacaros.robots.world import RobotEvent
 
 PROJECT = "01_out_and_back/out_and_back.jcm"
 check = checker("01_out_and_back").check
@@ -65,5 +65,5 @@ def test_the_checker_sees_a_robot_that_came_back_in_reverse() -> None:
 
 def test_the_checker_sees_a_bump() -> None:
     truth = run_of(PROJECT).ground_truth
-    bump = Event(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
+    bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
     assert not check(falsified(truth, more=[bump])).passed

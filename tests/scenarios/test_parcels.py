@@ -6,7 +6,7 @@ from math import dist
 import pytest
 from examples_lab import checker, falsified, run_of, spoilt
 
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.runtime.files.python_modules import ProjectModules
 from jacaros.testing import run_project
 
@@ -50,7 +50,7 @@ def test_the_way_is_the_shortest_of_all() -> None:
 # The checker on runs that went otherwise.
 
 
-def tasks(truth: GroundTruth) -> list[Event]:
+def tasks(truth: GroundTruth) -> list[RobotEvent]:
     return truth.events_of("task")
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES, checker, doing_at, falsified, run, run_of, spoilt, world_with
 
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "04_patrol/patrol.jcm"
@@ -115,7 +115,7 @@ def test_the_checker_sees_a_corner_left_out() -> None:
     truth = truth_of_example()
     visit = module.visits(truth.path())[5]
 
-    def away(sample: Sample) -> Sample:
+    def away(sample: PathSample) -> PathSample:
         return sample._replace(x=sample.x + 0.2) if visit.begin <= sample.time <= visit.end else sample
 
     assert [c.split(" at ")[0] for c in check(falsified(truth, away)).complaints] == [
@@ -127,7 +127,7 @@ def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner() -> None:
     truth = truth_of_example()
     stay = module.judge_recharging(module.Verdict(), truth)[0]
 
-    def swapped(sample: Sample) -> Sample:
+    def swapped(sample: PathSample) -> PathSample:
         return sample._replace(x=2.0 - sample.x, y=2.0 - sample.y) if sample.time > stay.begin else sample
 
     assert not check(falsified(truth, swapped)).passed
@@ -138,7 +138,7 @@ def test_the_checker_sees_the_way_driven_backwards() -> None:
 
 
 def test_the_checker_sees_an_empty_battery() -> None:
-    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
     assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
 
 
@@ -155,7 +155,7 @@ def test_the_checker_sees_a_robot_that_leaves_the_dock_too_early() -> None:
 
 
 def test_the_checker_sees_a_robot_that_docks_with_half_a_battery() -> None:
-    def half(event: Event) -> Event:
+    def half(event: RobotEvent) -> RobotEvent:
         return event._replace(data={"level": 50.0}) if event.kind == "charging" else event
 
     assert not check(falsified(truth_of_example(), event=half)).passed
@@ -169,5 +169,5 @@ def test_the_checker_sees_a_patrol_that_ends_in_the_dock() -> None:
 
 
 def test_the_checker_sees_a_bump() -> None:
-    bump = Event(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
+    bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
     assert not check(falsified(truth_of_example(), more=[bump])).passed

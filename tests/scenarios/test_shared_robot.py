@@ -9,7 +9,7 @@ import pytest
 from examples_lab import EXAMPLES, checker, falsified, run, run_of, spoilt, world_with
 
 from jacaros.artifacts import Session
-from jacaros.robots.world import Event, GroundTruth, Sample
+from jacaros.robots.world import GroundTruth, PathSample, RobotEvent
 from jacaros.runtime.mas.system import System
 from jacaros.testing import run_project
 
@@ -145,13 +145,13 @@ def test_the_checker_sees_too_few_rounds() -> None:
 
 
 def test_the_checker_sees_a_bump() -> None:
-    bump = Event(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
+    bump = RobotEvent(3.0, "visitor", "collision", 1.6, 0.0, 0.0, {"with": "turtlebot", "side": "front"})
     complaints = check(falsified(truth_of_example(), more=[bump])).complaints
     assert complaints == ["the robot bumped into something"]
 
 
 def test_the_checker_sees_a_robot_that_comes_too_near_to_the_visitor() -> None:
-    def nearer(sample: Sample) -> Sample:
+    def nearer(sample: PathSample) -> PathSample:
         return (
             sample._replace(x=sample.x - 0.3)
             if abs(sample.x - 1.0) < 0.05 and sample.yaw > math.pi / 4
@@ -165,7 +165,7 @@ def test_the_checker_sees_a_robot_that_still_moves_at_the_end() -> None:
     truth = truth_of_example()
     end = truth.latest("turtlebot").time
 
-    def moving(sample: Sample) -> Sample:
+    def moving(sample: PathSample) -> PathSample:
         return sample._replace(odometer=sample.odometer + 0.02) if sample.time == end else sample
 
     assert "metres a second at the end" in check(falsified(truth, moving)).complaints[-1]

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from examples_lab import checker, falsified, run_of, spoilt
 
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.testing import run_project
 
 PROJECT = "09_three_robots/three_robots.jcm"
@@ -52,14 +52,14 @@ def test_the_checker_sees_robots_that_do_not_help(tmp_path: Path) -> None:
 
 
 def test_the_checker_sees_a_bump() -> None:
-    bump = Event(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
+    bump = RobotEvent(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
     assert check(falsified(truth_of_example(), more=[bump])).complaints == [
         "a robot bumped into something (1 times)"
     ]
 
 
 def test_the_checker_sees_a_robot_in_the_dock_of_another() -> None:
-    def moved(event: Event) -> Event:
+    def moved(event: RobotEvent) -> RobotEvent:
         if event.kind == "docked" and event.robot == "robot_2":
             return event._replace(data={**event.data, "dock": "dock_1"})
         return event

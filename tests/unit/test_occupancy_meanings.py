@@ -9,7 +9,7 @@ import pytest
 from jacaros.look.page.graph_scene import map_drawing
 from jacaros.robots.map import map_files
 from jacaros.robots.map.cells import FREE, OBSTACLE
-from jacaros.robots.map.map_files import Grid
+from jacaros.robots.map.map_files import OccupancyGrid
 from jacaros.robots.world import World
 from jacaros.robots.world.files.map import map_of_world, read_map
 from jacaros.runtime.files import maps
@@ -36,7 +36,7 @@ def grid(percent: int) -> Any:
 
 @pytest.mark.parametrize(("percent", "meaning"), MEANINGS)
 def test_an_agents_map_and_the_page_agree_what_a_cell_is(percent: int, meaning: str | None) -> None:
-    assert set(Grid.of(grid(percent)).labels(0.1).values()) == ({meaning} if meaning else set())
+    assert set(OccupancyGrid.of(grid(percent)).labels(0.1).values()) == ({meaning} if meaning else set())
     drawn = map_drawing(grid(percent))
     assert bool(drawn["walls"]) == bool(drawn["boxes"]) == (meaning == OBSTACLE)
 

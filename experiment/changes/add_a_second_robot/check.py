@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import distance, stays
 
@@ -43,7 +43,7 @@ def check(truth: GroundTruth) -> Verdict:
     return verdict
 
 
-def judge_round(verdict: Verdict, number: int, done: Sequence[Event]) -> None:
+def judge_round(verdict: Verdict, number: int, done: Sequence[RobotEvent]) -> None:
     """Expect every task once, in its room, and the tasks of a room in order and by one robot."""
     wanted = sorted(f"{task} {room}" for room, task in TASKS)
     found = sorted(event.data["task"] for event in done)

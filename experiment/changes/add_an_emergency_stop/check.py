@@ -7,7 +7,7 @@ import runpy
 import sys
 from pathlib import Path
 
-from jacaros.robots.world import Event, GroundTruth
+from jacaros.robots.world import GroundTruth, RobotEvent
 from jacaros.testing import Verdict, judge
 from jacaros.testing.paths import angle_between, distance
 
@@ -39,7 +39,7 @@ def check(truth: GroundTruth) -> Verdict:
     return verdict
 
 
-def judge_stop(verdict: Verdict, truth: GroundTruth, bump: Event, released: float) -> None:
+def judge_stop(verdict: Verdict, truth: GroundTruth, bump: RobotEvent, released: float) -> None:
     """Expect that the robot stands until it is released, and then continues."""
     at = f"after the bump at {bump.time:.1f} s"
     stopped = bump.time + REACTION

@@ -114,7 +114,7 @@ class Spec:
         return STATE if "at_least" in self.options else OPERATORS[self.operator].gives
 
 
-class Fault(NamedTuple):
+class DeclarationProblem(NamedTuple):
     """An error in a declaration.
 
     Attributes:
@@ -162,13 +162,13 @@ PARTNERS_WAIT: Final = 0.5
 """Default lateness in seconds where samples of several topics are joined, because the delays of topics differ."""
 
 
-def unknown(operator: str) -> Fault:
+def unknown(operator: str) -> DeclarationProblem:
     """Return the error for an unknown operator."""
     help = suggestion(operator, OPERATORS, f"operators: {', '.join(OPERATORS)}")
-    return Fault("", f"unknown operator `{operator}`", help)
+    return DeclarationProblem("", f"unknown operator `{operator}`", help)
 
 
-def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) -> Iterator[Fault]:
+def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) -> Iterator[DeclarationProblem]:
     """Yield all errors of a declaration.
 
     Args:
@@ -179,19 +179,19 @@ def faults(operator: str, sources: Sequence[str], options: Mapping[str, Any]) ->
     shape = OPERATORS[operator]
     if operator == "together" and len(sources) < 2:
         help = "write them as a list, such as [scan, pose]"
-        yield Fault("", f"`{operator}` needs two streams or more", help)
+        yield DeclarationProblem("", f"`{operator}` needs two streams or more", help)
     if operator == "together" and len(set(sources)) < len(sources):
-        yield Fault("", f"`{operator}` names a stream twice", "name each stream once")
+        yield DeclarationProblem("", f"`{operator}` names a stream twice", "name each stream once")
     known = (*shape.required, *shape.optional)
     for name in shape.required:
         if name not in options:
-            yield Fault("", f"`{operator}` needs `{name}`", _NEEDED[name])
+            yield DeclarationProblem("", f"`{operator}` needs `{name}`", _NEEDED[name])
     for name, value in options.items():
         if name not in known:
             help = suggestion(name, known, f"options: {', '.join(known)}")
-            yield Fault(name, f"`{operator}` has no option `{name}`", help)
+            yield DeclarationProblem(name, f"`{operator}` has no option `{name}`", help)
         elif wrong := _OPTIONS.get(name, _number)(value):
-            yield Fault(name, f"`{name}` {wrong[0]}", wrong[1])
+            yield DeclarationProblem(name, f"`{name}` {wrong[0]}", wrong[1])
     if operator == "hysteresis":
         yield from _wrong_limits(options)
 
@@ -240,16 +240,16 @@ _OPTIONS: Final[dict[str, Callable[[Any], _Wrong]]] = {
 """The checks of options; all others are numbers."""
 
 
-def _wrong_limits(options: Mapping[str, Any]) -> Iterator[Fault]:
+def _wrong_limits(options: Mapping[str, Any]) -> Iterator[DeclarationProblem]:
     used = [name for name in _ON_AND_OFF if name in options]
     if used not in (["on_above", "off_below"], ["on_below", "off_above"]):
         help = "give `on_above` and `off_below`, or `on_below` and `off_above`"
-        yield Fault("", "`hysteresis` needs two limits", help)
+        yield DeclarationProblem("", "`hysteresis` needs two limits", help)
         return
     on, off = options[used[0]], options[used[1]]
     if _is_number(on) and _is_number(off) and (on < off if used[0] == "on_above" else on > off):
         side = "at most" if used[0] == "on_above" else "at least"
-        yield Fault(used[1], f"`{used[1]}` must be {side} `{used[0]}`", "swap the two limits")
+        yield DeclarationProblem(used[1], f"`{used[1]}` must be {side} `{used[0]}`", "swap the two limits")
 
 
 SHOW, HIDE = "show", "hide"
@@ -259,7 +259,7 @@ Emit = Callable[[str, Values], None]
 """Takes the kind of an output and its values (empty for `HIDE`)."""
 
 
-class Operator:
+class StreamOperator:
     """Takes events in time order and emits their consequences.
 
     The pattern calls `advance` at each deadline before it passes a later event.
@@ -356,7 +356,7 @@ class Condition:
 # The number of events in a sliding window.
 
 
-class Count(Operator):
+class Count(StreamOperator):
     """The number of events in the window.
 
     Args:
@@ -400,7 +400,7 @@ class Count(Operator):
 # States of one stream: hysteresis, and a condition held for a while.
 
 
-class Hysteresis(Operator):
+class Hysteresis(StreamOperator):
     """Starts when the number passes one limit and ends when it passes another.
 
     Args:
@@ -433,7 +433,7 @@ class Hysteresis(Operator):
         self.deadline = math.inf
 
 
-class Held(Operator):
+class Held(StreamOperator):
     """Holds once the condition has held for *lasting* seconds without a break."""
 
     __slots__ = ("_condition", "_lasting", "_place", "_since")
@@ -465,7 +465,7 @@ def _satisfies(values: Values | None, place: int, condition: Condition) -> bool:
 # The absence of events.
 
 
-class Absent(Operator):
+class Absent(StreamOperator):
     """Holds while the newest event, or the start of the pattern, is *lasting* seconds or longer ago."""
 
     __slots__ = ("_lasting",)
@@ -488,7 +488,7 @@ class Absent(Operator):
 # Join samples of several streams with nearby stamps, like ApproximateTime of message_filters.
 
 
-class Together(Operator):
+class Together(StreamOperator):
     """Shows the values of one sample of each stream, concatenated, if their times are close enough.
 
     A set is formed as soon as possible, from the new sample and the nearest ones of the other streams. No sample is used
@@ -579,7 +579,7 @@ def _nearest_to(times: list[float], time: float) -> int | None:
 # One derived event: takes events of its streams, and drives its operator.
 
 
-def _operator(spec: Spec, emit: Emit) -> Operator:
+def _operator(spec: Spec, emit: Emit) -> StreamOperator:
     """Make the operator of a valid declaration."""
     options = spec.options
     match spec.operator:

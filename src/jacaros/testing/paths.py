@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 from jacaros.robots.plane.pose import Pose, normalised
 from jacaros.robots.plane.shapes import Segment
-from jacaros.robots.world.data.ground_truth import Event, GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, PathSample, RobotEvent
 from jacaros.runtime.errors import JacarosError
 
 
@@ -86,7 +86,7 @@ def judge(check: Callable[[GroundTruth], Verdict], arguments: Sequence[str]) -> 
     return 0 if verdict.passed else 1
 
 
-Placed = Sample | Event | Pose
+Placed = PathSample | RobotEvent | Pose
 """What has a position, `x` and `y` in metres, and a heading `yaw` in radians."""
 
 
@@ -120,15 +120,15 @@ def to_segment(one: Placed, a: tuple[float, float], b: tuple[float, float]) -> f
     return Segment(*a, *b).distance(one.x, one.y)
 
 
-def turns(path: Sequence[Sample], least: float = math.radians(20.0)) -> list[Turn]:
+def turns(path: Sequence[PathSample], least: float = math.radians(20.0)) -> list[Turn]:
     """Return the turns on the spot by *least* radians or more; small corrections on the way do not count."""
     found = [_turn(stretch) for stretch in _turning_stretches(path)]
     return [turn for turn in found if abs(turn.angle) >= least]
 
 
-def _turning_stretches(path: Sequence[Sample]) -> Iterable[list[Sample]]:
+def _turning_stretches(path: Sequence[PathSample]) -> Iterable[list[PathSample]]:
     """Yield sequences of samples in which the robot turned and hardly moved."""
-    stretch: list[Sample] = []
+    stretch: list[PathSample] = []
     for before, after in itertools.pairwise(path):
         turned = angle_between(after.yaw, before.yaw)
         moved = after.odometer - before.odometer
@@ -142,7 +142,7 @@ def _turning_stretches(path: Sequence[Sample]) -> Iterable[list[Sample]]:
         yield stretch
 
 
-def _turn(stretch: Sequence[Sample]) -> Turn:
+def _turn(stretch: Sequence[PathSample]) -> Turn:
     angle = math.fsum(normalised(b.yaw - a.yaw) for a, b in itertools.pairwise(stretch))
     count = len(stretch)
     return Turn(

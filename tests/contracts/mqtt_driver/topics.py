@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from jacaros.robots.ros.message import plain
-from jacaros.robots.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
+from jacaros.robots.ros.node import SharedSubscription, SubscriptionOptions, TopicMultiplexer, TopicPublisher
 from jacaros.robots.ros.qos import QoS
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class MqttMultiplexer(TopicMultiplexer["MqttSubscription"]):
 class MqttSubscription(SharedSubscription["MqttBackend"]):
     """Subscription of `MqttBackend`; messages are decoded when it is their turn."""
 
-    def __init__(self, node: "MqttBackend", wanted: Wanted) -> None:
+    def __init__(self, node: "MqttBackend", wanted: SubscriptionOptions) -> None:
         super().__init__(node, wanted, node.multiplexers, MqttMultiplexer)
 
     def deliver(self, message: bytes) -> None:

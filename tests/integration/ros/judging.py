@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from jacaros.robots.world.data.ground_truth import GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, PathSample
 
 Point = tuple[float, float]
 
@@ -11,7 +11,7 @@ NEAR = 0.05
 """Metres within which a robot is at a place."""
 
 
-def distance(sample: Sample, place: Point) -> float:
+def distance(sample: PathSample, place: Point) -> float:
     """Metres between a robot and a place."""
     return math.hypot(sample.x - place[0], sample.y - place[1])
 
@@ -31,7 +31,7 @@ def nearest_pass(truth: GroundTruth, place: Point) -> float:
     return min(distance(sample, place) for sample in truth.path())
 
 
-def heading_error(sample: Sample, degrees: float) -> float:
+def heading_error(sample: PathSample, degrees: float) -> float:
     """Degrees between a robot's heading and the wanted one."""
     return abs((math.degrees(sample.yaw) - degrees + 180.0) % 360.0 - 180.0)
 
@@ -49,6 +49,6 @@ def standstill(truth: GroundTruth, braking: float) -> float:
     second squared, or harder.
     """
     last = truth.latest()
-    moving: Sequence[Sample] = [sample for sample in truth.path() if sample.odometer < last.odometer]
+    moving: Sequence[PathSample] = [sample for sample in truth.path() if sample.odometer < last.odometer]
     rest = last.odometer - moving[-1].odometer
     return moving[-1].time + math.sqrt(2.0 * rest / braking)

@@ -8,7 +8,7 @@ from typing import Any
 
 from robot_lab import Lab
 
-from jacaros.robots.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalOutcome, GoalStatus
 from jacaros.robots.ros.errors import (
     CallTimedOut,
     GoalRejected,
@@ -81,7 +81,7 @@ class FakeGoal:
     def __init__(self, server: FakeServer, fields: Any, on_feedback: Callable[[Any], None] | None) -> None:
         self.server, self.fields, self._on_feedback = server, fields, on_feedback
         self.goal_id = str(len(server.goals))
-        self._end: asyncio.Future[Outcome] = asyncio.get_running_loop().create_future()
+        self._end: asyncio.Future[GoalOutcome] = asyncio.get_running_loop().create_future()
 
     @property
     def over(self) -> bool:
@@ -94,14 +94,14 @@ class FakeGoal:
     def end(self, status: GoalStatus = GoalStatus.SUCCEEDED, text: str = "", **result: Any) -> None:
         if not self.over:
             self.server.note(f"{status} {self.goal_id}")
-            self._end.set_result(Outcome(status, SimpleNamespace(**result), text))
+            self._end.set_result(GoalOutcome(status, SimpleNamespace(**result), text))
 
     def lose(self) -> None:
         if not self.over:
             self._end.set_exception(ServerLost("the action server has gone"))
             self._end.exception()
 
-    async def outcome(self, timeout: float | None = None) -> Outcome:
+    async def outcome(self, timeout: float | None = None) -> GoalOutcome:
         try:
             return await within(self.server.lab.clock, asyncio.shield(self._end), timeout)
         except TimeoutError:

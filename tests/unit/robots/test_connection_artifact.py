@@ -11,7 +11,7 @@ from jacaros.artifacts import Environment, Out, Structure
 from jacaros.robots.artifacts.connection_artifact import ArtRos
 from jacaros.robots.registry import find_type
 from jacaros.robots.ros.open import open_backend
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -45,9 +45,9 @@ async def test_it_shows_the_connection(lab: Lab) -> None:
 async def test_parameters_of_nodes_are_read_and_written(lab: Lab) -> None:
     node = await other_node(lab, "controller")
     own = node.parameters()
-    own.declare("speed", Declaration(0.5, maximum=1.0))
-    own.declare("name", Declaration("bob"))
-    own.declare("places", Declaration([1.0, 2.0]))
+    own.declare("speed", DeclaredParameter(0.5, maximum=1.0))
+    own.declare("name", DeclaredParameter("bob"))
+    own.declare("places", DeclaredParameter([1.0, 2.0]))
     artifact = await lab.make(ArtRos)
     speed, names, places = Out(), Out(), Out()
     await lab.do(artifact, "get_parameter", "controller", "speed", speed)

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from jacaros.robots.artifacts.approach import Outlook, Step, pulse_for
+from jacaros.robots.artifacts.approach import Outlook, TimedCommand, pulse_for
 from jacaros.robots.artifacts.drive_model import DriveModel, Limits, Velocity
 from jacaros.robots.artifacts.maneuver import (
     DriveTo,
@@ -62,7 +62,7 @@ class Base:
                 _, pose, velocity = self.shown.pop(0)
                 self.model.observed(pose, velocity, self.now, 0.0)
 
-    def drive(self, step: Step) -> None:
+    def drive(self, step: TimedCommand) -> None:
         self.model.commanded(step.velocity, self.now)
         self.sent.append((self.now, step.velocity))
         self.wait(step.seconds)
@@ -202,7 +202,7 @@ def test_a_drive_by_time_gives_its_commands_and_ends() -> None:
     timed = Timed(Velocity(2.0, 0.0), 3)
     timed.begin(ORIGIN)
     commands = [timed.command(Base().outlook()) for _ in range(4)]
-    assert commands == [Step(Velocity(0.65, 0.0), 0.1)] * 3 + [None]
+    assert commands == [TimedCommand(Velocity(0.65, 0.0), 0.1)] * 3 + [None]
 
 
 def test_a_line_tells_along_and_aside() -> None:

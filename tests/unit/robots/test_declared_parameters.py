@@ -3,14 +3,16 @@
 from robot_lab import Lab
 
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 
 class Speedy(RosArtifact):
     """Has a parameter."""
 
     def open(self) -> None:
-        self.define_property("speed", self.declared_parameter("speed", Declaration(0.5, read_only=True)))
+        self.define_property(
+            "speed", self.declared_parameter("speed", DeclaredParameter(0.5, read_only=True))
+        )
 
 
 async def test_a_declared_parameter_goes_with_its_artifact(lab: Lab) -> None:

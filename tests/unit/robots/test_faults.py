@@ -12,7 +12,7 @@ from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
 from jacaros.robots.artifacts.velocity import ArtCmdVel
-from jacaros.robots.kit.faults import FAR, SILENCE, Faults, Stamps
+from jacaros.robots.kit.faults import FAR, SILENCE, BadMessages, Stamps
 from jacaros.runtime.clock import VirtualClock
 
 ODOMETRY = "nav_msgs/msg/Odometry"
@@ -47,7 +47,7 @@ def whys(watcher: Watcher) -> list[str]:
 
 def test_bad_messages_are_reported_on_the_1st_10th_and_100th_occurrence() -> None:
     told: list[tuple[Structure, str]] = []
-    faults = Faults("/odom", lambda why, text: told.append((why, text)))
+    faults = BadMessages("/odom", lambda why, text: told.append((why, text)))
     for number in range(250):
         faults.not_finite("x", math.nan)
         if number == 30:
@@ -115,7 +115,7 @@ def judged(*messages: tuple[float, float]) -> tuple[list[str], list[float]]:
     told: list[str] = []
     late: list[float] = []
     clock = VirtualClock()
-    stamps = Stamps(Faults("/odom", lambda why, text: told.append(str(why))), clock)
+    stamps = Stamps(BadMessages("/odom", lambda why, text: told.append(str(why))), clock)
     for arrival, stamp in messages:
         clock._move_to(arrival)
         stamps.accept(stamp, clock.now())
@@ -171,7 +171,7 @@ async def test_a_stamp_far_off_our_clock_is_used_and_reported(lab: Lab) -> None:
 def test_a_stamp_is_not_compared_with_a_clock_that_has_no_time_yet() -> None:
     """A clock that follows ``/clock`` stands at 0 until its first message."""
     told: list[str] = []
-    stamps = Stamps(Faults("/odom", lambda why, text: told.append(str(why))), VirtualClock())
+    stamps = Stamps(BadMessages("/odom", lambda why, text: told.append(str(why))), VirtualClock())
     assert stamps.accept(1.7e9, now=0.0)
     assert told == []
     assert stamps.accept(1.7e9 + 1.0, now=1.0)

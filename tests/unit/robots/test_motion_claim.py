@@ -3,7 +3,7 @@
 import asyncio
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.artifacts.motion_claim import Claim, Motions, motions_of
+from jacaros.robots.artifacts.motion_claim import MotionClaim, Motions, motions_of
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.ros_clock import RosClock
 from jacaros.runtime.clock import VirtualClock, WallClock, run
@@ -13,7 +13,7 @@ def test_a_wake_up_before_the_wait_is_not_lost() -> None:
     clock = VirtualClock()
 
     async def main() -> None:
-        claim = Claim(lambda: None)
+        claim = MotionClaim(lambda: None)
         claim.wake()
         await claim.wait(clock, None)
         assert clock.elapsed == 0
@@ -27,7 +27,7 @@ def test_the_first_message_of_clock_does_not_count_as_a_jump() -> None:
     async def main() -> None:
         clock = RosClock(lambda text: None)
         stopped: list[bool] = []
-        claim = Claim(lambda: stopped.append(True))
+        claim = MotionClaim(lambda: stopped.append(True))
         for time, gap in ((1000.0, None), (990.0, Structure("clock_jumped", (-10.0,)))):
             waiting = asyncio.ensure_future(claim.wait(clock, 60.0))
             await asyncio.sleep(0)
@@ -43,7 +43,7 @@ def test_the_first_message_of_clock_does_not_count_as_a_jump() -> None:
 def test_abort_stops_and_wakes_all_motions() -> None:
     stopped = []
     motions = Motions()
-    tickets = [Claim(lambda number=number: stopped.append(number)) for number in range(3)]  # type: ignore[misc]
+    tickets = [MotionClaim(lambda number=number: stopped.append(number)) for number in range(3)]  # type: ignore[misc]
     for each in tickets[:2]:
         motions.claims[each] = None
     motions.abort()

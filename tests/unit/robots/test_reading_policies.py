@@ -15,7 +15,7 @@ from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.mapping.decoding import Values
+from jacaros.robots.mapping.decoding import ReadValues
 from jacaros.runtime.clock import VirtualClock, run
 from jacaros.runtime.trace import Cause
 
@@ -28,14 +28,14 @@ class Slow:
     def __init__(self, policy: ReadingPolicy) -> None:
         self.clock = VirtualClock()
         self.behind = False
-        self.log: list[tuple[float, Values | str]] = []
+        self.log: list[tuple[float, ReadValues | str]] = []
         withdrawn = partial(self.note, "withdrawn")
         self.reading = Reading(policy, self.clock, self.show, "", withdrawn, self.refuse, lambda: self.behind)
 
-    def note(self, what: Values | str) -> None:
+    def note(self, what: ReadValues | str) -> None:
         self.log.append((round(self.clock.elapsed, 6), what))
 
-    def show(self, values: Values, cause: Cause | None) -> None:
+    def show(self, values: ReadValues, cause: Cause | None) -> None:
         self.note(values)
         self.behind = True
 
@@ -275,9 +275,9 @@ async def test_a_scan_on_demand_expires_too_and_is_defined_by_the_operation(lab:
 
 
 def test_only_elements_within_reach_of_the_robot_are_in_view() -> None:
-    shown: list[list[Values]] = []
+    shown: list[list[ReadValues]] = []
     view = RangeOfView(2.0, lambda elements, cause: shown.append(elements))
-    cells: list[Values] = [(0, 0, "a"), (2, 0, "b"), (3, 0, "c"), (math.nan, 0, "d")]
+    cells: list[ReadValues] = [(0, 0, "a"), (2, 0, "b"), (3, 0, "c"), (math.nan, 0, "d")]
     view.take(cells)
     assert shown == []
     view.stand(0, 0)

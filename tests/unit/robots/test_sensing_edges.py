@@ -9,12 +9,12 @@ from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
 from jacaros.artifacts.streams import ReadingPolicy
-from jacaros.robots.kit.faults import Faults, Stamps
+from jacaros.robots.kit.faults import BadMessages, Stamps
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
-from jacaros.robots.mapping.decoding import Values, converted, extractor
-from jacaros.robots.mapping.fields import Conversion, Line, conversion
+from jacaros.robots.mapping.decoding import ReadValues, converted, extractor
+from jacaros.robots.mapping.fields import Conversion, LinearConversion, conversion
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.plane.pose import Pose
@@ -55,7 +55,7 @@ def test_values_that_are_confirmed_in_time_do_not_expire() -> None:
 
 def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longest_wait() -> None:
     clock = VirtualClock()
-    delivered: list[tuple[float, Values]] = []
+    delivered: list[tuple[float, ReadValues]] = []
 
     async def main() -> None:
         reading = Reading(
@@ -74,7 +74,7 @@ def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longe
 
 
 def test_an_element_at_the_edge_of_the_view_is_in_view() -> None:
-    seen: list[list[Values]] = []
+    seen: list[list[ReadValues]] = []
     view = RangeOfView(1.0, lambda elements, cause: seen.append(elements))
     view.stand(0.0, 0.0)
     view.take([(1.0, 0.0), (0.0, -1.0), (1.001, 0.0)])
@@ -104,14 +104,14 @@ async def test_a_server_that_may_be_paused_is_resumed_and_one_that_refused_is_no
 
 
 def test_a_conversion_of_units_is_followed_by_scale_and_offset() -> None:
-    both = conversion("kelvin", "celsius").then(Line(1.8, 32.0))
+    both = conversion("kelvin", "celsius").then(LinearConversion(1.8, 32.0))
     assert both.there(300.0) == pytest.approx(80.33)
     assert both.back(80.33) == pytest.approx(300.0)
 
 
 @pytest.mark.parametrize(("share", "percent"), [(0.57, 57), (0.5699, 56), (1.0, 100), (0.0, 0)])
 def test_rounding_down_forgives_the_error_of_a_multiplication(share: float, percent: int) -> None:
-    down = converted(Conversion(line=Line(100.0), digits=0, floor=True))
+    down = converted(Conversion(line=LinearConversion(100.0), digits=0, floor=True))
     assert down(share) == percent
 
 
@@ -139,7 +139,7 @@ def test_operations_may_share_the_name_of_their_feedback_but_not_that_of_a_prope
 def test_messages_with_equal_stamps_are_not_taken_for_late_ones() -> None:
     clock = VirtualClock()
     told: list[str] = []
-    stamps = Stamps(Faults("/t", lambda why, text: told.append(text)), clock)
+    stamps = Stamps(BadMessages("/t", lambda why, text: told.append(text)), clock)
     assert stamps.accept(1000.0, 0.0)
     clock.elapsed = 5.0
     assert stamps.accept(1000.0, 0.0), "such as a latched message that is repeated"

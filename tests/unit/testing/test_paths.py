@@ -5,7 +5,7 @@ import math
 import pytest
 
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.world import Sample, World
+from jacaros.robots.world import PathSample, World
 from jacaros.testing.paths import angle_between, distance, seen_from, to_segment, turns
 
 
@@ -25,7 +25,7 @@ def test_the_nearest_point_of_a_segment(x: float, y: float, far: float) -> None:
     assert to_segment(Pose(x, y, 0), (0, 0), (2, 0)) == pytest.approx(far)
 
 
-def path_of(*commands: tuple[float, float, float]) -> list[Sample]:
+def path_of(*commands: tuple[float, float, float]) -> list[PathSample]:
     """Return the path of a robot with a speed and turn rate for several seconds each."""
     world = World.load("empty")
     for speed, turn_rate, seconds in commands:

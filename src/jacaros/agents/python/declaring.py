@@ -167,7 +167,7 @@ class _Call:
         parameters = chain(signature.parameters, repeat(signature.rest))
         try:
             bound = signature.bind(tuple(map(self._value, parameters, terms)))
-        except operations.WrongArguments as wrong:
+        except operations.ArgumentMismatch as wrong:
             raise WrongArguments(f"{callee.name}: {wrong}") from None
         self.arguments = (agent_of(ctx.agent), *bound) if callee.wants_agent else bound
 
@@ -255,7 +255,7 @@ def _evaluator(
             return None
         try:
             values = signature.bind(tuple(to_value(term) for term in known))
-        except operations.WrongArguments as wrong:
+        except operations.ArgumentMismatch as wrong:
             raise ArithmeticFault(f"{name}: {wrong}") from None
         try:
             value = function(*values)

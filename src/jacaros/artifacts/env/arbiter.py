@@ -63,7 +63,7 @@ Policy = Literal["wait", "refuse"]
 POLICIES: tuple[Policy, ...] = ("wait", "refuse")
 
 
-class State(StrEnum):
+class ClaimState(StrEnum):
     """The state of a claim."""
 
     OUT = "out"
@@ -119,7 +119,7 @@ class Claim:
     within: "tuple[Claim, ...]" = ()
     plan_of: str = ""
     blocks: str = ""
-    state: State = field(default=State.OUT, init=False)
+    state: ClaimState = field(default=ClaimState.OUT, init=False)
     fresh: bool = field(default=True, init=False)
     order: int = field(default=0, init=False)
     inherited: int = field(default=0, init=False)
@@ -133,7 +133,7 @@ class Claim:
     @property
     def holds(self) -> bool:
         """Whether no other claim can have its resources."""
-        return self.state is State.HELD or self.state is State.YIELDING
+        return self.state is ClaimState.HELD or self.state is ClaimState.YIELDING
 
     @property
     def base(self) -> int:
@@ -222,34 +222,34 @@ class Arbiter:
 
     def enter(self, claim: Claim) -> bool:
         """Make a claim. Return False if it is not granted immediately; its claimant is notified later."""
-        if claim.state is State.OUT:
+        if claim.state is ClaimState.OUT:
             self._arrivals += 1
             claim.order = self._arrivals
             self._wait(claim)
             self._settle()
-        return claim.state is State.HELD
+        return claim.state is ClaimState.HELD
 
     def gave_way(self, claim: Claim) -> None:
         """Report that a claim has yielded. It waits to be granted again."""
-        if claim.state is State.YIELDING:
+        if claim.state is ClaimState.YIELDING:
             self._let_go(claim)
             self._wait(claim)
             self._settle()
 
     def leave(self, claim: Claim) -> None:
         """Release a claim, or its place in the queue. Releasing it again has no effect."""
-        if claim.state is State.OUT:
+        if claim.state is ClaimState.OUT:
             return
-        if claim.state is State.WAITING:
+        if claim.state is ClaimState.WAITING:
             self._stop_waiting(claim)
         else:
             self._let_go(claim)
-        claim.state = State.OUT
+        claim.state = ClaimState.OUT
         claim.inherited = 0
         self._settle()
 
     def _wait(self, claim: Claim) -> None:
-        claim.state = State.WAITING
+        claim.state = ClaimState.WAITING
         self._waiting.append(claim)
 
     def _stop_waiting(self, claim: Claim) -> None:
@@ -293,7 +293,7 @@ class Arbiter:
         for claim in self._in_order():
             if claim.plan_of in blocked and not claim.blocks:
                 continue
-            if any(outer.state is not State.HELD for outer in claim.within):
+            if any(outer.state is not ClaimState.HELD for outer in claim.within):
                 continue
             blockers = self._blockers(claim)
             wanted = set(claim.uses)
@@ -315,7 +315,7 @@ class Arbiter:
 
     def _grant(self, claim: Claim) -> None:
         self._stop_waiting(claim)
-        claim.state, claim.fresh = State.HELD, False
+        claim.state, claim.fresh = ClaimState.HELD, False
         for name in claim.uses:
             self._holders.setdefault(name, []).append(claim)
         claim.claimant.granted(claim)
@@ -326,18 +326,26 @@ class Arbiter:
         stays = not _all_go(chosen)
         for holder, resource in chosen:
             # A nested claim would be granted again immediately, and asked again, as long as an outer one holds.
-            if holder.state is State.HELD and holder.claimant.can_yield and not (stays and holder.within):
-                holder.state = State.YIELDING
+            if (
+                holder.state is ClaimState.HELD
+                and holder.claimant.can_yield
+                and not (stays and holder.within)
+            ):
+                holder.state = ClaimState.YIELDING
                 holder.claimant.preempted(holder, resource)
                 return True
         return False
 
     def _chosen(self, claim: Claim, blockers: list[tuple[Claim, str]]) -> list[tuple[Claim, str]]:
         """Return the holders that must yield to a claim, the first to ask first. Empty if one of them may stay."""
-        if any(holder.state is State.HELD and not self._outranks(claim, holder) for holder, _ in blockers):
+        if any(
+            holder.state is ClaimState.HELD and not self._outranks(claim, holder) for holder, _ in blockers
+        ):
             return []
         # A holder that is yielding has been asked already.
-        return sorted(blockers, key=lambda each: (each[0].state is State.HELD, each[0].base, -each[0].order))
+        return sorted(
+            blockers, key=lambda each: (each[0].state is ClaimState.HELD, each[0].base, -each[0].order)
+        )
 
     def _outranks(self, claim: Claim, holder: Claim) -> bool:
         return bool(claim.blocks and claim.blocks == holder.plan_of) or claim.base > holder.base
@@ -364,7 +372,7 @@ class Arbiter:
 
     def _fail(self, claim: Claim, reason: Structure) -> None:
         self._stop_waiting(claim)
-        claim.state = State.OUT
+        claim.state = ClaimState.OUT
         claim.claimant.refused(claim, reason)
 
     # ---- blocking claims
@@ -379,7 +387,7 @@ class Arbiter:
         ]
 
     def _waits_for(self, claim: Claim) -> Iterator[tuple[Claim, str]]:
-        return ((holder, name) for holder, name in self._blockers(claim) if holder.state is State.HELD)
+        return ((holder, name) for holder, name in self._blockers(claim) if holder.state is ClaimState.HELD)
 
     # ---- urgency
 
@@ -394,7 +402,7 @@ class Arbiter:
             for claim in self._waiting:
                 for holder, _ in self._blockers(claim):
                     if holder.base >= claim.base or (
-                        holder.state is State.YIELDING or holder.claimant.can_yield
+                        holder.state is ClaimState.YIELDING or holder.claimant.can_yield
                     ):
                         continue
                     for each in claims:
@@ -416,4 +424,4 @@ class Arbiter:
 
 def _all_go(chosen: list[tuple[Claim, str]]) -> bool:
     """Return whether all are yielding, or will when asked."""
-    return all(each.state is State.YIELDING or each.claimant.can_yield for each, _ in chosen)
+    return all(each.state is ClaimState.YIELDING or each.claimant.can_yield for each, _ in chosen)

@@ -19,18 +19,18 @@ from jacaros.artifacts.env.operation import (
 from jacaros.artifacts.env.ports import UnderWay, Workspace
 from jacaros.artifacts.env.property import ObservableProperty, plain_annotations
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
-from jacaros.artifacts.kernel.declaration import Interface, declare_function, interface_of
+from jacaros.artifacts.kernel.declaration import UsageInterface, declare_function, interface_of
 from jacaros.artifacts.kernel.faults import text_of
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause
 
-__all__ = ["Artifact", "Host", "Out", "initializer", "internal_operation", "link", "operation"]
+__all__ = ["Artifact", "ArtifactHost", "Out", "initializer", "internal_operation", "link", "operation"]
 
 T = TypeVar("T")
 
 
-class Host(Workspace, Protocol):
+class ArtifactHost(Workspace, Protocol):
     """The workspace of an artifact, as far as the artifact may use it."""
 
     def linked(self, from_id: ArtifactId, port: str) -> tuple[ArtifactId, ...]:
@@ -64,10 +64,10 @@ class Artifact:
     ports: ClassVar[tuple[str, ...]] = ()
     name: str
     id: ArtifactId
-    workspace: Host
+    workspace: ArtifactHost
     clock: Clock
     resources: Mapping[str, object]
-    interface: ClassVar[Interface]
+    interface: ClassVar[UsageInterface]
     _steps: Steps
 
     def __init_subclass__(cls, **keywords: object) -> None:
@@ -91,7 +91,7 @@ class Artifact:
             )
         object.__setattr__(self, name, value)
 
-    def _join(self, steps: Steps, host: Host) -> None:
+    def _join(self, steps: Steps, host: ArtifactHost) -> None:
         """Connect the artifact with the kernel. Called once, before ``init``."""
         self.__dict__.update(
             name=steps.id.name,
@@ -460,7 +460,7 @@ class Artifact:
         """Remove all operations called *name* from this artifact."""
         self._own_interface().operations.remove(name)
 
-    def _own_interface(self) -> Interface:
+    def _own_interface(self) -> UsageInterface:
         if self._steps.interface is type(self).interface:
             self._steps.interface = self._steps.interface.copy()
         self.workspace.operations_changed(self.id)

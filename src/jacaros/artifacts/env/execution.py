@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
 
-from jacaros.artifacts.env.arbiter import Arbiter, Claim, State, local_name
+from jacaros.artifacts.env.arbiter import Arbiter, Claim, ClaimState, local_name
 from jacaros.artifacts.env.errors import ArtifactId
 from jacaros.artifacts.env.operation import OperationOutcome, OperationRequest, WhenPreempted
 from jacaros.artifacts.env.ports import UnderWay
@@ -291,7 +291,7 @@ class Holding:
     @property
     def barred(self) -> bool:
         """Whether the operation has claimed its resources, and must not continue without them."""
-        return self.entered and self.claim.state is not State.HELD
+        return self.entered and self.claim.state is not ClaimState.HELD
 
     @property
     def holds(self) -> bool:
@@ -327,14 +327,16 @@ class Holding:
 
     def suspended(self) -> None:
         """The caller has paused the operation: others may have its turn, as soon as nothing moves."""
-        if self.entered and (self.resting or self.claim.state is State.WAITING or not self._operation.active):
+        if self.entered and (
+            self.resting or self.claim.state is ClaimState.WAITING or not self._operation.active
+        ):
             self._arbiter.leave(self.claim)
         self._tell(None)
         self._changed()
 
     def resumed(self) -> None:
         """The caller has resumed the operation: it claims again what it has released."""
-        if self.entered and self.claim.state is State.OUT:
+        if self.entered and self.claim.state is ClaimState.OUT:
             self._arbiter.enter(self.claim)
         self._changed()
 
@@ -395,11 +397,11 @@ class Holding:
 # Call the linked operations behind an out port, and wait for all of them.
 
 
-Execute = Callable[[OperationRequest], UnderWay]
+ExecuteOperation = Callable[[OperationRequest], UnderWay]
 
 
 async def call_all(
-    execute: Execute,
+    execute: ExecuteOperation,
     targets: tuple[ArtifactId, ...],
     operation: str,
     arguments: tuple[object, ...],

@@ -42,7 +42,7 @@ class UnderWay(Protocol):
         """Let it continue."""
 
 
-class Waiting:
+class WaitingRequest:
     """A request that only waits, so that there is nothing to pause. Cancelling calls *stop*."""
 
     def __init__(self, stop: Callable[[], None]) -> None:
@@ -55,7 +55,7 @@ class Waiting:
         """Do nothing."""
 
 
-ENDED: Final = Waiting(lambda: None)
+ENDED: Final = WaitingRequest(lambda: None)
 """The handle of a request that has ended."""
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from jacaros.artifacts.env import ports
-from jacaros.artifacts.env.artifact import Artifact, Host
+from jacaros.artifacts.env.artifact import Artifact, ArtifactHost
 from jacaros.artifacts.env.errors import (
     ArtifactId,
     InvalidArtifact,
@@ -29,7 +29,7 @@ from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, igno
 from jacaros.artifacts.env.property import ObservableProperty, Observer
 from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kernel import faults
-from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, Interface, interface_of
+from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, UsageInterface, interface_of
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
 from jacaros.artifacts.kernel.publication import Setting, mistakes_in
 from jacaros.artifacts.kernel.registry import Registry
@@ -86,7 +86,9 @@ def artifact_type_of(
     return found
 
 
-def attach(artifact_type: type[Artifact], artifact_id: ArtifactId, host: Host, setting: Setting) -> Steps:
+def attach(
+    artifact_type: type[Artifact], artifact_id: ArtifactId, host: ArtifactHost, setting: Setting
+) -> Steps:
     """Create the object of an artifact and connect it with the kernel, which runs its operations.
 
     Raises:
@@ -662,7 +664,7 @@ class Workspace(ports.Workspace):
         if self._artifacts.get(artifact_id.name) is artifact_id:
             self._indexes.clear()
 
-    def interface(self, artifact_id: ArtifactId) -> Interface:
+    def interface(self, artifact_id: ArtifactId) -> UsageInterface:
         """Return the operations of an artifact.
 
         Raises:

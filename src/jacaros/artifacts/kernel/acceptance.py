@@ -16,7 +16,7 @@ from jacaros.artifacts.env.values import Atom, Out, Structure, equal, functor_of
 # For a parameter that is a dataclass or a named tuple, agents pass a structure, such as ``pose(1,2)``.
 
 
-Accept = Callable[[Any], object]
+AcceptValue = Callable[[Any], object]
 """Converts an argument for the operation. Raises `Unsuitable`."""
 
 LONGEST = 120
@@ -27,7 +27,7 @@ class Unsuitable(Exception):
     """An argument is not of the kind that a parameter accepts. The text, if any, says which part of it is not."""
 
 
-class Kind(NamedTuple):
+class ValueKind(NamedTuple):
     """A kind of values.
 
     Attributes:
@@ -36,7 +36,7 @@ class Kind(NamedTuple):
     """
 
     expected: str
-    accept: Accept
+    accept: AcceptValue
 
 
 def _input(argument: object) -> object:
@@ -45,10 +45,10 @@ def _input(argument: object) -> object:
     return argument
 
 
-ANYTHING = Kind("any value", _input)
+ANYTHING = ValueKind("any value", _input)
 
 
-def instance_of(kind: type, expected: str) -> Kind:
+def instance_of(kind: type, expected: str) -> ValueKind:
     """Accept instances of a class, unconverted."""
 
     def accept(argument: object) -> object:
@@ -56,10 +56,10 @@ def instance_of(kind: type, expected: str) -> Kind:
             return argument
         raise Unsuitable
 
-    return Kind(expected, accept)
+    return ValueKind(expected, accept)
 
 
-def alternatives(kinds: Sequence[Kind]) -> Kind:
+def alternatives(kinds: Sequence[ValueKind]) -> ValueKind:
     """Accept any of several kinds. One that needs no conversion has precedence."""
 
     def accept(argument: object) -> object:
@@ -78,7 +78,7 @@ def alternatives(kinds: Sequence[Kind]) -> Kind:
             raise Unsuitable(next(filter(None, reasons), ""))
         return converted[0]
 
-    return Kind(" or ".join(kind.expected for kind in kinds), accept)
+    return ValueKind(" or ".join(kind.expected for kind in kinds), accept)
 
 
 def shown(argument: object) -> str:
@@ -87,7 +87,7 @@ def shown(argument: object) -> str:
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
 
 
-def accept_part(kind: Kind, item: object, part: str, which: object = None) -> Any:
+def accept_part(kind: ValueKind, item: object, part: str, which: object = None) -> Any:
     """Accept a part of an argument, such as its ``element`` 3.
 
     Raises:
@@ -137,7 +137,7 @@ def _hints(kind: type) -> dict[str, Any]:
         return {}
 
 
-def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> Kind:
+def record(kind: type, fields: list[Field], kind_of: Callable[[Any], ValueKind]) -> ValueKind:
     """Accept structures that become a *kind*."""
     functor = functor_of(kind)
     kinds = [(field, kind_of(field.annotation)) for field in fields]
@@ -159,7 +159,7 @@ def record(kind: type, fields: list[Field], kind_of: Callable[[Any], Kind]) -> K
             raise Unsuitable(str(error)) from None
 
     written = ", ".join(f"{f.name}: {k.expected}" + (" (optional)" if f.optional else "") for f, k in kinds)
-    return Kind(f"{functor}({written})" if written else functor, accept)
+    return ValueKind(f"{functor}({written})" if written else functor, accept)
 
 
 def _arguments(argument: object, functor: str) -> tuple[object, ...]:
@@ -170,7 +170,7 @@ def _arguments(argument: object, functor: str) -> tuple[object, ...]:
     raise Unsuitable
 
 
-def kind_of(annotation: Any) -> Kind:
+def kind_of(annotation: Any) -> ValueKind:
     """Return the kind of values that a parameter with *annotation* accepts. An unknown annotation accepts any input."""
     annotation = _unwrapped(annotation)
     if _hashable(annotation) and annotation in _SIMPLE:
@@ -208,7 +208,7 @@ def _unwrapped(annotation: Any) -> Any:
             return annotation
 
 
-def _kind_of_class(kind: type) -> Kind:
+def _kind_of_class(kind: type) -> ValueKind:
     if issubclass(kind, enum.Enum):
         return _member(kind)
     fields = fields_of(kind)
@@ -245,17 +245,17 @@ def _text(argument: object) -> object:
     return str(argument) if type(argument) is not str else argument
 
 
-def _choice(choices: tuple[object, ...]) -> Kind:
+def _choice(choices: tuple[object, ...]) -> ValueKind:
     def accept(argument: object) -> object:
         for choice in choices:
             if argument is choice or equal(argument, choice):
                 return argument
         raise Unsuitable
 
-    return Kind(" or ".join(text(choice, quoted=True) for choice in choices), accept)
+    return ValueKind(" or ".join(text(choice, quoted=True) for choice in choices), accept)
 
 
-def _member(kind: type[enum.Enum]) -> Kind:
+def _member(kind: type[enum.Enum]) -> ValueKind:
     """Accept a member of an enumeration, by its name in any case, or by its value."""
     members = list(kind)
     by_name = {member.name.lower(): member for member in members}
@@ -270,11 +270,11 @@ def _member(kind: type[enum.Enum]) -> Kind:
             raise Unsuitable
         return found
 
-    return Kind(f"one of {', '.join(by_name)}", accept)
+    return ValueKind(f"one of {', '.join(by_name)}", accept)
 
 
-def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]], Kind]:
-    def kind(members: tuple[Any, ...]) -> Kind:
+def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]], ValueKind]:
+    def kind(members: tuple[Any, ...]) -> ValueKind:
         each = kind_of(members[0]) if members else None
 
         def accept(argument: object) -> object:
@@ -286,12 +286,14 @@ def _list_like(make: Callable[[list[Any]], object]) -> Callable[[tuple[Any, ...]
                 else [accept_part(each, item, "element", n) for n, item in enumerate(argument, 1)]
             )
 
-        return Kind("a list" if each is None or each is ANYTHING else f"a list, each {each.expected}", accept)
+        return ValueKind(
+            "a list" if each is None or each is ANYTHING else f"a list, each {each.expected}", accept
+        )
 
     return kind
 
 
-def _tuple(members: tuple[Any, ...]) -> Kind:
+def _tuple(members: tuple[Any, ...]) -> ValueKind:
     """Accept a list of this length as a tuple of these members; ``tuple[T, ...]`` accepts any length."""
     if not members or members[-1] is Ellipsis:
         return _list_like(tuple)(members[:1])
@@ -305,7 +307,7 @@ def _tuple(members: tuple[Any, ...]) -> Kind:
         pairs = zip(kinds, argument, strict=True)
         return tuple(accept_part(kind, item, "element", n) for n, (kind, item) in enumerate(pairs, 1))
 
-    return Kind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
+    return ValueKind(f"a list of {len(kinds)} ({', '.join(kind.expected for kind in kinds)})", accept)
 
 
 def _takes_none(argument: object) -> object:
@@ -314,14 +316,14 @@ def _takes_none(argument: object) -> object:
     raise Unsuitable
 
 
-_SIMPLE: dict[Any, Kind] = {
+_SIMPLE: dict[Any, ValueKind] = {
     object: ANYTHING,
     Any: ANYTHING,
-    int: Kind("an integer", _integer),
-    float: Kind("a number", _real),
-    str: Kind("a text", _text),
-    type(None): Kind("nothing", _takes_none),
-    None: Kind("nothing", _takes_none),
+    int: ValueKind("an integer", _integer),
+    float: ValueKind("a number", _real),
+    str: ValueKind("a text", _text),
+    type(None): ValueKind("nothing", _takes_none),
+    None: ValueKind("nothing", _takes_none),
     bool: instance_of(bool, "true or false"),
     Atom: instance_of(Atom, "an atom"),
     Structure: instance_of(Structure, "a structure"),
@@ -330,7 +332,7 @@ _SIMPLE: dict[Any, Kind] = {
 
 _LIST = _list_like(lambda items: items)
 _MAP = instance_of(dict, "a map")
-_CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], Kind]] = {
+_CONTAINERS: dict[Any, Callable[[tuple[Any, ...]], ValueKind]] = {
     list: _LIST,
     tuple: _tuple,
     dict: lambda members: _MAP,

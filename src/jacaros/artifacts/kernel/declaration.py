@@ -14,7 +14,7 @@ from jacaros.artifacts.env.arbiter import read_uses
 from jacaros.artifacts.env.errors import InvalidArtifact
 from jacaros.artifacts.env.operation import INIT, INTERNAL, LINK, OPERATION, Mark, WhenPreempted, marks_of
 from jacaros.artifacts.env.values import Atom, Out, Structure
-from jacaros.artifacts.kernel.acceptance import Accept, Unsuitable, kind_of, shown
+from jacaros.artifacts.kernel.acceptance import AcceptValue, Unsuitable, kind_of, shown
 from jacaros.runtime.files.texts import aside
 
 # The parameters of an operation: the number of arguments, their kinds, and the outputs.
@@ -25,7 +25,7 @@ _NOTHING = object()
 """Marks an annotation that cannot be resolved."""
 
 
-class WrongArguments(Exception):
+class ArgumentMismatch(Exception):
     """The arguments of a call do not match. The text names parameter, value and expected kind."""
 
 
@@ -44,7 +44,7 @@ class Parameter(NamedTuple):
     expected: str
     output: bool
     optional: bool
-    accept: Accept
+    accept: AcceptValue
 
 
 class Signature:
@@ -105,7 +105,7 @@ class Signature:
                 part += "; give it a value before the call"
                 if self.is_written:
                     part += f", or, for an output, annotate the parameter: `{parameter.name}: Out`"
-            raise WrongArguments(
+            raise ArgumentMismatch(
                 f"argument {position + 1} ({parameter.name}): expected {parameter.expected}, "
                 f"found {shown(arguments[position])}{part}"
             ) from None
@@ -439,7 +439,7 @@ def _check_overlap(present: DeclaredOperation | None, new: DeclaredOperation, ar
 
 
 @dataclass(frozen=True, slots=True)
-class Interface:
+class UsageInterface:
     """All operations of an artifact type, or of one artifact that defines more of its own.
 
     Attributes:
@@ -478,12 +478,12 @@ class Interface:
             for parameter, written in declared.signature.unknown.items():
                 yield name_of(declared.source), parameter, written
 
-    def copy(self) -> "Interface":
+    def copy(self) -> "UsageInterface":
         """Return an interface that can be changed independently."""
-        return Interface(self.operations.copy(), self.links.copy(), self.internals.copy(), self.inits)
+        return UsageInterface(self.operations.copy(), self.links.copy(), self.internals.copy(), self.inits)
 
 
-def interface_of(artifact_type: type) -> Interface:
+def interface_of(artifact_type: type) -> UsageInterface:
     """Return the interface of an artifact class, from the marks on its methods.
 
     A method that is overridden without a decorator remains an operation, like any Python method.
@@ -499,7 +499,7 @@ def interface_of(artifact_type: type) -> Interface:
             if attribute == "init":
                 others = tuple(mark for mark in marks_of(member) if mark.kind != INIT)
                 marks[attribute] = (depth, (*others, Mark(INIT)))
-    interface = Interface()
+    interface = UsageInterface()
     for attribute, (depth, declared) in sorted(marks.items(), key=_depth):
         function = getattr(artifact_type, attribute)
         for mark in declared if callable(function) else ():

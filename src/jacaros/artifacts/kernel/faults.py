@@ -12,7 +12,7 @@ from typing import Any
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
 from jacaros.artifacts.env.operation import INTERNAL, LINK, OPERATION, OperationOutcome, OperationRequest
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.artifacts.kernel.declaration import Interface, WrongArguments
+from jacaros.artifacts.kernel.declaration import ArgumentMismatch, UsageInterface
 from jacaros.runtime.errors import InternalError
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK", "SIGALRM", "SIGILL")
@@ -57,7 +57,7 @@ def error_text(error: BaseException) -> str:
 _CALLERS = {OPERATION: "agents", LINK: "other artifacts only", INTERNAL: "the artifact itself only"}
 
 
-def unknown_operation(request: OperationRequest, kind: str, interface: Interface) -> OperationOutcome:
+def unknown_operation(request: OperationRequest, kind: str, interface: UsageInterface) -> OperationOutcome:
     """Return the failure for an unknown operation, number of arguments, or kind of caller."""
     name, arity, artifact = request.operation, len(request.arguments), request.artifact
     for other in (OPERATION, LINK, INTERNAL):
@@ -70,7 +70,7 @@ def unknown_operation(request: OperationRequest, kind: str, interface: Interface
     return OperationOutcome(False, message, Structure("unknown_operation", (artifact, name)))
 
 
-def wrong_arguments(request: OperationRequest, wrong: WrongArguments) -> OperationOutcome:
+def wrong_arguments(request: OperationRequest, wrong: ArgumentMismatch) -> OperationOutcome:
     """Return the failure for an argument of the wrong kind."""
     message = f"operation {request.key} of artifact {request.artifact.name}: {wrong}"
     return OperationOutcome(False, message, Structure("wrong_op_arguments", (request.artifact, request.key)))

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from jacaros.artifacts.env.errors import ArtifactId
-from jacaros.artifacts.kernel.declaration import Interface
+from jacaros.artifacts.kernel.declaration import UsageInterface
 from jacaros.artifacts.kernel.steps import Steps
 
-Promise = tuple[Interface, Callable[[], Steps]]
+Promise = tuple[UsageInterface, Callable[[], Steps]]
 """The operations of an artifact that does not exist yet, and the function that creates it."""
 OutPort = tuple[ArtifactId, str]
 """An artifact and the name of one of its out ports."""
@@ -40,7 +40,7 @@ class Registry:
         self._steps[steps.id] = steps
         self._forget[steps.id] = forget
 
-    def promise(self, artifact_id: ArtifactId, interface: Interface, make: Callable[[], Steps]) -> None:
+    def promise(self, artifact_id: ArtifactId, interface: UsageInterface, make: Callable[[], Steps]) -> None:
         """Add an artifact that *make* will create and `add`."""
         self._promises[artifact_id] = (interface, make)
 
@@ -60,7 +60,7 @@ class Registry:
         """Return the artifact with this id, or None if it is gone or only promised."""
         return self._steps.get(artifact_id)
 
-    def interface(self, artifact_id: ArtifactId) -> Interface | None:
+    def interface(self, artifact_id: ArtifactId) -> UsageInterface | None:
         """Return the operations of the artifact with this id, or None if it is gone."""
         if artifact_id in self._promises:
             return self._promises[artifact_id][0]

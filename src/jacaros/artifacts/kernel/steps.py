@@ -25,7 +25,7 @@ from jacaros.artifacts.env.operation import (
 from jacaros.artifacts.env.property import Signal, check_name
 from jacaros.artifacts.env.values import Atom, Structure, plain
 from jacaros.artifacts.kernel import faults
-from jacaros.artifacts.kernel.declaration import DeclaredOperation, Interface, WrongArguments
+from jacaros.artifacts.kernel.declaration import ArgumentMismatch, DeclaredOperation, UsageInterface
 from jacaros.artifacts.kernel.faults import is_interruption
 from jacaros.artifacts.kernel.publication import Publication, Setting
 from jacaros.artifacts.kernel.turns import Guard, TurnQueue
@@ -105,7 +105,7 @@ class Steps:
         self,
         artifact_id: ArtifactId,
         artifact: Any,
-        interface: Interface,
+        interface: UsageInterface,
         ports: tuple[str, ...],
         setting: Setting,
     ) -> None:
@@ -242,7 +242,7 @@ class Steps:
             return self.refuse(request, faults.unknown_operation(request, kind, self.interface))
         try:
             arguments = declared.signature.bind(request.arguments)
-        except WrongArguments as wrong:
+        except ArgumentMismatch as wrong:
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         cause = request.cause
         if self.setting.tracer is not None:
@@ -332,7 +332,7 @@ class Steps:
         self.setting.know_loop()
         try:
             arguments = declared.signature.bind(request.arguments)
-        except WrongArguments as wrong:
+        except ArgumentMismatch as wrong:
             return self.refuse(request, faults.wrong_arguments(request, wrong))
         execution = OperationExecution(self, request, declared, arguments, request.cause)
         self.turns.enter(execution, None)

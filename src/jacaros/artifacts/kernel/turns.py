@@ -14,7 +14,7 @@ Guard = Callable[[], object]
 
 
 @dataclass(slots=True, eq=False)
-class Place:
+class QueuePlace:
     """A place in the queue.
 
     Attributes:
@@ -48,14 +48,14 @@ class TurnQueue:
         self._begin = begin
         self.asking = False
         self.holder: OperationExecution | None = None
-        self.places: list[Place] = []
+        self.places: list[QueuePlace] = []
         self._changed = False
         self.serving = False
 
     def enter(self, execution: OperationExecution, guard: Guard | None) -> None:
         """Begin an operation as soon as it has the turn, possibly immediately."""
         if self.holder is not None or self.serving or execution.paused:
-            self.places.append(Place(execution, guard))
+            self.places.append(QueuePlace(execution, guard))
             return
         self.serving = True
         self._changed = False  # the guards of waiting operations have been evaluated since the last change
@@ -64,13 +64,13 @@ class TurnQueue:
                 self.holder = execution
                 self._begin(execution, None)
             else:
-                self._enter_guarded(Place(execution, guard))
+                self._enter_guarded(QueuePlace(execution, guard))
         finally:
             self.serving = False
             if self.places:
                 self.serve()
 
-    def _enter_guarded(self, place: Place) -> None:
+    def _enter_guarded(self, place: QueuePlace) -> None:
         if self._may_go(place):
             self._give(place)
         else:
@@ -80,7 +80,7 @@ class TurnQueue:
         self, executions: list[OperationExecution], guard: Callable[[OperationExecution], Guard | None]
     ) -> None:
         """Queue operations that the holder of the turn has started."""
-        self.places.extend(Place(each, guard(each)) for each in executions)
+        self.places.extend(QueuePlace(each, guard(each)) for each in executions)
 
     async def retake(self, execution: OperationExecution) -> None:
         """Wait until *execution* has the turn again.
@@ -91,20 +91,20 @@ class TurnQueue:
         if self.holder is None:
             self.holder = execution
             return
-        place = Place(execution, None, asyncio.get_running_loop().create_future())
+        place = QueuePlace(execution, None, asyncio.get_running_loop().create_future())
         self.places.insert(0 if execution.stopped else len(self.places), place)
         await self._granted(place)
 
     async def release_until(self, execution: OperationExecution, guard: Guard) -> None:
         """Release the turn of *execution*, and wait until it has it again with *guard* true."""
-        place = Place(execution, guard, asyncio.get_running_loop().create_future())
+        place = QueuePlace(execution, guard, asyncio.get_running_loop().create_future())
         self.places.append(place)
         self.release()
         await self._granted(place)
         if place.error is not None:
             raise place.error
 
-    async def _granted(self, place: Place) -> None:
+    async def _granted(self, place: QueuePlace) -> None:
         assert place.granted is not None
         try:
             await place.granted
@@ -112,7 +112,7 @@ class TurnQueue:
             await self._retake_first(place)
             raise
 
-    async def _retake_first(self, place: Place) -> None:
+    async def _retake_first(self, place: QueuePlace) -> None:
         place.guard = None
         while self.holder is not place.execution:
             self.places.remove(place)
@@ -181,14 +181,14 @@ class TurnQueue:
         """Return the operations that wait for their first turn, in order."""
         return [place.execution for place in self.places if place.granted is None]
 
-    def _next(self) -> Place | None:
+    def _next(self) -> QueuePlace | None:
         for index, place in enumerate(self.places):
             if self._may_go(place):
                 del self.places[index]
                 return place
         return None
 
-    def _may_go(self, place: Place) -> bool:
+    def _may_go(self, place: QueuePlace) -> bool:
         if place.granted is None:
             if place.execution.paused:
                 return False
@@ -219,7 +219,7 @@ class TurnQueue:
             raise InvalidArtifact("expected a plain def as guard, found an async def")
         return bool(answer)
 
-    def _give(self, place: Place) -> None:
+    def _give(self, place: QueuePlace) -> None:
         self.holder = place.execution
         if place.granted is not None:
             place.granted.set_result(None)

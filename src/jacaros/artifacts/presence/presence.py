@@ -20,7 +20,7 @@ from jacaros.artifacts.env.errors import (
     resolve_path,
 )
 from jacaros.artifacts.env.operation import SUCCEEDED, OperationOutcome, ignore_outcome
-from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, Waiting, Workspace
+from jacaros.artifacts.env.ports import ENDED, OnMade, OnOutcome, UnderWay, WaitingRequest, Workspace
 from jacaros.artifacts.env.property import (
     Change,
     ObservableProperty,
@@ -603,7 +603,7 @@ class Presence:
         with suppress(UnknownArtifact):
             begin(workspace.lookup(name))
             return ENDED
-        waiting = Waiting(workspace.watch(look))
+        waiting = WaitingRequest(workspace.watch(look))
         return waiting
 
     # ---- unknown operations

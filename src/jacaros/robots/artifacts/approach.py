@@ -37,7 +37,7 @@ AVERAGED = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class TimedCommand:
     """A command and the seconds for which it holds."""
 
     velocity: Velocity

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-from jacaros.robots.artifacts.approach import ANGLE, DISTANCE, Approach, Outlook, Step, Tolerance
+from jacaros.robots.artifacts.approach import ANGLE, DISTANCE, Approach, Outlook, TimedCommand, Tolerance
 from jacaros.robots.artifacts.drive_model import STANDSTILL, Limits, Velocity
 from jacaros.robots.plane.pose import ORIGIN, Pose, clamp, normalised
 
@@ -95,7 +95,7 @@ class Maneuver(Protocol):
     def begin(self, pose: Pose) -> None:
         """Start at *pose*."""
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Return the next command; None at the end."""
 
     def rest(self, pose: Pose) -> None:
@@ -138,7 +138,7 @@ class Straight:
         heading = pose.yaw if self._heading is None else self._heading
         self._line = Line(Pose(pose.x, pose.y, heading), self._length)
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Follow the line."""
         line, model = self._line, outlook.model
         self._along = line.along(outlook.pose)
@@ -146,9 +146,9 @@ class Straight:
             model.linear, outlook, line.remaining(outlook.pose), line.remaining(outlook.ahead)
         )
         if pulse is None or not pulse.speed:
-            return None if pulse is None else Step(STANDSTILL)
+            return None if pulse is None else TimedCommand(STANDSTILL)
         turn = steer(line, outlook.ahead, pulse.speed, model.jitter, outlook.limits.turn_speed)
-        return Step(Velocity(pulse.speed, turn), pulse.seconds)
+        return TimedCommand(Velocity(pulse.speed, turn), pulse.seconds)
 
     def rest(self, pose: Pose) -> None:
         """Store the rest of the line."""
@@ -196,13 +196,13 @@ class Turn:
         """Count the angle from the heading of *pose*."""
         self._heading = self._now = pose.yaw
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Continue turning."""
         self._now = outlook.pose.yaw
         pulse = self._approach.speed(
             outlook.model.angular, outlook, self._remaining(outlook.pose), self._remaining(outlook.ahead)
         )
-        return None if pulse is None else Step(Velocity(0.0, pulse.speed), pulse.seconds)
+        return None if pulse is None else TimedCommand(Velocity(0.0, pulse.speed), pulse.seconds)
 
     def rest(self, pose: Pose) -> None:
         """Store the angle turned so far."""
@@ -248,13 +248,13 @@ class Timed:
         """Store the start."""
         self._start = self._now = pose
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Return the same velocity until the number of commands is reached."""
         self._now = outlook.pose
         if self._given >= self._times:
             return None
         self._given += 1
-        return Step(outlook.limits.clip(self._velocity), self.period)
+        return TimedCommand(outlook.limits.clip(self._velocity), self.period)
 
     def rest(self, pose: Pose) -> None:
         """The remaining commands are given later."""
@@ -340,17 +340,17 @@ class DriveTo:
         """Measure the distance."""
         self._way = distance(pose, self._goal)
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Return the command of the present part; when a part ends, the next begins."""
         if self._part is None:
             return self._next_part(outlook)
         step = self._part.command(outlook)
         if step is None:
             self._finish_part()
-            return None if distance(outlook.pose, self._goal) <= ARRIVED else Step(STANDSTILL)
+            return None if distance(outlook.pose, self._goal) <= ARRIVED else TimedCommand(STANDSTILL)
         return step
 
-    def _next_part(self, outlook: Outlook) -> Step | None:
+    def _next_part(self, outlook: Outlook) -> TimedCommand | None:
         pose = outlook.pose
         way = distance(pose, self._goal)
         if way <= ARRIVED:
@@ -360,7 +360,7 @@ class DriveTo:
         aimed = abs(aside) <= AIMED or abs(aside) * way <= 0.005
         self._part = Straight(way, pose.yaw + aside) if aimed else Turn(aside, AIMING)
         self._part.begin(pose)
-        return self._part.command(outlook) or Step(STANDSTILL)
+        return self._part.command(outlook) or TimedCommand(STANDSTILL)
 
     def _finish_part(self) -> None:
         self._driven = self.covered
@@ -411,13 +411,13 @@ class Sequence:
         """Begin the first part."""
         self._part.begin(pose)
 
-    def command(self, outlook: Outlook) -> Step | None:
+    def command(self, outlook: Outlook) -> TimedCommand | None:
         """Return the command of the present part; None after the last."""
         step = self._part.command(outlook)
         if step is None and self._index + 1 < len(self._parts):
             self._index += 1
             self._part.begin(outlook.pose)
-            return Step(STANDSTILL)
+            return TimedCommand(STANDSTILL)
         return step
 
     def rest(self, pose: Pose) -> None:

@@ -12,7 +12,7 @@ from typing import ClassVar, NoReturn
 from jacaros.artifacts.env.arbiter import WHEELS
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.streams import ReadingPolicy
-from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, Step, Unsettled
+from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, TimedCommand, Unsettled
 from jacaros.robots.artifacts.drive_model import (
     STANDSTILL,
     DriveModel,
@@ -110,7 +110,7 @@ class Motion:
         self._fresh = 0
         self._left_at: Pose | None = None
         self._watched = False
-        self._progress = Progress()
+        self._progress = ProgressChecker()
         self._sought = (0.0, 0.0)
 
     def halt(self) -> None:
@@ -169,7 +169,7 @@ class Motion:
             pause = next(pauses, None)
             if pause is None and seen and self._rests(braking):
                 return True
-            await self._command(Step(STANDSTILL, PERIOD if pause is None else pause), pause is None)
+            await self._command(TimedCommand(STANDSTILL, PERIOD if pause is None else pause), pause is None)
             braking += PERIOD if pause is None else pause
         return False
 
@@ -195,7 +195,7 @@ class Motion:
                 continue
             self._heed_gap()
             if not blind and not self._has_odometry():
-                await self._command(Step(STANDSTILL))
+                await self._command(TimedCommand(STANDSTILL))
                 continue
             step = maneuver.command(self._outlook())
             self._check(step)
@@ -208,7 +208,7 @@ class Motion:
         ahead, velocity = wheels.model.ahead(now)
         return Outlook(wheels.model, wheels.settings.limits, now, wheels.model.pose, ahead, velocity)
 
-    async def _command(self, step: Step, periodic: bool = True) -> None:
+    async def _command(self, step: TimedCommand, periodic: bool = True) -> None:
         self._wheels.show(self, self._maneuver.activity)
         self._wheels.command(step.velocity)
         await self._driving.pass_time(self._until_due(step.seconds) if periodic else step.seconds)
@@ -304,7 +304,7 @@ class Motion:
             text = f"odometry changed its frame from {self._frame} to {frame}"
             self._fail(text, "no_odometry", round(self._active - since, 1))
 
-    def _check(self, step: Step | None) -> None:
+    def _check(self, step: TimedCommand | None) -> None:
         """Fail if the motion takes too long or makes no progress."""
         settings, maneuver = self._wheels.settings, self._maneuver
         allowed = settings.timeout or 30.0 + 4.0 * maneuver.seconds(settings.limits)
@@ -349,7 +349,7 @@ def _lack(odometer: Odometer) -> str:
     return f"no odometry{bad}"
 
 
-class Progress:
+class ProgressChecker:
     """Detects a motion that makes no progress."""
 
     def __init__(self) -> None:

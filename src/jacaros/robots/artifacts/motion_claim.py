@@ -23,7 +23,7 @@ GUARD_TRIPPED = Atom("guard_tripped")
 """Reason of the gap of a robot that a guard has stopped."""
 
 
-class Claim:
+class MotionClaim:
     """One motion, from its request to its end.
 
     Args:
@@ -101,7 +101,7 @@ class Motions:
 
     def __init__(self) -> None:
         self.stops = 0
-        self.claims: dict[Claim, None] = {}
+        self.claims: dict[MotionClaim, None] = {}
         self.models: list[DriveModel] = []
 
     def watch(self, mover: RosArtifact, stand: Callable[[], None], halt: Callable[[], None]) -> None:
@@ -129,7 +129,7 @@ class Aborted(Exception):
     """Raised in a motion that was aborted."""
 
 
-class Driving(Claim):
+class Driving(MotionClaim):
     """One motion of an operation: it waits for its turn, and stops whatever ends or interrupts it.
 
     A context manager: the motion begins when it is entered, and stops when it is left.

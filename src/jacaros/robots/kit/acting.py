@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeVar
 
 from jacaros.artifacts.env.artifact import Artifact
-from jacaros.robots.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalOutcome, GoalStatus
 from jacaros.robots.ros.action_client import ENDING, ActionClient, GoalHandle
 from jacaros.robots.ros.errors import CallTimedOut, GoalRejected, ServerLost, ServerUnavailable, ServiceError
 from jacaros.runtime.clock import Clock
@@ -141,7 +141,7 @@ class GoalRunner:
         if self._heeded and self._options.on_feedback is not None:
             self._options.on_feedback(feedback)
 
-    async def _once(self) -> Outcome | None:
+    async def _once(self) -> GoalOutcome | None:
         """Send the goal and follow it. Return None if it was cancelled because the intention was suspended."""
         self._heed(True)
         try:
@@ -150,7 +150,7 @@ class GoalRunner:
         finally:
             self._heed(False)
 
-    async def _follow_to_the_end(self, handle: GoalHandle) -> Outcome | None:
+    async def _follow_to_the_end(self, handle: GoalHandle) -> GoalOutcome | None:
         ending = asyncio.ensure_future(handle.outcome())
         try:
             outcome = await self._follow(handle, ending)
@@ -187,7 +187,7 @@ class GoalRunner:
         finally:
             _forget(sending)
 
-    async def _follow(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> Outcome | None:
+    async def _follow(self, handle: GoalHandle, ending: "asyncio.Future[GoalOutcome]") -> GoalOutcome | None:
         timeout = self._options.timeout
         while not ending.done():
             if self._paused:
@@ -204,12 +204,12 @@ class GoalRunner:
                 self._fail(text, "timeout", _figure(timeout))
         return ending.result()
 
-    async def _rest(self, ending: "asyncio.Future[Outcome]") -> None:
+    async def _rest(self, ending: "asyncio.Future[GoalOutcome]") -> None:
         await self._resumed_or(ending, None)
         if not ending.done() and not await self._release():
             self._fail(f"cannot resume the goal of action {self._client.name}", "canceled")
 
-    async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[Outcome]") -> bool:
+    async def _is_cancelled(self, handle: GoalHandle, ending: "asyncio.Future[GoalOutcome]") -> bool:
         """Cancel the goal of a suspended intention. Return False if it succeeds meanwhile or continues.
 
         Once cancelling was requested, the goal counts as cancelled however it ends, unless it succeeds: a server that
@@ -236,7 +236,7 @@ class GoalRunner:
             await self._resumed_or(ending, None)
         return False
 
-    async def _resumed_or(self, ending: "asyncio.Future[Outcome]", seconds: float | None) -> None:
+    async def _resumed_or(self, ending: "asyncio.Future[GoalOutcome]", seconds: float | None) -> None:
         """Wait for the end of the pause or of the goal, at most *seconds*."""
         resumed = asyncio.ensure_future(self._execution.resumed())
         try:
@@ -280,7 +280,7 @@ class GoalRunner:
         await any_of(self._clock, (future, self._wake), seconds)
         self._wake = None
 
-    def _result(self, outcome: Outcome) -> Any:
+    def _result(self, outcome: GoalOutcome) -> Any:
         name = self._client.name
         if outcome.status is GoalStatus.CANCELED:
             self._fail(outcome.text or f"another client cancelled the goal of action {name}", "canceled")

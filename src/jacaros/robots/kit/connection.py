@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary, WeakSet
 
-from jacaros.robots.kit.options import Reader, one_of, positive
+from jacaros.robots.kit.options import ReadOption, one_of, positive
 from jacaros.robots.ros.backend import Backend, GraphContents, TopicInfo, latching
 from jacaros.robots.ros.errors import RosError, ServiceUnavailable
 from jacaros.robots.ros.guarded import guarded_by, guards_of
@@ -24,7 +24,7 @@ LOOK = 0.5
 
 
 @dataclass(eq=False)
-class Connection:
+class PublisherConnection:
     """Track whether a publisher of a topic is connected.
 
     `Backend.connected` is not used: topics of ROS 1 survive the master, and elsewhere a lost graph has no connected
@@ -83,16 +83,16 @@ class Connection:
         self._timer = self.clock.call_later(pause, self._look_again)
 
 
-_watched: WeakKeyDictionary[Backend, WeakSet[Connection]] = WeakKeyDictionary()
+_watched: WeakKeyDictionary[Backend, WeakSet[PublisherConnection]] = WeakKeyDictionary()
 
 
-def _watch(backend: Backend, connection: Connection) -> None:
+def _watch(backend: Backend, connection: PublisherConnection) -> None:
     """Check a connection immediately when the graph is found or lost. A backend cannot remove such a callback."""
     connections = _watched.get(backend)
     if connections is None:
         connections = _watched[backend] = WeakSet()
 
-        def report(connected: bool, everybody: WeakSet[Connection] = connections) -> None:
+        def report(connected: bool, everybody: WeakSet[PublisherConnection] = connections) -> None:
             for each in list(everybody):
                 each.look()
 
@@ -193,7 +193,7 @@ MATCH_TIMEOUT = 3.0
 GUARD_TIMEOUT = 10.0
 """Seconds that an operation waits until a guard can stop it. Under load, discovery has taken three."""
 
-MATCH_OPTIONS: Mapping[str, Reader] = {"match_timeout": positive, "unmatched": one_of("warn", "fail")}
+MATCH_OPTIONS: Mapping[str, ReadOption] = {"match_timeout": positive, "unmatched": one_of("warn", "fail")}
 """Options of artifacts whose operations publish."""
 
 MATCH_LOOK = 0.05

@@ -20,7 +20,7 @@ A stamp alone does not show how old a message is, because senders have clocks of
 time from stamp to arrival is constant: a message whose delay is much longer than that of others was held up.  When a clock
 is set back, stamps go back too; when messages are late, they do not.
 
-`Listener` logs exceptions in message callbacks in the same way.
+`MessageCallback` logs exceptions in message callbacks in the same way.
 """
 
 import math
@@ -40,7 +40,7 @@ SILENCE = 5.0
 """Seconds without a good message after which a new frame is accepted: the sender was restarted."""
 
 
-class Faults:
+class BadMessages:
     """Count the bad messages of one topic, and report them without flooding the log.
 
     Args:
@@ -88,7 +88,7 @@ Complain = Callable[[str, BaseException], None]
 """Log an exception, with its place in the code."""
 
 
-class Listener:
+class MessageCallback:
     """Call a callback for each message. Log its exceptions on the 1st, 10th, 100th, … occurrence.
 
     A sensor may send a thousand messages a second, so a faulty callback must not flood the log.
@@ -156,7 +156,7 @@ class Stamps:
         late: how many seconds later than earlier messages the newest one arrived.
     """
 
-    def __init__(self, faults: Faults, clock: Clock) -> None:
+    def __init__(self, faults: BadMessages, clock: Clock) -> None:
         self.late = 0.0
         self._faults, self._clock = faults, clock
         self._newest = 0.0
@@ -238,7 +238,7 @@ class Header(Stamps):
         frame: the frame that is accepted now; empty while it is unknown.
     """
 
-    def __init__(self, faults: Faults, clock: Clock, frame: str = "") -> None:
+    def __init__(self, faults: BadMessages, clock: Clock, frame: str = "") -> None:
         super().__init__(faults, clock)
         self._wanted = self.frame = frame.strip("/")
         self._good_at = -math.inf

@@ -13,12 +13,12 @@ class WrongOption(ValueError):
     """Raised for an argument of ``makeArtifact`` that the artifact cannot use."""
 
 
-Reader = Callable[[object], object]
+ReadOption = Callable[[object], object]
 """Convert the value of an option. Raises `ValueError` with what was expected."""
 
 
 def read_arguments(
-    arguments: Iterable[object], known: Mapping[str, Reader], artifact: str
+    arguments: Iterable[object], known: Mapping[str, ReadOption], artifact: str
 ) -> tuple[str, dict[str, object]]:
     """Split the arguments of ``makeArtifact`` into the robot's name (empty if there is none) and options.
 
@@ -55,7 +55,7 @@ def _pairs(argument: object, artifact: str) -> Iterable[tuple[str, object]]:
     raise WrongOption(f"{artifact} expects a robot name and options such as rate(5), found {argument!r}")
 
 
-def _read(name: str, value: object, known: Mapping[str, Reader], artifact: str) -> object:
+def _read(name: str, value: object, known: Mapping[str, ReadOption], artifact: str) -> object:
     reader = known.get(name)
     if reader is None:
         raise WrongOption(f"{artifact} has no option `{name}`; its options: {', '.join(sorted(known))}")
@@ -112,7 +112,7 @@ def watching(value: object) -> bool | float:
     return value if isinstance(value, bool) else positive(value)
 
 
-def one_of(*choices: str) -> Reader:
+def one_of(*choices: str) -> ReadOption:
     """Return a reader for one of some words."""
 
     def read(value: object) -> Atom:

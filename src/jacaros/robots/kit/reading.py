@@ -24,12 +24,12 @@ from dataclasses import dataclass
 
 from jacaros.artifacts.streams import ReadingPolicy as ReadingPolicy
 from jacaros.artifacts.streams import Values
-from jacaros.robots.kit.options import Reader, bands, one_of, positive, yes_or_no
+from jacaros.robots.kit.options import ReadOption, bands, one_of, positive, yes_or_no
 from jacaros.robots.ros.waiting import within
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.trace import Cause
 
-READING_OPTIONS: dict[str, Reader] = {
+READING_OPTIONS: dict[str, ReadOption] = {
     "mode": one_of("verbose", "on_demand"),
     "rate": positive,
     "dead_band": bands,

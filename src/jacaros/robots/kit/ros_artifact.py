@@ -16,13 +16,13 @@ from jacaros.robots.kit.connection import (
     GUARD_TIMEOUT,
     MATCH_LOOK,
     MATCH_TIMEOUT,
-    Connection,
     Matching,
     MissingTopic,
     OtherPublishers,
+    PublisherConnection,
 )
-from jacaros.robots.kit.faults import Faults, Listener
-from jacaros.robots.kit.options import Reader, WrongOption, read_arguments, text, watching
+from jacaros.robots.kit.faults import BadMessages, MessageCallback
+from jacaros.robots.kit.options import ReadOption, WrongOption, read_arguments, text, watching
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.kit.services import ServedOperation, failure_reason, refusal, succeeded
 from jacaros.robots.ros.action import ActionPolicy, ActionServer
@@ -32,7 +32,7 @@ from jacaros.robots.ros.errors import MessageMismatch, RosError, ServiceError
 from jacaros.robots.ros.guarded import VELOCITIES, guarded_by
 from jacaros.robots.ros.names import message_type
 from jacaros.robots.ros.node import Capability, Closable, Publisher, Subscription, TopicEvent
-from jacaros.robots.ros.parameter import Declaration, ParameterValue
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
 from jacaros.robots.ros.services import Client, Service
 from jacaros.runtime.trace import Cause
@@ -78,7 +78,7 @@ class RosArtifact(Artifact):
         options: the options that the artifact was made with.
     """
 
-    known_options: ClassVar[Mapping[str, Reader]] = {"namespace": text, "watch_connection": watching}
+    known_options: ClassVar[Mapping[str, ReadOption]] = {"namespace": text, "watch_connection": watching}
     robot_in_properties: ClassVar[bool] = False
 
     robot: str = ""
@@ -110,9 +110,9 @@ class RosArtifact(Artifact):
             closing()
 
     @classmethod
-    def all_options(cls) -> dict[str, Reader]:
+    def all_options(cls) -> dict[str, ReadOption]:
         """Return the options of this class and its parents."""
-        found: dict[str, Reader] = {}
+        found: dict[str, ReadOption] = {}
         for each in reversed(cls.__mro__):
             found.update(vars(each).get("known_options", {}))
         return found
@@ -265,12 +265,12 @@ class RosArtifact(Artifact):
 
         watch: bool | float = self.option("watch_connection", False)
         name, complain = self.robot_topic(topic), partial(self._steps.setting.log_error, self.name)
-        listener = Listener(self.ros.resolve(name), callback if watch is False else watched, complain)
+        listener = MessageCallback(self.ros.resolve(name), callback if watch is False else watched, complain)
         made = self.kept(self.ros.subscription(name, type_name, listener, qos, on_event))
         if watch is not False:
             changed = partial(self.start, self.show_connection, made.topic)
             expire = None if watch is True else watch
-            connection = self.kept(Connection(self.ros, self.clock, made, changed, expire))
+            connection = self.kept(PublisherConnection(self.ros, self.clock, made, changed, expire))
         self.kept(MissingTopic(self.ros, self.clock, made, type_name, self.log, lambda: listener.heard))
         return made
 
@@ -282,18 +282,18 @@ class RosArtifact(Artifact):
         else:
             self.define_property("connected", topic)
 
-    def faults_of(self, topic: str) -> Faults:
+    def faults_of(self, topic: str) -> BadMessages:
         """Return the counter of bad messages of the robot's *topic*, which logs and signals them."""
         return self.faults_at(self.ros.resolve(self.robot_topic(topic)))
 
-    def faults_at(self, topic: str) -> Faults:
+    def faults_at(self, topic: str) -> BadMessages:
         """As `faults_of`, by the absolute name of the topic."""
 
         def report(why: Structure, text: str) -> None:
             self.log(text)
             self.start(self.report_bad_message, topic, why)
 
-        return Faults(topic, report)
+        return BadMessages(topic, report)
 
     @internal_operation
     def report_bad_message(self, topic: str, why: object) -> None:
@@ -358,7 +358,7 @@ class RosArtifact(Artifact):
             name: name below the robot's name, such as ``deliver``.
             type_name: action type, such as ``nav2_msgs/action/NavigateToPose``.
             execute: an `internal_operation` with two parameters, the `jacaros.robots.ros.action.ServerGoal` and the
-                `jacaros.robots.kit.services.Reply`; or another function as `jacaros.robots.ros.action.Execute`.
+                `jacaros.robots.kit.services.Reply`; or another function as `jacaros.robots.ros.action.ExecuteCallback`.
             policy: which goals are accepted, and whether a newer goal pre-empts an older one.
         """
         offer = self._served_operation(execute)
@@ -379,7 +379,7 @@ class RosArtifact(Artifact):
         """Call *closing* when the artifact is disposed; the callbacks run in reverse order."""
         self.__dict__.setdefault("_closings", []).append(closing)
 
-    def declared_parameter(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declared_parameter(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter of our node until the artifact is disposed, and return its value.
 
         Raises:

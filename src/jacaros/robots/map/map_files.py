@@ -31,7 +31,7 @@ from jacaros.runtime.files.yaml import Problem, YamlFileError, read_document
 
 
 @dataclass(frozen=True, slots=True)
-class Grid:
+class OccupancyGrid:
     """A grid of free, occupied and unknown cells.
 
     Attributes:
@@ -47,10 +47,12 @@ class Grid:
     cells: bytes
 
     @staticmethod
-    def of(message: Any) -> "Grid":
+    def of(message: Any) -> "OccupancyGrid":
         """Read a ``nav_msgs/msg/OccupancyGrid``."""
         info = message.info
-        return Grid(float(info.resolution), int(info.width), Pose.of(info.origin), meanings(message.data))
+        return OccupancyGrid(
+            float(info.resolution), int(info.width), Pose.of(info.origin), meanings(message.data)
+        )
 
     def labels(self, size: float) -> dict[Cell, str]:
         """Return free cells and obstacles as cells of another *size* (metres), which must not be smaller.
@@ -122,7 +124,7 @@ class Saved:
         places: x and y in metres, by name.
     """
 
-    grid: Grid
+    grid: OccupancyGrid
     places: Mapping[str, tuple[float, float]]
 
 
@@ -143,5 +145,5 @@ def load(file: Path) -> Saved:
         raise MapFileError(f"cannot read the map `{file}`: {error}; {error.help}") from None
     except (OSError, ValueError, JacarosError) as error:
         raise MapFileError(f"cannot read the map `{file}`: {error}") from None
-    grid = Grid(header.resolution, image.width, Pose(*header.origin), header.read(image))
+    grid = OccupancyGrid(header.resolution, image.width, Pose(*header.origin), header.read(image))
     return Saved(grid, header.places)

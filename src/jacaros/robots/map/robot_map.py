@@ -11,7 +11,7 @@ from jacaros.robots.kit.faults import Header
 from jacaros.robots.kit.options import not_negative, number, one_of, positive, text, yes_or_no
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.map.cells import Cell, LabelledCells, OccupancyCells
-from jacaros.robots.map.map_files import Grid
+from jacaros.robots.map.map_files import OccupancyGrid
 from jacaros.robots.map.mapper import Mapper, ScanOptions
 from jacaros.robots.map.routes import Leg, around, frontier, nearest, next_leg
 from jacaros.robots.map.slam_data import ArtSlamData
@@ -144,7 +144,7 @@ class ArtMap(ArtSlamData):
         self._locate(sample)
 
     def _take_map(self, sample: Sample) -> None:
-        grid = Grid.of(sample.message)
+        grid = OccupancyGrid.of(sample.message)
         self._seen.resize(max(self.size, grid.resolution))
         self.size = self._seen.size
         self._seen.load(grid.labels(self.size))

@@ -36,7 +36,7 @@ TRUST = (4.0, 4.0, 10.0)
 """Weights of odometry for x, y and heading, in points."""
 
 
-class Line(NamedTuple):
+class WallLine(NamedTuple):
     """A piece of a wall: a point on it, and its normal."""
 
     x: float
@@ -50,7 +50,7 @@ class Surfaces:
 
     def __init__(self) -> None:
         self._sums: dict[Cell, tuple[int, float, float]] = {}
-        self._lines: dict[Cell, Line | None] = {}
+        self._lines: dict[Cell, WallLine | None] = {}
 
     def __bool__(self) -> bool:
         return bool(self._sums)
@@ -65,7 +65,7 @@ class Surfaces:
             if count < MOST:
                 sums[key] = (count + 1, sum_x + x, sum_y + y)
 
-    def line_near(self, x: float, y: float) -> Line | None:
+    def line_near(self, x: float, y: float) -> WallLine | None:
         """Return the line through the points observed near a point, None if no points exist or they are not on a
         line."""
         key = (math.floor(x / BUCKET), math.floor(y / BUCKET))
@@ -73,7 +73,7 @@ class Surfaces:
             self._lines[key] = self._fit(key)
         return self._lines[key]
 
-    def _fit(self, key: Cell) -> Line | None:
+    def _fit(self, key: Cell) -> WallLine | None:
         """Fit a line to the averages of the surrounding squares, weighted by distance."""
         column, row = key
         weight = sum_x = sum_y = 0.0
@@ -98,7 +98,7 @@ class Surfaces:
         if 0.5 * (xx + yy) - spread > STRAIGHT * (0.5 * (xx + yy) + spread):
             return None
         along = 0.5 * math.atan2(2.0 * xy, xx - yy)
-        return Line(x, y, -math.sin(along), math.cos(along))
+        return WallLine(x, y, -math.sin(along), math.cos(along))
 
 
 def match(surfaces: Surfaces, points: Sequence[Point], guess: Pose) -> Pose | None:

@@ -24,17 +24,17 @@ from jacaros.robots.mapping.file import (
     shipped_mappings,
 )
 from jacaros.robots.mapping.frames import FrameUpdater
-from jacaros.robots.mapping.host import Host
+from jacaros.robots.mapping.host import MappingHost
 from jacaros.robots.mapping.manual import Documentation, parameter_words
+from jacaros.robots.mapping.mapped_topic import MappedTopic, Updater, find_types
 from jacaros.robots.mapping.operating import runners_of
 from jacaros.robots.mapping.operations import OperationKind, OperationPart
 from jacaros.robots.mapping.parameters import NodeParameter, OwnParameter, kept_by_master
-from jacaros.robots.mapping.topic_multiplexer import TopicMultiplexer, Updater, find_types
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.runtime.files.yaml import Problem
 
 
-class MappedArtifact(Host):
+class MappedArtifact(MappingHost):
     """An artifact made from a mapping file; `mapped_type` makes a class for each.
 
     Options:
@@ -65,7 +65,7 @@ class MappedArtifact(Host):
             groups.setdefault(key, []).append(Updater(self, part))
         untyped = []
         for updaters in groups.values():
-            topic, typed = TopicMultiplexer(self, updaters), updaters[0].part.type_name
+            topic, typed = MappedTopic(self, updaters), updaters[0].part.type_name
             if typed is not None:
                 topic.listen(typed.text)
             else:

@@ -15,7 +15,7 @@ from jacaros.robots.mapping.fields import (
     WHOLE,
     Conversion,
     FieldPart,
-    Path,
+    FieldPath,
     WrongPath,
     read_path,
 )
@@ -106,7 +106,7 @@ ANGLE: dict[str, tuple[Callable[[float, float, float, float], float], str]] = {
 }
 """For each angle the function of a quaternion that gives it, and the axis that it turns about."""
 
-Values = Callable[[Any, Any], tuple[object, ...]]
+ReadValues = Callable[[Any, Any], tuple[object, ...]]
 """Converts the value at a path; takes the whole message, too, for ``otherwise``."""
 
 Element = Callable[[Any, Any], object]
@@ -134,7 +134,7 @@ class _Decoder:
         self.levels = field.path.lists + self.leaf.array
         check_unit(field.conversion, field.path, root, interfaces)
 
-    def values(self) -> Values:
+    def values(self) -> ReadValues:
         """Return the conversion of the value at the path."""
         kind, shares = self._conversion.kind, self._field.shares
         if kind == "object":
@@ -158,7 +158,7 @@ class _Decoder:
 
         return lambda raw, whole: (lists(raw, whole, self.levels),)
 
-    def _sample(self, single: FieldType, shares: tuple[float, ...]) -> Values:
+    def _sample(self, single: FieldType, shares: tuple[float, ...]) -> ReadValues:
         element, path = self._element(single), self._path
 
         def sample(raw: Any, whole: Any) -> tuple[object, ...]:
@@ -169,7 +169,7 @@ class _Decoder:
 
         return sample
 
-    def _reduced(self, single: FieldType, kind: str) -> Values:
+    def _reduced(self, single: FieldType, kind: str) -> ReadValues:
         if kind == "count":
             self._check(FieldType("int32"))
             convert = converted(self._conversion)
@@ -233,7 +233,7 @@ class _Decoder:
                 raise Unshowable(path, f"`{path}` is {value:g}", help)
 
             return refuse
-        if not isinstance(otherwise, Path):
+        if not isinstance(otherwise, FieldPath):
             whole = float(otherwise).is_integer() and self._conversion.digits == 0
             figure = int(otherwise) if whole else otherwise
             return lambda value, _: figure
@@ -252,7 +252,7 @@ class _Decoder:
 
         return from_message
 
-    def _nearest(self, otherwise: Path) -> Path:
+    def _nearest(self, otherwise: FieldPath) -> FieldPath:
         """Return the replacement for minus infinity: an echo too close to measure (REP 117) is not one beyond
         ``range_max``."""
         if not otherwise.text.endswith("range_max"):
@@ -396,14 +396,14 @@ def _in_turn(steps: list[Convert]) -> Convert:
     return lambda value: second(first(value))
 
 
-def owner_of(path: Path, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:
+def owner_of(path: FieldPath, root: FieldType, interfaces: Interfaces) -> tuple[str, str]:
     """Return the message type that contains a path's last field, and the name of that field."""
     names = [place for place, step in enumerate(path.steps) if isinstance(step, str) and step.startswith(".")]
     if not names:
         raise WrongPath(f"`{path.text}` is not a field, so it has no constants", "name a field")
     last = path.steps[names[-1]]
     assert isinstance(last, str)
-    above = Path(path.text, path.steps[: names[-1]], path.of_message)
+    above = FieldPath(path.text, path.steps[: names[-1]], path.of_message)
     return follow(above, root, interfaces.fields).base, last[1:]
 
 
@@ -475,7 +475,7 @@ class MessageHandle:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ValueRow:
     """The values of one property or signal.
 
     Attributes:
@@ -494,7 +494,7 @@ class Row:
 FRAME = read_path("header.frame_id")
 """Path of the frame of a message."""
 
-Extract = Callable[[Any], list[Row]]
+Extract = Callable[[Any], list[ValueRow]]
 """Takes a message; raises `Unshowable`."""
 
 
@@ -589,7 +589,7 @@ class _Maker:
         across, along = (self._number(path, view) for path in view.at)
         return lambda whole, part, i: (across(whole, part, i), along(whole, part, i))
 
-    def _number(self, path: Path, view: ViewPart) -> Callable[[Any, Any, int], float]:
+    def _number(self, path: FieldPath, view: ViewPart) -> Callable[[Any, Any, int], float]:
         from_message = self.element is None or path.of_message
         root = self.message if self.element is None or path.of_message else self.element
 
@@ -611,11 +611,13 @@ class _Maker:
 
 
 def _single(takes: list[Read], notes: list[tuple[str, Read]], view: View | None) -> Extract:
-    def rows(message: Any) -> list[Row]:
+    def rows(message: Any) -> list[ValueRow]:
         place = view(message, message, 0) if view is not None else (0.0, 0.0)
         if place is None or not all(map(math.isfinite, place)):
             return []
-        return [Row(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0), place)]
+        return [
+            ValueRow(None, _row_values(takes, message, message, 0), _noted(notes, message, message, 0), place)
+        ]
 
     return rows
 
@@ -623,7 +625,7 @@ def _single(takes: list[Read], notes: list[tuple[str, Read]], view: View | None)
 def _several(
     get: Getter, takes: list[Read], notes: list[tuple[str, Read]], view: View | None, key: Read | None
 ) -> Extract:
-    def rows(message: Any) -> list[Row]:
+    def rows(message: Any) -> list[ValueRow]:
         found = []
         for place, element in enumerate(get(message, 0)):
             at = view(message, element, place) if view is not None else (0.0, 0.0)
@@ -631,7 +633,9 @@ def _several(
                 continue
             values = _row_values(takes, message, element, place)
             told = _noted(notes, message, element, place)
-            found.append(Row(_hashable(key(message, element, place)) if key else place, values, told, at))
+            found.append(
+                ValueRow(_hashable(key(message, element, place)) if key else place, values, told, at)
+            )
         return found
 
     return rows

@@ -6,7 +6,7 @@ from functools import partial
 from jacaros.artifacts.streams import HIDE, SHOW, Pattern, Spec, Values
 from jacaros.robots.mapping.file import ArtifactPart
 from jacaros.robots.mapping.frames import StampedFrames
-from jacaros.robots.mapping.host import Host
+from jacaros.robots.mapping.host import MappingHost
 from jacaros.robots.mapping.properties import DerivedPart, FramePart
 from jacaros.robots.ros.message import to_seconds
 from jacaros.runtime.clock import Timer
@@ -28,7 +28,7 @@ class Derivation:
         spec: the pattern.
     """
 
-    def __init__(self, host: Host, part: DerivedPart, spec: Spec) -> None:
+    def __init__(self, host: MappingHost, part: DerivedPart, spec: Spec) -> None:
         self._host, self._part, self._spec = host, part, spec
         self._pending: deque[Values | None] = deque()
         self._shown: Values | None = None

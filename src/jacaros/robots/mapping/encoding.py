@@ -8,7 +8,7 @@ from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.robots.mapping.decoding import ANGLE, MessageHandle, check_conversion, octet, owner_of
 from jacaros.robots.mapping.fields import ANGLES, WrongPath
 from jacaros.robots.mapping.interfaces import Interfaces, check_unit, chosen, constants, follow, tried
-from jacaros.robots.mapping.operations import ALL_OF_IT, OperationPart, Source, ValuePart
+from jacaros.robots.mapping.operations import ALL_OF_IT, OperationPart, ValuePart, ValueSource
 from jacaros.robots.ros.errors import MessageMismatch
 from jacaros.robots.ros.fields import DURATION, INTEGER_RANGES, FieldType
 from jacaros.robots.ros.message import TIMES, single_value
@@ -153,16 +153,16 @@ class _Encoder:
     def give(self, problems: list[Problem], adapt: Adapt) -> Give:
         """Return the function that gives the value; parameters as for `builder`."""
         part, leaf, path = self._part, self._leaf, self._path
-        if part.source is Source.ELEMENTS:
+        if part.source is ValueSource.ELEMENTS:
             return self._each(problems, adapt)
         check_conversion(part.conversion, path, leaf, "makes a quaternion", "leave it out")
         check_unit(part.conversion, part.target, self._root, self._interfaces)
         convert = self._converter()
-        if part.source is Source.NOW:
+        if part.source is ValueSource.NOW:
             if leaf.base not in TIMES or leaf.array:
                 raise WrongPath(f"`now` is a time, but `{path}` is {leaf}", "write another value")
             return lambda arguments, now: now
-        if part.source is Source.CONSTANT:
+        if part.source is ValueSource.CONSTANT:
             value = self._constant(adapt(self._last, part.value), convert)
             return lambda arguments, now: value
         number = part.parameter

@@ -26,7 +26,7 @@ def with_entries(part: P, entries: dict[str, Node]) -> P:
     return replace(part, **values(entries, part))  # type: ignore[type-var]
 
 
-class Place(NamedTuple):
+class FilePosition(NamedTuple):
     """A position in the file, counted from 1."""
 
     line: int
@@ -37,7 +37,7 @@ class Place(NamedTuple):
         return Problem(self.line, self.column, message, help)
 
 
-START = Place(1, 1)
+START = FilePosition(1, 1)
 """The first character of the file."""
 
 
@@ -46,15 +46,15 @@ class Written:
     """A text and its position."""
 
     text: str
-    place: Place
+    place: FilePosition
 
 
 NOTHING = Written("", START)
 
 
-def place_of(node: Node) -> Place:
+def place_of(node: Node) -> FilePosition:
     """Return the position of a value."""
-    return Place(node.line, node.column)
+    return FilePosition(node.line, node.column)
 
 
 def written(node: Node) -> Written:
@@ -72,7 +72,7 @@ HERE = "i"
 _PART = re.compile(r"(?P<name>[A-Za-z][A-Za-z0-9_]*)(?P<indices>(\[(-?\d+|\*|i)\])*)")
 _INDEX = re.compile(r"\[(-?\d+|\*|i)\]")
 
-Step = str | int
+PathStep = str | int
 """The name of a field, or the index of an element, ``"*"`` or ``"[i]"``."""
 
 
@@ -85,7 +85,7 @@ class WrongPath(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Path:
+class FieldPath:
     """A path.
 
     Attributes:
@@ -95,7 +95,7 @@ class Path:
     """
 
     text: str
-    steps: tuple[Step, ...]
+    steps: tuple[PathStep, ...]
     of_message: bool = False
 
     @property
@@ -104,10 +104,10 @@ class Path:
         return self.steps.count(ALL)
 
 
-WHOLE = Path(".", ())
+WHOLE = FieldPath(".", ())
 
 
-def read_path(text: str) -> Path:
+def read_path(text: str) -> FieldPath:
     """Read a path.
 
     Raises:
@@ -118,8 +118,8 @@ def read_path(text: str) -> Path:
     if rest in (".", ""):
         if not text:
             raise WrongPath("empty path", "write the path of a field, or . for the whole message")
-        return Path(text, (), of_message)
-    steps: list[Step] = []
+        return FieldPath(text, (), of_message)
+    steps: list[PathStep] = []
     for part in rest.split("."):
         found = _PART.fullmatch(part)
         if found is None:
@@ -128,10 +128,10 @@ def read_path(text: str) -> Path:
         steps.append(f".{found['name']}")
         for index in _INDEX.findall(found["indices"]):
             steps.append(index if index in (ALL, HERE) else int(index))
-    return Path(text, tuple(steps), of_message)
+    return FieldPath(text, tuple(steps), of_message)
 
 
-def path_of(node: Node, help: str = "") -> Path:
+def path_of(node: Node, help: str = "") -> FieldPath:
     """Read a path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         text = f"{node.what} must be a path, found {shown(node.value)}"
@@ -170,7 +170,7 @@ FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LinearConversion:
     """``factor * value + shift``, from the message's number to the agent's."""
 
     factor: float = 1.0
@@ -184,13 +184,13 @@ class Line:
         """Convert to the message's number."""
         return (value - self.shift) / self.factor
 
-    def then(self, other: "Line") -> "Line":
+    def then(self, other: "LinearConversion") -> "LinearConversion":
         """Return this conversion followed by *other*."""
-        return Line(self.factor * other.factor, self.shift * other.factor + other.shift)
+        return LinearConversion(self.factor * other.factor, self.shift * other.factor + other.shift)
 
 
 @dataclass(frozen=True, slots=True)
-class Unit:
+class ConvertedUnit:
     """A unit of messages, of agents, or of both.
 
     Attributes:
@@ -211,32 +211,32 @@ class Unit:
 
 
 _UNITS = (
-    Unit("", ""),
-    Unit("rad", "radians", "angle", 1.0),
-    Unit("degrees", "degrees", "angle", 3.141592653589793 / 180.0),
-    Unit("rad/s", "radians per second", "angle"),
-    Unit("rad/s²", "radians per second squared"),
-    Unit("m", "metres", "length", 1.0),
-    Unit("cm", "centimetres", "length", 0.01),
-    Unit("mm", "millimetres", "length", 0.001),
-    Unit("m/s", "metres per second", "speed", 1.0),
-    Unit("km/h", "kilometres per hour", "speed", 1.0 / 3.6),
-    Unit("m/s²", "metres per second squared"),
-    Unit("s", "seconds", "time", 1.0),
-    Unit("ms", "milliseconds", "time", 0.001),
-    Unit("min", "minutes", "time", 60.0),
-    Unit("°C", "degrees Celsius", "temperature", 1.0, key="celsius"),
-    Unit("K", "kelvin", "temperature", 1.0, -273.15),
-    Unit("0 to 1", "0 to 1", "share", 1.0, key="share"),
-    Unit("%", "percent", "share", 0.01),
-    Unit("N", "newtons"),
-    Unit("N m", "newton metres"),
-    Unit("V", "volts"),
-    Unit("A", "amperes"),
-    Unit("Ah", "ampere hours"),
-    Unit("T", "teslas"),
-    Unit("Pa", "pascals"),
-    Unit("lx", "lux"),
+    ConvertedUnit("", ""),
+    ConvertedUnit("rad", "radians", "angle", 1.0),
+    ConvertedUnit("degrees", "degrees", "angle", 3.141592653589793 / 180.0),
+    ConvertedUnit("rad/s", "radians per second", "angle"),
+    ConvertedUnit("rad/s²", "radians per second squared"),
+    ConvertedUnit("m", "metres", "length", 1.0),
+    ConvertedUnit("cm", "centimetres", "length", 0.01),
+    ConvertedUnit("mm", "millimetres", "length", 0.001),
+    ConvertedUnit("m/s", "metres per second", "speed", 1.0),
+    ConvertedUnit("km/h", "kilometres per hour", "speed", 1.0 / 3.6),
+    ConvertedUnit("m/s²", "metres per second squared"),
+    ConvertedUnit("s", "seconds", "time", 1.0),
+    ConvertedUnit("ms", "milliseconds", "time", 0.001),
+    ConvertedUnit("min", "minutes", "time", 60.0),
+    ConvertedUnit("°C", "degrees Celsius", "temperature", 1.0, key="celsius"),
+    ConvertedUnit("K", "kelvin", "temperature", 1.0, -273.15),
+    ConvertedUnit("0 to 1", "0 to 1", "share", 1.0, key="share"),
+    ConvertedUnit("%", "percent", "share", 0.01),
+    ConvertedUnit("N", "newtons"),
+    ConvertedUnit("N m", "newton metres"),
+    ConvertedUnit("V", "volts"),
+    ConvertedUnit("A", "amperes"),
+    ConvertedUnit("Ah", "ampere hours"),
+    ConvertedUnit("T", "teslas"),
+    ConvertedUnit("Pa", "pascals"),
+    ConvertedUnit("lx", "lux"),
 )
 """All units; the first of a kind is the usual one in messages."""
 UNITS = {each.key or each.words.replace(" ", "_"): each for each in _UNITS if each.size}
@@ -250,10 +250,10 @@ def units_of(*kinds: str) -> list[str]:
     return [name for name, each in UNITS.items() if each.kind in kinds]
 
 
-def conversion(of_message: str, of_agent: str) -> Line:
+def conversion(of_message: str, of_agent: str) -> LinearConversion:
     """Return the conversion from one unit to another of the same kind."""
     here, there = UNITS[of_message], UNITS[of_agent]
-    return Line(here.size / there.size, (here.zero - there.zero) / there.size)
+    return LinearConversion(here.size / there.size, (here.zero - there.zero) / there.size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +275,7 @@ class Conversion:
     kind: str = ""
     prefix: str = ""
     names: tuple[tuple[object, str], ...] = ()
-    line: Line | None = None
+    line: LinearConversion | None = None
     digits: int | None = None
     unit: str = ""
     knows_message_unit: bool = False
@@ -301,7 +301,7 @@ def _shares(node: Node) -> tuple[float, ...]:
     return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
 
 
-def _otherwise(node: Node) -> float | Path:
+def _otherwise(node: Node) -> float | FieldPath:
     if isinstance(node.value, str):
         return path_of(node)
     return node.number()
@@ -318,11 +318,11 @@ class FieldPart:
         name: name for the manual.
     """
 
-    path: Path
-    place: Place
+    path: FieldPath
+    place: FilePosition
     conversion: Conversion = AS_IT_IS
     shares: Annotated[tuple[float, ...] | None, entry(_shares, "sample")] = None
-    otherwise: Annotated[float | Path | None, entry(_otherwise)] = None
+    otherwise: Annotated[float | FieldPath | None, entry(_otherwise)] = None
     dead_band: Annotated[float | None, entry(lambda node: node.number(0.0))] = None
     name: Annotated[str, entry(Node.text)] = ""
 
@@ -375,7 +375,7 @@ def read_field(node: Node) -> FieldPart:
     return with_entries(part, entries)
 
 
-def _name(path: Path, entries: dict[str, Node] | None = None) -> str:
+def _name(path: FieldPath, entries: dict[str, Node] | None = None) -> str:
     """Return a word for a value, for the manual."""
     kind = entries["as"].value if entries is not None and "as" in entries else ""
     if kind in (*ANGLES, "count", "object"):
@@ -417,14 +417,14 @@ def _names(node: Node) -> tuple[tuple[object, str], ...]:
     return tuple(found)
 
 
-def _line(entries: dict[str, Node], kind: str) -> Line | None:
+def _line(entries: dict[str, Node], kind: str) -> LinearConversion | None:
     steps = [
         _units(entries, kind),
-        Line(_factor(entries["scale"])) if "scale" in entries else None,
-        Line(1.0, entries["offset"].number()) if "offset" in entries else None,
+        LinearConversion(_factor(entries["scale"])) if "scale" in entries else None,
+        LinearConversion(1.0, entries["offset"].number()) if "offset" in entries else None,
     ]
     there = [step for step in steps if step is not None]
-    return reduce(Line.then, there) if there else None
+    return reduce(LinearConversion.then, there) if there else None
 
 
 def _factor(node: Node) -> float:
@@ -435,7 +435,7 @@ def _factor(node: Node) -> float:
     return factor
 
 
-def _units(entries: dict[str, Node], kind: str) -> Line | None:
+def _units(entries: dict[str, Node], kind: str) -> LinearConversion | None:
     there, here = entries.get("unit"), entries.get("message_unit")
     if there is None:
         if here is not None:

@@ -12,7 +12,7 @@ from jacaros.robots.mapping.fields import (
     NOTHING,
     START,
     UNNAMED,
-    Place,
+    FilePosition,
     Written,
     each_of,
     entry,
@@ -91,7 +91,7 @@ class ArtifactPart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     description: Annotated[str, entry(Node.text)] = ""
     namespace: Annotated[str, entry(read_namespace)] = ""
     tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
@@ -141,7 +141,7 @@ class MappingFile:
     text: str = field(repr=False)
     artifacts: dict[str, ArtifactPart] = field(default_factory=dict)
 
-    def where(self, place: Place) -> str:
+    def where(self, place: FilePosition) -> str:
         """Format a position for the log."""
         return f"{self.file}:{place.line}"
 
@@ -256,7 +256,7 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
 
 
 def _artifact(
-    name: str, place: Place, node: Node, folder: Path, shared: tuple[Path, ...] = ()
+    name: str, place: FilePosition, node: Node, folder: Path, shared: tuple[Path, ...] = ()
 ) -> ArtifactPart:
     part = ArtifactPart(name, place, interfaces=shared)
     found = values(
@@ -273,7 +273,7 @@ def _artifact(
 # What is checked of a whole artifact.
 
 
-def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
+def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, FilePosition]]:
     """Yield kind, name and position of everything that agents perceive."""
     for topic in part.topics:
         yield ("signal" if topic.signal else "property"), topic.name, topic.place
@@ -292,7 +292,7 @@ def _observable(part: ArtifactPart) -> Iterator[tuple[str, str, Place]]:
 def _names(part: ArtifactPart) -> Iterator[Problem]:
     """Yield names that are used twice in an artifact. A signal may share one with a property, as events do with
     beliefs."""
-    seen: dict[str, tuple[str, Place]] = {}
+    seen: dict[str, tuple[str, FilePosition]] = {}
     for kind, name, place in _observable(part):
         if name == UNNAMED:
             continue  # already reported
@@ -305,7 +305,7 @@ def _names(part: ArtifactPart) -> Iterator[Problem]:
 
 def _arities(part: ArtifactPart) -> Iterator[Problem]:
     """Yield operations that agents cannot tell apart: same name, same number of arguments."""
-    seen: dict[tuple[str, int], Place] = {}
+    seen: dict[tuple[str, int], FilePosition] = {}
     for operation in part.operations:
         key = (operation.name, part.arity(operation))
         before = seen.setdefault(key, operation.place)
@@ -401,7 +401,7 @@ def _unknown_stream(source: Written, known: list[str]) -> Problem:
     return source.place.problem(f"unknown property `{source.text}`", suggestion(source.text, known, listed))
 
 
-def _unfit(spec: Spec, topic: TopicPart, place: Place) -> Iterator[Problem]:
+def _unfit(spec: Spec, topic: TopicPart, place: FilePosition) -> Iterator[Problem]:
     if topic.each is not None and spec.operator not in _EVENTS:
         text = f"`{topic.name}` is one property for each element, but `{spec.operator}` needs a single one"
         yield place.problem(text, f"use one of {', '.join(sorted(_EVENTS))}, or a property without `each`")

@@ -8,7 +8,7 @@ from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.streams import Values
 from jacaros.robots.mapping.decoding import converted
 from jacaros.robots.mapping.fields import FieldPart
-from jacaros.robots.mapping.host import Host
+from jacaros.robots.mapping.host import MappingHost
 from jacaros.robots.mapping.properties import DerivedPart, FramePart
 from jacaros.robots.plane.pose import pitch_of, roll_of
 from jacaros.robots.ros.errors import CapabilityMissing, TransformUnavailable
@@ -26,7 +26,7 @@ class FrameUpdater:
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: FramePart) -> None:
+    def __init__(self, host: MappingHost, part: FramePart) -> None:
         self._host, self._part = host, part
         self._target, self._source = host.frame(part.target), host.frame(part.source)
         self._reading = host.reading_of(part.name, part.policy)
@@ -106,7 +106,7 @@ def _part(transform: Transform, what: str) -> float:
 
 # Frames of tf at the stamps of messages, for derived entries that join the two.
 
-Found = Callable[[float, Values, dict[int, Values], Cause | None], None]
+OnTransform = Callable[[float, Values, dict[int, Values], Cause | None], None]
 """Called with the time of a message, its values, those of each frame at that time by the number of its stream, and
 the cause."""
 
@@ -132,7 +132,12 @@ class StampedFrames:
     """
 
     def __init__(
-        self, host: Host, part: DerivedPart, frames: Mapping[int, FramePart], patience: float, found: Found
+        self,
+        host: MappingHost,
+        part: DerivedPart,
+        frames: Mapping[int, FramePart],
+        patience: float,
+        found: OnTransform,
     ) -> None:
         self._host, self._part, self._patience, self._found = host, part, patience, found
         self._frames = [

@@ -7,7 +7,7 @@ from jacaros.artifacts.env.artifact import internal_operation
 from jacaros.artifacts.streams import ReadingPolicy, Values
 from jacaros.robots.kit.reading import Reading
 from jacaros.robots.kit.ros_artifact import RosArtifact
-from jacaros.robots.mapping.fields import Place, Written
+from jacaros.robots.mapping.fields import FilePosition, Written
 from jacaros.robots.mapping.file import ArtifactPart, MappingFile
 from jacaros.robots.ros.backend import GraphContents
 from jacaros.robots.ros.errors import RosError
@@ -21,7 +21,7 @@ Tap = Callable[[float, Values | None, Cause | None], None]
 """Called for each message of a property or signal with its stamp (0: none), values (None: it ended) and cause."""
 
 
-class Host(RosArtifact):
+class MappingHost(RosArtifact):
     """The base class of `jacaros.robots.mapping.artifact.MappedArtifact`, which is built from the parts.
 
     Attributes:
@@ -111,7 +111,7 @@ class Host(RosArtifact):
 
     # ---- log
 
-    def report_once(self, key: object, place: Place, message: str, help: str = "") -> None:
+    def report_once(self, key: object, place: FilePosition, message: str, help: str = "") -> None:
         """Log a problem with the line of the mapping, the first time only."""
         if key in self._reported:
             return
@@ -124,7 +124,7 @@ class Host(RosArtifact):
         for problem in problems:
             self.log(shown(self.mapping.file, lines, problem))
 
-    def on_topic_event(self, topic: str, place: Place) -> Callable[[TopicEvent], None]:
+    def on_topic_event(self, topic: str, place: FilePosition) -> Callable[[TopicEvent], None]:
         """Return a callback that logs each kind of problem of a topic once."""
 
         def report(event: TopicEvent) -> None:
@@ -151,7 +151,7 @@ def type_in(contents: GraphContents, kind: str, name: str) -> str:
     return (contents.services if kind == "service" else contents.actions).get(name, "")
 
 
-async def ask_type(host: Host, kind: str, written: Written) -> str:
+async def ask_type(host: MappingHost, kind: str, written: Written) -> str:
     """Return the type of a topic, service or action that an operation uses; a step boundary.
 
     Raises:

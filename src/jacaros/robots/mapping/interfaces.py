@@ -14,9 +14,9 @@ from jacaros.robots.mapping.fields import (
     SYMBOLS,
     UNITS,
     Conversion,
-    Path,
-    Place,
-    Step,
+    FieldPath,
+    FilePosition,
+    PathStep,
     WrongPath,
     units_of,
 )
@@ -136,7 +136,9 @@ def known_types(kind: str) -> list[str]:
     return [*own, *(name for name in whole if f"/{kind}/" in name)]
 
 
-def tried(place: Place, problems: list[Problem], make: Callable[..., T], *arguments: object) -> T | None:
+def tried(
+    place: FilePosition, problems: list[Problem], make: Callable[..., T], *arguments: object
+) -> T | None:
     """Return what *make* returns, or None after a mistake, which *problems* receives."""
     try:
         return make(*arguments)
@@ -151,7 +153,7 @@ Fields = Callable[[str], Mapping[str, FieldType]]
 """Returns the fields of a message type, given in full form."""
 
 
-def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
+def follow(path: FieldPath, root: FieldType, fields: Fields) -> FieldType:
     """Return the type that a path leads to.
 
     Raises:
@@ -177,7 +179,7 @@ def follow(path: Path, root: FieldType, fields: Fields) -> FieldType:
     return here
 
 
-def _field(path: Path, name: str, here: FieldType, shown: str, fields: Fields) -> FieldType:
+def _field(path: FieldPath, name: str, here: FieldType, shown: str, fields: Fields) -> FieldType:
     where = shown or "the message"
     if here.array:
         text = f"`{path.text}`: {where} is an array, {here}"
@@ -197,13 +199,13 @@ Getter = Callable[[Any, int], Any]
 """Takes a message and the index of the current element; returns the value at a path."""
 
 
-def getter(path: Path) -> Getter:
+def getter(path: FieldPath) -> Getter:
     """Return a function that follows a path, compiled to one expression: sensors send a thousand messages a second."""
     made: Getter = eval(f"lambda m, i: {_expression(path.steps, 'm', 0)}", {})
     return made
 
 
-def _expression(steps: tuple[Step, ...], value: str, depth: int) -> str:
+def _expression(steps: tuple[PathStep, ...], value: str, depth: int) -> str:
     for place, step in enumerate(steps):
         if step == ALL:
             each = f"e{depth}"
@@ -273,7 +275,7 @@ def unit_of(type_name: str, field: str) -> str:
     return _UNITS.get(type_name, {}).get(field, "")
 
 
-def unit_at(path: Path, root: FieldType, interfaces: Interfaces) -> str:
+def unit_at(path: FieldPath, root: FieldType, interfaces: Interfaces) -> str:
     """Return the unit at an existing path; the parts of a vector have its unit."""
     here, unit = root, ""
     for step in path.steps:
@@ -290,7 +292,7 @@ def _kinds(unit: str) -> set[str]:
     return {SYMBOLS[each].kind for each in unit.split(" or ")} - {""}
 
 
-def check_unit(conversion: Conversion, path: Path, root: FieldType, interfaces: Interfaces) -> None:
+def check_unit(conversion: Conversion, path: FieldPath, root: FieldType, interfaces: Interfaces) -> None:
     """Reject a unit that the value of a message cannot have.
 
     Raises:

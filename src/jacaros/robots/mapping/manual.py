@@ -16,7 +16,7 @@ from jacaros.robots.mapping.fields import (
     UNITS,
     Conversion,
     FieldPart,
-    Path,
+    FieldPath,
     WrongPath,
     units_of,
     unlike,
@@ -33,7 +33,7 @@ from jacaros.robots.mapping.interfaces import (
     unit_at,
     words_of,
 )
-from jacaros.robots.mapping.operations import OperationKind, OperationPart, Source, ValuePart
+from jacaros.robots.mapping.operations import OperationKind, OperationPart, ValuePart, ValueSource
 from jacaros.robots.mapping.properties import TRANSFORM, DerivedPart, ParameterPart, TopicPart
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -206,10 +206,12 @@ def _likely_type(part: OperationPart, interfaces: Interfaces) -> str:
 
 def _inputs(part: OperationPart, types: tuple[str, ...], interfaces: Interfaces) -> dict[str, str]:
     words: dict[str, str] = {}
-    if part.duration is not None and part.duration.source is Source.PARAMETER:
+    if part.duration is not None and part.duration.source is ValueSource.PARAMETER:
         words[part.parameters[part.duration.parameter]] = "number of seconds"
     for value in fitting(part, types[0], interfaces) if types else part.values:
-        if value.source in (Source.PARAMETER, Source.ELEMENTS) and value.parameter < len(part.parameters):
+        if value.source in (ValueSource.PARAMETER, ValueSource.ELEMENTS) and value.parameter < len(
+            part.parameters
+        ):
             word = word_for_value(value, FieldType(types[0]), interfaces) if types else _of_unit(value)
             words.setdefault(part.parameters[value.parameter], word)
     return words
@@ -249,7 +251,7 @@ def word_for_value(part: ValuePart, message: FieldType, interfaces: Interfaces) 
     """Describe what an agent provides for a field of a message; empty if unknown."""
     try:
         leaf = follow(part.target, message, interfaces.fields)
-        if part.source is Source.ELEMENTS:
+        if part.source is ValueSource.ELEMENTS:
             return _elements(part, FieldType(leaf.base), interfaces)
         word = _converted(part.conversion, part.target, leaf, message, interfaces)
         if word == "whole number" and leaf.base in _SMALL and part.conversion.line is None:
@@ -267,13 +269,13 @@ def _list_of(leaf: FieldType) -> str:
 
 def _elements(part: ValuePart, element: FieldType, interfaces: Interfaces) -> str:
     """Describe a list that fills a list of messages, by the parts of its elements."""
-    given = {each.parameter: each for each in part.elements if each.source is Source.PARAMETER}
+    given = {each.parameter: each for each in part.elements if each.source is ValueSource.PARAMETER}
     words = [word_for_value(each, element, interfaces) or "a value" for _, each in sorted(given.items())]
     return f"list, of each element: {'; '.join(words)}" if words else "list"
 
 
 def _converted(
-    conversion: Conversion, path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces
+    conversion: Conversion, path: FieldPath, leaf: FieldType, root: FieldType, interfaces: Interfaces
 ) -> str:
     kind = conversion.kind
     if conversion.names:
@@ -291,7 +293,7 @@ def _converted(
     return word + _limits(path, leaf, root, interfaces) if limited else word
 
 
-def _limits(path: Path, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
+def _limits(path: FieldPath, leaf: FieldType, root: FieldType, interfaces: Interfaces) -> str:
     """Return the limits in the definition: the maximum length of a string, the constants of the field."""
     longest = f" of at most {leaf.bound} characters" if leaf.bound else ""
     if path.steps and isinstance(path.steps[-1], str) and path.steps[-1].startswith("."):

@@ -10,11 +10,11 @@ from functools import partial
 from typing import Any
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.kit.faults import Faults, Stamps
+from jacaros.robots.kit.faults import BadMessages, Stamps
 from jacaros.robots.kit.reading import RangeOfView, Reading
-from jacaros.robots.mapping.decoding import Extract, Row, Unshowable, extractor, perceived
+from jacaros.robots.mapping.decoding import Extract, Unshowable, ValueRow, extractor, perceived
 from jacaros.robots.mapping.deriving import stamp_of
-from jacaros.robots.mapping.host import LOOK, Host, type_in
+from jacaros.robots.mapping.host import LOOK, MappingHost, type_in
 from jacaros.robots.mapping.properties import TopicPart
 from jacaros.robots.ros.backend import GraphContents
 from jacaros.robots.ros.errors import CapabilityMissing, RosError
@@ -27,7 +27,7 @@ from jacaros.runtime.files.yaml import Problem
 from jacaros.runtime.trace import Cause
 
 
-class TopicMultiplexer:
+class MappedTopic:
     """Deliver the messages of one subscription to all its properties and signals.
 
     Args:
@@ -39,7 +39,7 @@ class TopicMultiplexer:
         name: its absolute name.
     """
 
-    def __init__(self, host: Host, updaters: "list[Updater]") -> None:
+    def __init__(self, host: MappingHost, updaters: "list[Updater]") -> None:
         topic = updaters[0].part.topic
         assert topic is not None
         self.written, self.name = topic, host.ros.resolve(host.robot_topic(topic.text))
@@ -83,7 +83,7 @@ class TopicMultiplexer:
                 updater.take(sample, latched)
 
 
-async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
+async def find_types(host: MappingHost, topics: list[MappedTopic]) -> None:
     """Query the graph until the types of *topics* are known, and subscribe to them; a process of the artifact."""
     began, told, missed = host.clock.elapsed, False, False
     while topics:
@@ -115,7 +115,7 @@ async def find_types(host: Host, topics: list[TopicMultiplexer]) -> None:
         await host.sleep(LOOK)
 
 
-Show = Callable[[list[Row], Cause | None], None]
+Show = Callable[[list[ValueRow], Cause | None], None]
 """Shows the rows of a message."""
 
 
@@ -127,12 +127,12 @@ class Updater:
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: TopicPart) -> None:
+    def __init__(self, host: MappingHost, part: TopicPart) -> None:
         self.part = part
         self._host = host
         self._extract: Extract | None = None
         self._reading: Reading | None = None
-        self._faults: Faults | None = None
+        self._faults: BadMessages | None = None
         self._taps = host.taps.get(part.name, ())
         self._latched = False
         self._frame = host.frame(part.frame.text) if part.frame is not None else None
@@ -151,7 +151,8 @@ class Updater:
         if view is None or view.distance is not None:
             return show
         seen = RangeOfView(
-            view.metres, lambda rows, cause: show([row for *_, row in rows if isinstance(row, Row)], cause)
+            view.metres,
+            lambda rows, cause: show([row for *_, row in rows if isinstance(row, ValueRow)], cause),
         )
         if view.origin is None:
             seen.stand(0.0, 0.0)
@@ -201,7 +202,7 @@ class Updater:
                     tap(stamp, row.values, cause)
         self._take_rows(rows, cause)
 
-    def _show(self, reading: Reading, rows: list[Row], cause: Cause | None) -> None:
+    def _show(self, reading: Reading, rows: list[ValueRow], cause: Cause | None) -> None:
         if rows:
             self._host.annotate(self.part.name, rows[0].annotations)
             reading.take(rows[0].values, cause)
@@ -219,7 +220,7 @@ class Updater:
         text = f"`{part.name}` is not shown: {error}"
         host.report_once((part.name, error.path), part.place, text, error.help)
         if self._faults is None:
-            self._faults = Faults(topic, lambda why, _: host.start(host.report_bad_message, topic, why))
+            self._faults = BadMessages(topic, lambda why, _: host.start(host.report_bad_message, topic, why))
         self._faults.add(Structure(error.functor, (error.path,)), str(error))
 
 
@@ -238,14 +239,14 @@ class Signals:
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: TopicPart) -> None:
+    def __init__(self, host: MappingHost, part: TopicPart) -> None:
         self._host, self._part = host, part
         self._sent: dict[object, tuple[object, ...]] = {}
-        self._held: tuple[list[Row], Cause | None] | None = None
+        self._held: tuple[list[ValueRow], Cause | None] | None = None
         self._pause: Timer | None = None
         host.at_dispose(self._close)
 
-    def take(self, rows: list[Row], cause: Cause | None) -> None:
+    def take(self, rows: list[ValueRow], cause: Cause | None) -> None:
         """Handle a message; during the pause after a signal the newest one is held back."""
         if self._pause is not None:
             self._held = (rows, cause)
@@ -277,10 +278,10 @@ class Elements:
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: TopicPart) -> None:
+    def __init__(self, host: MappingHost, part: TopicPart) -> None:
         self._host, self._part = host, part
-        self._wanted: dict[object, Row] = {}
-        self._shown: dict[object, Row] = {}
+        self._wanted: dict[object, ValueRow] = {}
+        self._shown: dict[object, ValueRow] = {}
         self._seen: dict[object, float] = {}
         self._expiry: Timer | None = None
         self._versions = itertools.count()
@@ -289,7 +290,7 @@ class Elements:
         self._reading = Reading(policy, host.clock, self._deliver, behind=self._is_behind)
         host.at_dispose(self.close)
 
-    def take(self, rows: list[Row], cause: Cause | None) -> None:
+    def take(self, rows: list[ValueRow], cause: Cause | None) -> None:
         """Handle the elements of a message."""
         now, expire = self._host.clock.elapsed, self._part.policy.expire
         new = {row.key: self._kept(row) for row in rows}
@@ -300,14 +301,14 @@ class Elements:
                 self._expiry = self._host.clock.call_later(expire, self._look)
         self._want(new, cause)
 
-    def _kept(self, row: Row) -> Row:
+    def _kept(self, row: ValueRow) -> ValueRow:
         """Return the row that is already shown if the new one hardly differs."""
         old = self._wanted.get(row.key)
         if old is None or self._part.policy.differ(old.values, row.values):
             return row
         return old
 
-    def _want(self, new: dict[object, Row], cause: Cause | None) -> None:
+    def _want(self, new: dict[object, ValueRow], cause: Cause | None) -> None:
         if new != self._wanted:
             self._wanted = new
             self._reading.take((next(self._versions),), cause)
@@ -334,7 +335,7 @@ class Elements:
             elif old != row:
                 host.update_property(name, *row.values, annotations=row.annotations, where=old.values)
 
-    def _alive(self, now: float, expire: float) -> dict[object, Row]:
+    def _alive(self, now: float, expire: float) -> dict[object, ValueRow]:
         alive = {
             key: row for key, row in self._wanted.items() if now - self._seen.get(key, now) < expire - 1e-9
         }

@@ -18,10 +18,10 @@ from jacaros.robots.kit.services import failure_reason, refusal, set_parameter
 from jacaros.robots.mapping.checking import Codec, codec, message_types
 from jacaros.robots.mapping.decoding import Read, Unshowable
 from jacaros.robots.mapping.encoding import WrongValue
-from jacaros.robots.mapping.host import Host, ask_type
-from jacaros.robots.mapping.operations import OperationKind, OperationPart, Source
+from jacaros.robots.mapping.host import MappingHost, ask_type
+from jacaros.robots.mapping.mapped_topic import Updater
+from jacaros.robots.mapping.operations import OperationKind, OperationPart, ValueSource
 from jacaros.robots.mapping.parameters import own_name, parameter_converter
-from jacaros.robots.mapping.topic_multiplexer import Updater
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.errors import (
     CapabilityMissing,
@@ -41,7 +41,7 @@ class _Operation:
 
     what = "service"
 
-    def __init__(self, host: Host, part: OperationPart) -> None:
+    def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._known: Codec | None = None
         if part.type_name is not None:
@@ -123,7 +123,7 @@ class _ActionOperation(_Operation):
     what = "action"
     _client: ActionClient
 
-    def __init__(self, host: Host, part: OperationPart) -> None:
+    def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._updaters = [Updater(host, each) for each in part.feedback]
         self._under_way = 0
         self.switches: tuple[_ServiceOperation | _SetParameter, ...] = ()
@@ -195,7 +195,7 @@ class _PublishOperation(_Operation):
     _publisher: Publisher
     _matching: Matching
 
-    def __init__(self, host: Host, part: OperationPart) -> None:
+    def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._motions = Motions()
         self._drives = self._moves = self._moved = False
         self._arguments: Sequence[object] = ()
@@ -244,7 +244,7 @@ class _PublishOperation(_Operation):
     def _seconds(self, inputs: Sequence[object]) -> float:
         duration = self._part.duration
         assert duration is not None
-        value = inputs[duration.parameter] if duration.source is Source.PARAMETER else duration.value
+        value = inputs[duration.parameter] if duration.source is ValueSource.PARAMETER else duration.value
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
             text = f"expected a number of seconds as duration, found {value!r}"
             self._host.fail(text, "wrong_value", "duration")
@@ -335,7 +335,7 @@ def _numbers(fields: Any) -> list[float]:
 class _ParameterOperation:
     """Common code of the operations on parameters of nodes."""
 
-    def __init__(self, host: Host, part: OperationPart) -> None:
+    def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._host, self._part = host, part
         self._name = part.target.text if part.node else own_name(host, part.target.text)
         try:
@@ -366,9 +366,9 @@ class _SetParameter(_ParameterOperation):
 
     def _value(self, inputs: Sequence[object]) -> Any:
         part = self._part.values[0]
-        if part.source is Source.NOW:
+        if part.source is ValueSource.NOW:
             return self._host.clock.now()
-        value = inputs[part.parameter] if part.source is Source.PARAMETER else part.value
+        value = inputs[part.parameter] if part.source is ValueSource.PARAMETER else part.value
         known = {name: number for number, name in part.conversion.names}
         if isinstance(value, str) and value in known:
             return known[value]
@@ -396,7 +396,7 @@ class _GetParameter(_ParameterOperation):
 
 
 class _RequestOperation:
-    def __init__(self, host: Host, part: OperationPart) -> None:
+    def __init__(self, host: MappingHost, part: OperationPart) -> None:
         self._host, self._part = host, part
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
@@ -420,7 +420,7 @@ _RUNNERS: dict[OperationKind, Any] = {
 }
 
 
-def runners_of(host: Host) -> list[Any]:
+def runners_of(host: MappingHost) -> list[Any]:
     """Return what runs the operations of an artifact, in the order of the file."""
     parts = host.part.operations
     runners = [_RUNNERS[part.kind](host, part) for part in parts]

@@ -18,8 +18,8 @@ from jacaros.robots.mapping.fields import (
     WHOLE,
     Conversion,
     FieldPart,
-    Path,
-    Place,
+    FieldPath,
+    FilePosition,
     Written,
     belief_name,
     constant,
@@ -39,7 +39,7 @@ from jacaros.runtime.files.texts import close_matches, did_you_mean
 from jacaros.runtime.files.yaml import Node, Problem
 
 
-class Source(StrEnum):
+class ValueSource(StrEnum):
     """The source of a value for a message."""
 
     CONSTANT = "constant"
@@ -61,9 +61,9 @@ class ValuePart:
         elements: the values of each message in a list whose elements come from `parameter`.
     """
 
-    target: Path
-    place: Place
-    source: Source = Source.CONSTANT
+    target: FieldPath
+    place: FilePosition
+    source: ValueSource = ValueSource.CONSTANT
     value: object = None
     parameter: int = 0
     conversion: Conversion = AS_IT_IS
@@ -74,8 +74,8 @@ class ValuePart:
 class Success:
     """The field of a response or result that shows success, and its value then."""
 
-    path: Path
-    place: Place
+    path: FieldPath
+    place: FilePosition
     value: object = True
 
 
@@ -121,7 +121,7 @@ class OperationPart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     kind: OperationKind
     parameters: tuple[str, ...] = ()
     target: Written = NOTHING
@@ -185,7 +185,9 @@ def read_values(node: Node, parameters: tuple[str, ...], within_list: bool = Fal
     return tuple(found)
 
 
-def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_list: bool = False) -> ValuePart:
+def read_value(
+    node: Node, target: FieldPath, parameters: tuple[str, ...], within_list: bool = False
+) -> ValuePart:
     """Read one value for *target*."""
     place = place_of(node)
     if not isinstance(node.value, dict):
@@ -210,26 +212,26 @@ def read_value(node: Node, target: Path, parameters: tuple[str, ...], within_lis
     return ValuePart(target, place, source, value, parameter, conversion)
 
 
-def _list(node: Node, target: Path, parameters: tuple[str, ...]) -> ValuePart:
+def _list(node: Node, target: FieldPath, parameters: tuple[str, ...]) -> ValuePart:
     """Read a list of messages, one for each element of a parameter."""
     entries = node.mapping(*_LIST, required=_LIST)
     parameter = 0
     if "each" in entries:
         source, _, parameter = _source(entries["each"], parameters, within_list=False)
-        if source is not Source.PARAMETER:
+        if source is not ValueSource.PARAMETER:
             entries["each"].wrong("`each` must be a parameter that is a list", "write each: $poses")
     elements = read_values(entries["fields"], parameters, within_list=True) if "fields" in entries else ()
-    return ValuePart(target, place_of(node), Source.ELEMENTS, None, parameter, elements=elements)
+    return ValuePart(target, place_of(node), ValueSource.ELEMENTS, None, parameter, elements=elements)
 
 
-def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple[Source, object, int]:
+def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple[ValueSource, object, int]:
     value = node.value
     if isinstance(value, str) and value.startswith("$"):
-        return Source.PARAMETER, None, _parameter(node, str(value)[1:], parameters, within_list)
+        return ValueSource.PARAMETER, None, _parameter(node, str(value)[1:], parameters, within_list)
     if value == "now":
-        return Source.NOW, None, 0
+        return ValueSource.NOW, None, 0
     help = "for a nested field write its path, as in linear.x: 0.5"
-    return Source.CONSTANT, constant(node, "a number, a text, $parameter or now", help), 0
+    return ValueSource.CONSTANT, constant(node, "a number, a text, $parameter or now", help), 0
 
 
 def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: bool) -> int:
@@ -250,10 +252,10 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
 
 # The keys of each kind of operation, in the order of messages: the fields of the part that a value is read into.
 
-Reader = Callable[[Node, OperationPart], dict[str, Any]]
+ReadPart = Callable[[Node, OperationPart], dict[str, Any]]
 
 
-def _into(name: str, read: Callable[[Node], object]) -> Reader:
+def _into(name: str, read: Callable[[Node], object]) -> ReadPart:
     """Return the reader of a key into one field."""
     return lambda node, part: {name: read(node)}
 
@@ -268,7 +270,7 @@ def _message(node: Node, part: OperationPart) -> dict[str, Any]:
 
 def _duration(node: Node, part: OperationPart) -> dict[str, Any]:
     spell = read_value(node, WHOLE, part.parameters)
-    if spell.source is Source.CONSTANT and not _is_positive(spell.value):
+    if spell.source is ValueSource.CONSTANT and not _is_positive(spell.value):
         node.wrong("`duration` must be a number of seconds above zero", "write duration: 2")
     return {"duration": spell}
 
@@ -311,7 +313,7 @@ def _properties(node: Node, part: OperationPart) -> dict[str, Any]:
     return {"target": Written("", place_of(node)), "properties": tuple(map(written, items))}
 
 
-def _typed(kind: str) -> Reader:
+def _typed(kind: str) -> ReadPart:
     return _into("type_name", lambda node: type_written(node, kind))
 
 
@@ -400,7 +402,7 @@ _TARGET = _into("target", ros_name)
 _NODE = _into("node", lambda node: ros_name(node).text)
 _TIMEOUT = _into("timeout", positive)
 _OUTPUTS = _into("outputs", _outputs)
-KEYS: dict[str, dict[str, Reader]] = {
+KEYS: dict[str, dict[str, ReadPart]] = {
     "publish": {
         "publish": _TARGET,
         "type": _typed("msg"),
@@ -448,7 +450,7 @@ KEYS: dict[str, dict[str, Reader]] = {
     "read": {"read": _properties},
 }
 """The keys of each kind of operation, with their readers; the first names it."""
-_COMMON: dict[str, Reader] = {
+_COMMON: dict[str, ReadPart] = {
     "parameters": _into("parameters", _parameters),
     "description": _into("description", Node.text),
     "uses": _into("uses", _uses),
@@ -499,9 +501,10 @@ def _forgotten(part: OperationPart) -> Iterator[Problem]:
     used = {
         part.parameters[each.parameter]
         for each in values
-        if each.source in (Source.PARAMETER, Source.ELEMENTS) and each.parameter < len(part.parameters)
+        if each.source in (ValueSource.PARAMETER, ValueSource.ELEMENTS)
+        and each.parameter < len(part.parameters)
     }
     for each in values:
-        if each.source is Source.CONSTANT and each.value in part.parameters and each.value not in used:
+        if each.source is ValueSource.CONSTANT and each.value in part.parameters and each.value not in used:
             text = f"`{each.value}` is a text here, not the parameter"
             yield each.place.problem(text, f"write ${each.value}")

@@ -13,7 +13,7 @@ from shlex import quote
 from jacaros.artifacts.env.values import Atom, text
 from jacaros.robots.mapping.decoding import Convert, Unshowable, converted
 from jacaros.robots.mapping.fields import AS_IT_IS, Conversion
-from jacaros.robots.mapping.host import Host
+from jacaros.robots.mapping.host import MappingHost
 from jacaros.robots.mapping.properties import ParameterPart
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import (
@@ -24,7 +24,7 @@ from jacaros.robots.ros.errors import (
     ServiceUnavailable,
 )
 from jacaros.robots.ros.node import Capability
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, fault_of
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, fault_of
 from jacaros.runtime.files.yaml import Problem
 
 PATIENCE = 2.0
@@ -32,7 +32,7 @@ PATIENCE = 2.0
 attempt."""
 
 
-def own_name(host: Host, name: str) -> str:
+def own_name(host: MappingHost, name: str) -> str:
     """Return the name that a parameter of our node has in the graph: below the artifact's namespace, ``r1.speed``.
 
     On ROS 1 names have slashes instead of dots: ``r1/speed``; ``patrol.speed`` becomes ``patrol/speed``.
@@ -58,7 +58,7 @@ class _Parameter:
         name: name of the parameter in the graph.
     """
 
-    def __init__(self, host: Host, part: ParameterPart, name: str) -> None:
+    def __init__(self, host: MappingHost, part: ParameterPart, name: str) -> None:
         self._host, self._part, self._name = host, part, name
         conversion = part.field.conversion if part.field is not None else AS_IT_IS
         self._convert = parameter_converter(conversion, name)
@@ -89,7 +89,7 @@ class OwnParameter(_Parameter):
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: ParameterPart) -> None:
+    def __init__(self, host: MappingHost, part: ParameterPart) -> None:
         assert part.declaration is not None
         self._declaration = part.declaration
         super().__init__(host, part, own_name(host, part.parameter))
@@ -162,7 +162,7 @@ class OwnParameter(_Parameter):
         self._host.report([place.problem(told, "set another value")])
 
 
-def _alike(value: ParameterValue, declaration: Declaration) -> ParameterValue:
+def _alike(value: ParameterValue, declaration: DeclaredParameter) -> ParameterValue:
     """Accept an integer for a floating-point number: roslaunch and rosparam read ``1`` as one."""
     if isinstance(declaration.default, float) and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
@@ -220,7 +220,7 @@ class NodeParameter(_Parameter):
         part: its declaration.
     """
 
-    def __init__(self, host: Host, part: ParameterPart) -> None:
+    def __init__(self, host: MappingHost, part: ParameterPart) -> None:
         super().__init__(host, part, part.parameter)
         self._node = host.ros.resolve(host.robot_topic(part.node))
         self._vain = 0

@@ -9,7 +9,7 @@ from jacaros.artifacts.streams import (
     LONGEST,
     OPERATORS,
     PARTNERS_WAIT,
-    Fault,
+    DeclarationProblem,
     ReadingPolicy,
     Spec,
     faults,
@@ -21,8 +21,8 @@ from jacaros.robots.mapping.fields import (
     UNNAMED,
     WHOLE,
     FieldPart,
-    Path,
-    Place,
+    FieldPath,
+    FilePosition,
     Written,
     belief_name,
     constant,
@@ -42,7 +42,7 @@ from jacaros.robots.mapping.fields import (
     written,
 )
 from jacaros.robots.ros.errors import ParameterRefused
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value, fault_of
 from jacaros.robots.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, QoS
 from jacaros.runtime.files.yaml import Node, Problem
 
@@ -88,7 +88,7 @@ def read_annotations(node: Node) -> tuple[FieldPart, ...]:
     return tuple(replace(read_field(value), name=belief_name(name)) for name, value in node.entries())
 
 
-def _coordinates(node: Node) -> tuple[Path, ...]:
+def _coordinates(node: Node) -> tuple[FieldPath, ...]:
     at = tuple(path_of(item) for item in node.sequence())
     if len(at) != 2:
         node.wrong("`at` must be the paths of two coordinates", "write [position.x, position.y]")
@@ -107,10 +107,10 @@ class ViewPart:
         origin: the property whose first values are the origin; None: the robot itself.
     """
 
-    place: Place
+    place: FilePosition
     metres: Annotated[float, entry(positive)] = 1.0
-    distance: Annotated[Path | None, entry(path_of)] = None
-    at: Annotated[tuple[Path, ...], entry(_coordinates)] = ()
+    distance: Annotated[FieldPath | None, entry(path_of)] = None
+    at: Annotated[tuple[FieldPath, ...], entry(_coordinates)] = ()
     origin: Annotated[Written | None, entry(written, "from")] = None
 
 
@@ -145,13 +145,13 @@ class TopicPart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     topic: Annotated[Written | None, entry(ros_name)] = None
     type_name: Annotated[Written | None, type_of("msg")] = None
     frame: Annotated[Written | None, entry(written)] = None
     fields: Annotated[tuple[FieldPart, ...] | None, entry(read_fields)] = None
-    each: Annotated[Path | None, entry(path_of)] = None
-    each_place: Place = START
+    each: Annotated[FieldPath | None, entry(path_of)] = None
+    each_place: FilePosition = START
     key: Annotated[FieldPart | None, entry(read_field)] = None
     annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
     qos: Annotated[QoS | None, entry(read_qos)] = None
@@ -312,7 +312,7 @@ class FramePart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     target: Annotated[str, entry(Node.text)] = ""
     source: Annotated[str, entry(Node.text)] = ""
     fields: Annotated[tuple[FieldPart, ...], entry(read_fields)] = ()
@@ -383,13 +383,13 @@ class ParameterPart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     parameter: Annotated[str, entry(Node.text)]
     node: Annotated[str, entry(lambda node: ros_name(node).text)] = ""
     field: Annotated[FieldPart | None, entry(_field, "fields")] = None
     rate: Annotated[float, entry(positive)] = 1.0
     description: Annotated[str, entry(Node.text)] = ""
-    declaration: Declaration | None = None
+    declaration: DeclaredParameter | None = None
     policy: ReadingPolicy = ALWAYS
 
 
@@ -430,7 +430,7 @@ def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> Non
         node.wrong(f"parameter `{name}`: expected a number, found {found}", help)
 
 
-def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
+def _declaration(node: Node, entries: dict[str, Node]) -> DeclaredParameter:
     """Read the declaration of a parameter of our own; *node* is its default."""
     default = _value(node)
     limits = {key: entries[key].number() for key in ("minimum", "maximum") if key in entries}
@@ -438,7 +438,7 @@ def _declaration(node: Node, entries: dict[str, Node]) -> Declaration:
         text = f"only numbers have a range, but the default is {default!r}"
         entries[next(iter(limits))].wrong(text, "leave minimum and maximum out")
         limits = {}
-    declaration = Declaration(
+    declaration = DeclaredParameter(
         default,
         entries["description"].text() if "description" in entries else "",
         entries["read_only"].truth() if "read_only" in entries else False,
@@ -478,7 +478,7 @@ class DerivedPart:
     """
 
     name: str
-    place: Place
+    place: FilePosition
     spec: Spec | None = None
     sources: tuple[Written, ...] = ()
     description: Annotated[str, entry(Node.text)] = ""
@@ -539,7 +539,7 @@ def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
     return None
 
 
-def _report(fault: Fault, entries: dict[str, Node], node: Node) -> None:
+def _report(fault: DeclarationProblem, entries: dict[str, Node], node: Node) -> None:
     if fault.option in entries and fault.message.endswith(f"has no option `{fault.option}`"):
         _at_key(node, fault.option).wrong(fault.message, fault.help)
     else:

@@ -39,7 +39,7 @@ class GoalStatus(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class GoalOutcome:
     """The outcome of a goal.
 
     Attributes:
@@ -81,7 +81,7 @@ class ServerGoal:
         goal_id: str,
         request: Any,
         send: Callable[[Any], Any],
-        report: Callable[["ServerGoal", Outcome], None],
+        report: Callable[["ServerGoal", GoalOutcome], None],
     ) -> None:
         self.goal_id = goal_id
         self.request = request
@@ -102,7 +102,7 @@ class ServerGoal:
         if not self.over:
             self._send(message if message is not None else fields)
 
-    def end(self, outcome: Outcome) -> None:
+    def end(self, outcome: GoalOutcome) -> None:
         """Send the outcome, unless it was sent."""
         if not self.over:
             self.over = True
@@ -115,7 +115,7 @@ class ServerGoal:
             self.task.cancel()
 
 
-Execute = Callable[[ServerGoal], Awaitable[Any]]
+ExecuteCallback = Callable[[ServerGoal], Awaitable[Any]]
 """Runs one goal, as a task of its own.
 
 It returns the result of a goal that succeeded (result message, mapping of its fields, None for the defaults). `Abort`
@@ -124,7 +124,7 @@ accepted, or a newer goal pre-empts this one, ``CancelledError`` is raised in it
 the outcome: canceled after a request, `ActionPolicy.overtaken` after pre-emption. Stop motion in its ``finally``.
 """
 
-Accept = Callable[[Any], str | None]
+GoalCallback = Callable[[Any], str | None]
 """Takes a goal message; returns None to accept it, or the reason for rejecting it."""
 
 
@@ -141,7 +141,7 @@ class ActionPolicy:
             ``SimpleActionServer``.
     """
 
-    accept: Accept | None = None
+    accept: GoalCallback | None = None
     may_cancel: Callable[[ServerGoal], bool] | None = None
     preempt: bool = False
     overtaken: GoalStatus = GoalStatus.ABORTED
@@ -181,7 +181,7 @@ class ServedGoals:
         factory: Schema,
         name: str,
         type_name: str,
-        execute: Execute,
+        execute: ExecuteCallback,
         policy: ActionPolicy,
         log: Callable[[str], None],
     ) -> None:
@@ -217,7 +217,7 @@ class ServedGoals:
         goal_id: str,
         request: Any,
         feedback: Callable[[Any], None],
-        ended: Callable[[Outcome], None],
+        ended: Callable[[GoalOutcome], None],
     ) -> ServerGoal:
         """Run an accepted goal as a task of its own.
 
@@ -229,7 +229,7 @@ class ServedGoals:
         def send(given: Any) -> None:
             feedback(self._factory.checked(self._feedback_type, given))
 
-        def end(goal: ServerGoal, outcome: Outcome) -> None:
+        def end(goal: ServerGoal, outcome: GoalOutcome) -> None:
             self._goals.pop(goal.goal_id, None)
             ended(outcome)
 
@@ -345,7 +345,7 @@ class ServedGoals:
             )
             return False
 
-    def _outcome(self, goal: ServerGoal, task: asyncio.Task[Any]) -> Outcome:
+    def _outcome(self, goal: ServerGoal, task: asyncio.Task[Any]) -> GoalOutcome:
         """Return the outcome that corresponds to the end of a goal's code."""
         if task.cancelled():
             return self._cancelled(goal, None)
@@ -356,37 +356,37 @@ class ServedGoals:
             return self._aborted(problem)
         return self._failed(f"{type(problem).__name__}: {problem}")
 
-    def _given(self, goal: ServerGoal, result: Any) -> Outcome:
+    def _given(self, goal: ServerGoal, result: Any) -> GoalOutcome:
         try:
             message = self._factory.checked(self._result_type, result)
         except MessageMismatch as problem:
             return self._failed(str(problem))
         if goal.stopped:
             return self._cancelled(goal, message)
-        return Outcome(GoalStatus.SUCCEEDED, message, text_of(message))
+        return GoalOutcome(GoalStatus.SUCCEEDED, message, text_of(message))
 
-    def _cancelled(self, goal: ServerGoal, result: Any) -> Outcome:
+    def _cancelled(self, goal: ServerGoal, result: Any) -> GoalOutcome:
         if goal.overtaken:
             return self._ended(self._policy.overtaken, result, PREEMPTED)
         if goal.cancel_requested:
             return self._ended(GoalStatus.CANCELED, result, "")
         return self._ended(GoalStatus.ABORTED, result, "the code of the goal was cancelled")
 
-    def _aborted(self, problem: Abort) -> Outcome:
+    def _aborted(self, problem: Abort) -> GoalOutcome:
         try:
             return self._ended(GoalStatus.ABORTED, problem.result, problem.text)
         except MessageMismatch as mismatch:
             return self._failed(f"{mismatch} (aborting: {problem.text})")
 
-    def _failed(self, reason: str) -> Outcome:
+    def _failed(self, reason: str) -> GoalOutcome:
         self._log(f"the code of action {self._name} failed: {reason}")
         return self._ended(GoalStatus.ABORTED, None, reason)
 
-    def _ended(self, status: GoalStatus, result: Any, text: str) -> Outcome:
+    def _ended(self, status: GoalStatus, result: Any, text: str) -> GoalOutcome:
         message = self._factory.checked(self._result_type, result)
         if text:
             self._fill_in(message, text)
-        return Outcome(status, message, text or text_of(message))
+        return GoalOutcome(status, message, text or text_of(message))
 
     def _fill_in(self, result: Any, text: str) -> None:
         """Write *text* to the result if it has an empty field for it."""

@@ -12,7 +12,7 @@ from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from contextlib import suppress
 from typing import Any, Literal, Protocol, TypeVar
 
-from jacaros.robots.ros.action import SERVER_LOST_AFTER, Outcome
+from jacaros.robots.ros.action import SERVER_LOST_AFTER, GoalOutcome
 from jacaros.robots.ros.errors import (
     CallFailed,
     CallTimedOut,
@@ -23,7 +23,7 @@ from jacaros.robots.ros.errors import (
 )
 from jacaros.robots.ros.message import Schema
 from jacaros.robots.ros.names import goal_type
-from jacaros.robots.ros.waiting import RETRY, Deadline, Waiting, settle, within
+from jacaros.robots.ros.waiting import RETRY, Deadline, WaitLog, settle, within
 from jacaros.runtime.clock import Clock, Timer
 
 T = TypeVar("T")
@@ -81,7 +81,7 @@ class GoalHandle:
         self.acceptance: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self.accepted = False
         self.abandoned = False
-        self.end: Outcome | ServiceError | None = None
+        self.end: GoalOutcome | ServiceError | None = None
         self.leaves_by: float | None = None
         """Time of `Clock.elapsed` until which a goal that is being cancelled delays newer goals."""
         self._sender = sender
@@ -89,7 +89,7 @@ class GoalHandle:
         self._asking: list[asyncio.Future[bool]] = []
         self._followers: list[asyncio.Future[None]] = []
 
-    async def outcome(self, timeout: float | None = None) -> Outcome:
+    async def outcome(self, timeout: float | None = None) -> GoalOutcome:
         """Wait for the goal to end; any number of callers may wait, also after the end.
 
         Raises:
@@ -161,9 +161,9 @@ class GoalHandle:
         finally:
             waiters.remove(waiter)
 
-    def _ended(self) -> Outcome:
+    def _ended(self) -> GoalOutcome:
         """Return the outcome, or raise why it will never be known."""
-        if isinstance(self.end, Outcome):
+        if isinstance(self.end, GoalOutcome):
             return self.end
         assert self.end is not None
         raise self.end.with_traceback(None)
@@ -179,19 +179,19 @@ class GoalHandle:
         for follower in self._followers:
             settle(follower, None, None)
 
-    def finish(self, end: Outcome | ServiceError) -> None:
+    def finish(self, end: GoalOutcome | ServiceError) -> None:
         """Note the goal's outcome and settle everything that waits for it."""
         if self.end is not None:
             return
         self.end = end
         self._sender.has_left(self)
-        problem = None if isinstance(end, Outcome) else end
+        problem = None if isinstance(end, GoalOutcome) else end
         settle(self.acceptance, None, problem)
         for waiter in self._waiting:
             settle(waiter, None, problem)
         for answer in self._asking:
             # The server's answer was lost or overtaken; the outcome implies it.
-            settle(answer, isinstance(end, Outcome) and end.status == "canceled", problem)
+            settle(answer, isinstance(end, GoalOutcome) and end.status == "canceled", problem)
 
 
 OrphanPolicy = Literal["cancel", "keep"] | Callable[[str], Awaitable[bool]]
@@ -292,7 +292,7 @@ class ActionClient:
         self._abandoning: set[asyncio.Task[None]] = set()
         self._arrivals: list[asyncio.Future[None]] = []
         self._losing: Timer | None = None
-        self._waiting = Waiting(clock, log, f"action {name} ({type_name})")
+        self._waiting = WaitLog(clock, log, f"action {name} ({type_name})")
         self._closed = False
 
     @property
@@ -457,7 +457,7 @@ class ActionClient:
                 f"the feedback callback of action {self.name} failed: {type(problem).__name__}: {problem}"
             )
 
-    def ended(self, goal_id: str, outcome: Outcome) -> None:
+    def ended(self, goal_id: str, outcome: GoalOutcome) -> None:
         """Note the outcome of a goal."""
         self._sign()
         self._finish(goal_id, outcome)
@@ -574,7 +574,7 @@ class ActionClient:
         if afterwards is not None:
             await afterwards()
 
-    def _finish(self, goal_id: str, end: Outcome | ServiceError) -> None:
+    def _finish(self, goal_id: str, end: GoalOutcome | ServiceError) -> None:
         pending = self._goals.get(goal_id)
         if pending is not None:
             self._forget(goal_id)

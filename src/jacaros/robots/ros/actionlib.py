@@ -7,12 +7,19 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from jacaros.robots.ros.action import ActionPolicy, Execute, GoalStatus, Outcome, ServedGoals, text_of
+from jacaros.robots.ros.action import (
+    ActionPolicy,
+    ExecuteCallback,
+    GoalOutcome,
+    GoalStatus,
+    ServedGoals,
+    text_of,
+)
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.names import result_type
 from jacaros.robots.ros.node import Node, Sample
 from jacaros.robots.ros.protocols import actionlib as protocol
-from jacaros.robots.ros.protocols.actionlib import SentGoal, SentGoals, State, part_type
+from jacaros.robots.ros.protocols.actionlib import GoalState, SentGoal, SentGoals, part_type
 from jacaros.runtime.clock import Timer
 
 LOOKING = 0.02
@@ -151,7 +158,7 @@ class ActionlibWire:
         if self._present:  # otherwise a request to cancel would be lost
             listed = sample.message.status_list
             self._sender.goals_under_way(
-                each.goal_id.id for each in listed if State(each.status) in protocol.UNDER_WAY
+                each.goal_id.id for each in listed if GoalState(each.status) in protocol.UNDER_WAY
             )
         if self._goals:
             told = [(each.goal_id.id, each.status, each.text) for each in sample.message.status_list]
@@ -166,7 +173,7 @@ class ActionlibWire:
     def _take_result(self, sample: Sample) -> None:
         self._note_server()
         message = sample.message
-        goal_id, state = message.status.goal_id.id, State(message.status.status)
+        goal_id, state = message.status.goal_id.id, GoalState(message.status.status)
         self._goals.take_result(
             goal_id, state, message.result, message.status.text or text_of(message.result)
         )
@@ -197,13 +204,13 @@ class _Goal:
 
     goal_id: str
     stamp: Any
-    state: State
+    state: GoalState
     text: str = ""
     told_until: float | None = None
     status: Any = None
     feedback_at: float = -math.inf
 
-    def change(self, state: State, text: str = "") -> None:
+    def change(self, state: GoalState, text: str = "") -> None:
         """Change the state."""
         self.state, self.text, self.status = state, text, None
 
@@ -219,7 +226,9 @@ class ActionlibServer:
         policy: how to treat goals.
     """
 
-    def __init__(self, node: Node, name: str, type_name: str, execute: Execute, policy: ActionPolicy) -> None:
+    def __init__(
+        self, node: Node, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
+    ) -> None:
         self.name = name
         self._node = node
         self._result_type = result_type(type_name)
@@ -274,18 +283,18 @@ class ActionlibServer:
         goal_id = message.goal_id.id or self._new_id()
         known = self._goals.get(goal_id)
         if known is not None:
-            if known.state is State.RECALLING:  # the request to cancel has overtaken the goal
-                self._finish(known, State.RECALLED, "cancelled before it began")
+            if known.state is GoalState.RECALLING:  # the request to cancel has overtaken the goal
+                self._finish(known, GoalState.RECALLED, "cancelled before it began")
             return
-        goal = self._goals[goal_id] = _Goal(goal_id, message.goal_id.stamp, State.PENDING)
+        goal = self._goals[goal_id] = _Goal(goal_id, message.goal_id.stamp, GoalState.PENDING)
         if NO_TIME < protocol.time_of(goal.stamp) <= self._cancelled_until:
-            self._finish(goal, State.RECALLED, OUTDATED)
+            self._finish(goal, GoalState.RECALLED, OUTDATED)
             return
         refusal = self._served.judge(message.goal)
         if refusal is not None:
-            self._finish(goal, State.REJECTED, refusal)
+            self._finish(goal, GoalState.REJECTED, refusal)
             return
-        goal.change(State.ACTIVE)
+        goal.change(GoalState.ACTIVE)
         self._served.begin(
             goal_id, message.goal, partial(self._send_feedback, goal), partial(self._end, goal)
         )
@@ -303,10 +312,10 @@ class ActionlibServer:
         for goal_id, goal in list(self._goals.items()):
             in_time = until != NO_TIME and protocol.time_of(goal.stamp) <= until
             if (everything or goal_id == wanted or in_time) and self._served.cancel(goal_id):
-                goal.change(State.PREEMPTING)
+                goal.change(GoalState.PREEMPTING)
         if wanted and wanted not in self._goals:
             self._goals[wanted] = _Goal(
-                wanted, sample.message.stamp, State.RECALLING, told_until=self._later()
+                wanted, sample.message.stamp, GoalState.RECALLING, told_until=self._later()
             )
         self._cancelled_until = max(self._cancelled_until, until)
         self._report()
@@ -322,12 +331,12 @@ class ActionlibServer:
             )
         )
 
-    def _end(self, goal: _Goal, outcome: Outcome) -> None:
+    def _end(self, goal: _Goal, outcome: GoalOutcome) -> None:
         """Send the outcome of an accepted goal."""
         states = {
-            GoalStatus.SUCCEEDED: State.SUCCEEDED,
-            GoalStatus.CANCELED: State.PREEMPTED,
-            GoalStatus.ABORTED: State.ABORTED,
+            GoalStatus.SUCCEEDED: GoalState.SUCCEEDED,
+            GoalStatus.CANCELED: GoalState.PREEMPTED,
+            GoalStatus.ABORTED: GoalState.ABORTED,
         }
 
         def finish() -> None:
@@ -341,7 +350,7 @@ class ActionlibServer:
         else:
             finish()
 
-    def _finish(self, goal: _Goal, state: State, text: str, result: Any = None) -> None:
+    def _finish(self, goal: _Goal, state: GoalState, text: str, result: Any = None) -> None:
         goal.change(state, text)
         goal.told_until = self._later()
         if self._closed:

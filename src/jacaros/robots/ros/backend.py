@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 from weakref import WeakKeyDictionary
 
-from jacaros.robots.ros.action import ActionPolicy, ActionServer, Execute
+from jacaros.robots.ros.action import ActionPolicy, ActionServer, ExecuteCallback
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.errors import RosError
 from jacaros.robots.ros.lifetime import Lifetime
@@ -189,7 +189,7 @@ class Backend(Node):
         return made
 
     def action_server(
-        self, name: str, type_name: str, execute: Execute, policy: ActionPolicy = DEFAULT_POLICY
+        self, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy = DEFAULT_POLICY
     ) -> ActionServer:
         """Offer an action; *execute* runs each accepted goal, as a task on the loop.
 

@@ -103,7 +103,7 @@ _COMMENT = re.compile(r"\s*#.*")
 
 
 @dataclass(frozen=True)
-class Definition:
+class MessageDefinition:
     """A parsed message definition.
 
     Attributes:
@@ -115,7 +115,7 @@ class Definition:
     constants: Mapping[str, object]
 
 
-def parse_definition(text: str, package: str) -> Definition:
+def parse_definition(text: str, package: str) -> MessageDefinition:
     """Parse the definition of a message.
 
     Args:
@@ -142,7 +142,7 @@ def parse_definition(text: str, package: str) -> Definition:
                     constants[name] = _constant(match["base"], match["constant"])
             except ValueError as problem:
                 raise ValueError(f"line {number}: {problem}") from None
-    return Definition(fields, constants)
+    return MessageDefinition(fields, constants)
 
 
 def from_ros1(text: str) -> FieldType:

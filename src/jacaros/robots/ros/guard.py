@@ -19,7 +19,7 @@ from typing import Any
 
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.errors import RosError, ServiceError
-from jacaros.robots.ros.guarded import Named, velocity
+from jacaros.robots.ros.guarded import GuardedName, velocity
 from jacaros.robots.ros.heartbeat import NEWEST, NO_GUARD, TEXT, line, topics_of
 from jacaros.robots.ros.node import Publisher, Sample
 from jacaros.robots.ros.services import Client
@@ -29,7 +29,7 @@ LEAVING = 5.0
 """Seconds without a heartbeat that agents may take to end."""
 
 
-class Watch:
+class HeartbeatMonitor:
     """Decides from heartbeats whether the robot must be stopped: a state machine without input, output or clock.
 
     idle      no agents, nothing to stop
@@ -133,10 +133,10 @@ class Brakes:
     def __init__(self, backend: Backend, log: Callable[[str], None]) -> None:
         self.simulated_time = False
         self._backend, self._log = backend, log
-        self._topics: dict[Named, Publisher] = {}
-        self._clients: dict[Named, Client] = {}
+        self._topics: dict[GuardedName, Publisher] = {}
+        self._clients: dict[GuardedName, Client] = {}
         """Of ROS 2's services that cancel goals."""
-        self._cancels: dict[Named, Publisher] = {}
+        self._cancels: dict[GuardedName, Publisher] = {}
         """Of actionlib's topics that cancel goals."""
         self._asking: set[asyncio.Future[Any]] = set()
         self._acquainted: set[str] = set()
@@ -155,7 +155,7 @@ class Brakes:
         goals = [f"cancels all goals of {name}" for name, _ in (*self._clients, *self._cancels)]
         return ", ".join([*goals, *(f"sends zero velocity to {name}" for name, _ in self._topics)])
 
-    def cover(self, topics: list[Named], actions: list[Named]) -> None:
+    def cover(self, topics: list[GuardedName], actions: list[GuardedName]) -> None:
         """Open what is named, and close the rest."""
         _keep(self._topics, topics, self._open_topic, self._log)
         if self._backend.ros_version == 1:
@@ -177,13 +177,13 @@ class Brakes:
         for client in self._clients.values():
             self._begin(_call(client, {}))
 
-    def _open_topic(self, item: Named) -> Publisher:
+    def _open_topic(self, item: GuardedName) -> Publisher:
         return self._backend.publisher(*item)
 
-    def _open_cancel(self, item: Named) -> Publisher:
+    def _open_cancel(self, item: GuardedName) -> Publisher:
         return self._backend.publisher(f"{item[0]}/cancel", "actionlib_msgs/msg/GoalID")
 
-    def _open_client(self, item: Named) -> Client:
+    def _open_client(self, item: GuardedName) -> Client:
         client = self._backend.client(f"{item[0]}/_action/cancel_goal", "action_msgs/srv/CancelGoal")
         self._acquainted.discard(item[0])
         self._begin(self._get_acquainted(item[0], client))
@@ -208,7 +208,10 @@ async def _call(client: Client, request: dict[str, Any]) -> None:
 
 
 def _keep(
-    made: dict[Named, Any], wanted: list[Named], make: Callable[[Named], Any], log: Callable[[str], None]
+    made: dict[GuardedName, Any],
+    wanted: list[GuardedName],
+    make: Callable[[GuardedName], Any],
+    log: Callable[[str], None],
 ) -> None:
     for item in [item for item in made if item not in wanted]:
         made.pop(item).close()
@@ -262,7 +265,7 @@ class Guard:
         self._backend, self._agents, self._path, self._once, self._log = backend, agents, path, once, log
         self._orphaned = orphaned
         self._network_timeout = NETWORK_TIMEOUT if timeout is None else timeout
-        self._watch = Watch(TIMEOUT if timeout is None else timeout, self._trip, self._release)
+        self._watch = HeartbeatMonitor(TIMEOUT if timeout is None else timeout, self._trip, self._release)
         self._brakes = Brakes(backend, log)
         self._writer: asyncio.StreamWriter | None = None
         self._answer: Callable[[bytes], None] = lambda message: None
@@ -273,7 +276,7 @@ class Guard:
         self._reported: dict[str, int] = {}
         self._ending = False
         self._wake = asyncio.Event()
-        self._wanted: tuple[list[Named], list[Named]] = ([], [])
+        self._wanted: tuple[list[GuardedName], list[GuardedName]] = ([], [])
 
     async def run(self) -> None:
         """Run until SIGINT or SIGTERM, or with *once* until the agents have ended.
@@ -446,7 +449,7 @@ class Guard:
             self._answer(state)
 
 
-def _pairs(written: list[list[str]]) -> list[Named]:
+def _pairs(written: list[list[str]]) -> list[GuardedName]:
     return [(name, kind) for name, kind in written]
 
 

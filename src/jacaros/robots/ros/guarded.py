@@ -13,7 +13,7 @@ STAMPED = "geometry_msgs/msg/TwistStamped"
 VELOCITIES = ("geometry_msgs/msg/Twist", STAMPED)
 """Types of the messages that command a velocity."""
 
-Named = tuple[str, str]
+GuardedName = tuple[str, str]
 """Absolute name and type of a topic or an action."""
 
 
@@ -59,21 +59,21 @@ class Guarded:
         self.on_change: Callable[[], None] = lambda: None
         self.on_drive: Callable[[], None] = lambda: None
         self.found: dict[str, Mapping[str, int]] = {}
-        self._topics: Counter[Named] = Counter()
-        self._actions: Counter[Named] = Counter()
+        self._topics: Counter[GuardedName] = Counter()
+        self._actions: Counter[GuardedName] = Counter()
         self._moving: set[str] = set()
         self._goals = 0
         self._motions: list[Callable[[], None]] = []
         self._drives: list[Callable[[], None]] = []
-        self._reported: set[Named] = set()
+        self._reported: set[GuardedName] = set()
 
     @property
-    def topics(self) -> list[Named]:
+    def topics(self) -> list[GuardedName]:
         """The open velocity topics, sorted."""
         return sorted(self._topics)
 
     @property
-    def actions(self) -> list[Named]:
+    def actions(self) -> list[GuardedName]:
         """The actions with a client, sorted."""
         return sorted(self._actions)
 
@@ -120,7 +120,7 @@ class Guarded:
         """Add an action. Return a function that removes it."""
         return self._add(self._actions, (name, type_name))
 
-    def _add(self, group: Counter[Named], item: Named) -> Callable[[], None]:
+    def _add(self, group: Counter[GuardedName], item: GuardedName) -> Callable[[], None]:
         def remove() -> None:
             group[item] -= 1
             if group[item] <= 0:
@@ -132,7 +132,7 @@ class Guarded:
             self.on_change()
         return remove
 
-    def is_news(self, publisher: Named) -> bool:
+    def is_news(self, publisher: GuardedName) -> bool:
         """Return whether a topic and another node that publishes on it are reported for the first time."""
         news = publisher not in self._reported
         self._reported.add(publisher)

@@ -40,7 +40,7 @@ M = TypeVar("M")
 Serve = Callable[[int, FrameType | None], None]
 
 
-class State(StrEnum):
+class NodeState(StrEnum):
     """The state of a node in the graph.
 
     Attributes:
@@ -71,7 +71,7 @@ class Lifetime:
             robots and agents share the loop, so a thread could stop no robot.
 
     Attributes:
-        state: changed on the loop, except to `State.LEAVING`.
+        state: changed on the loop, except to `NodeState.LEAVING`.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Lifetime:
         threaded: bool = False,
         insist: Callable[[], None] = lambda: None,
     ) -> None:
-        self.state = State.JOINING
+        self.state = NodeState.JOINING
         self.threaded = threaded
         self._log = log
         self._finish = finish
@@ -108,12 +108,12 @@ class Lifetime:
     def connected(self, connected: bool) -> None:
         """Note that the graph was found or lost."""
         if not self.leaving:
-            self.state = State.JOINED if connected else State.LOST
+            self.state = NodeState.JOINED if connected else NodeState.LOST
 
     @property
     def leaving(self) -> bool:
         """Whether the node is leaving its graph, or has left it."""
-        return self.state in (State.LEAVING, State.LEFT)
+        return self.state in (NodeState.LEAVING, NodeState.LEFT)
 
     def add(self, hook: Callable[[], None]) -> Callable[[], None]:
         """Call *hook* when the process ends, possibly several times. Return a function that removes it.
@@ -126,7 +126,7 @@ class Lifetime:
 
         def remove() -> None:
             if hook in self._hooks:
-                if self.state is State.LEAVING:
+                if self.state is NodeState.LEAVING:
                     # The owner's own zero may have been refused, and the thread that stops the robots may be too
                     # late.
                     self._run([hook])
@@ -157,9 +157,9 @@ class Lifetime:
 
     def stop(self) -> None:
         """Stop the robots: refuse all publishing except by the hooks, and run them on this thread."""
-        if self.state is State.LEFT:
+        if self.state is NodeState.LEFT:
             return
-        self.state = State.LEAVING
+        self.state = NodeState.LEAVING
         self._open = False
         self._run_hooks()
         self._stopped.put(None)
@@ -179,7 +179,7 @@ class Lifetime:
 
     def left(self) -> None:
         """Note that the node has left its graph; on the loop."""
-        self.state = State.LEFT
+        self.state = NodeState.LEFT
         _process.unwatch(self)
 
     def stop_if_late(self, deadline: float) -> None:
@@ -194,7 +194,7 @@ class Lifetime:
 
     def insist(self) -> None:
         """Deliver the last messages after a signal; in a thread."""
-        if self.state is State.LEAVING:
+        if self.state is NodeState.LEAVING:
             self._insist()
 
     def leave_if_orphaned(self) -> None:

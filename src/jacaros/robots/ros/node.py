@@ -24,7 +24,7 @@ from jacaros.robots.ros.message import Schema
 from jacaros.robots.ros.names import NodeNames, message_type
 from jacaros.robots.ros.parameter import GivenParameters, ParameterValue
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
-from jacaros.robots.ros.waiting import Waiting
+from jacaros.robots.ros.waiting import WaitLog
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import CURRENT, Cause, Tracer
 
@@ -134,7 +134,7 @@ M = TypeVar("M", bound=Closable)
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class SubscriptionOptions:
     """The arguments of a subscription.
 
     Attributes:
@@ -158,7 +158,7 @@ class Parts:
 
     Attributes:
         publisher: also with the quality of service.
-        subscription: with `Wanted` in place of name and type.
+        subscription: with `SubscriptionOptions` in place of name and type.
         service: also with the handler.
         client: of a service.
         action_client: with no further argument.
@@ -276,7 +276,7 @@ class Node:
             help: what the user can do about it.
         """
         if self._end_waiting is None and not self.lifetime.leaving:
-            self._end_waiting = Waiting(self.clock, self.log, what, help).begin()
+            self._end_waiting = WaitLog(self.clock, self.log, what, help).begin()
         self.set_connected(False)
         self.looked()
 
@@ -383,7 +383,9 @@ class Node:
         full_type = message_type(type_name)
         self.factory.fields(full_type)
         name = self.resolve(topic)
-        return self.keep(self.parts.subscription(self, Wanted(name, full_type, callback, qos, on_event)))
+        return self.keep(
+            self.parts.subscription(self, SubscriptionOptions(name, full_type, callback, qos, on_event))
+        )
 
     def _check_deadline(self, qos: QoS) -> None:
         """Reject a deadline if the backend does not support them."""
@@ -511,7 +513,7 @@ class TopicSubscription(_TopicEnd[N]):
         wanted: topic, type and callbacks.
     """
 
-    def __init__(self, node: N, wanted: Wanted) -> None:
+    def __init__(self, node: N, wanted: SubscriptionOptions) -> None:
         super().__init__(node, wanted.topic, wanted.type_name, wanted.qos)
         self._callback = wanted.callback
         self._on_event = wanted.on_event
@@ -683,7 +685,11 @@ class SharedSubscription(TopicSubscription[N]):
     """
 
     def __init__(
-        self, node: N, wanted: Wanted, multiplexers: dict[str, F], new_multiplexer: Callable[[N, str, str], F]
+        self,
+        node: N,
+        wanted: SubscriptionOptions,
+        multiplexers: dict[str, F],
+        new_multiplexer: Callable[[N, str, str], F],
     ) -> None:
         super().__init__(node, wanted)
         topic, type_name = wanted.topic, wanted.type_name

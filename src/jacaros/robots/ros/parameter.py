@@ -20,7 +20,7 @@ _WIDEST = 2**63
 
 
 @dataclass(frozen=True, slots=True)
-class Declaration:
+class DeclaredParameter:
     """The declaration of a node's own parameter.
 
     Attributes:
@@ -39,7 +39,7 @@ class Declaration:
     accept: Callable[[ParameterValue], str | None] | None = None
 
 
-def fault_of(value: ParameterValue, declaration: Declaration) -> str | None:
+def fault_of(value: ParameterValue, declaration: DeclaredParameter) -> str | None:
     """Return what is wrong with *value* for a declared parameter: its type or its range; None if nothing is."""
     wanted, given = kind_of(declaration.default), kind_of(value)
     if wanted != given and not _is_empty_of(wanted, given):
@@ -113,7 +113,7 @@ class Parameters(Protocol):
     def node(self) -> str:
         """Absolute name of the node."""
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter of our own node and return its value (that of the launch file, if given).
 
         Raises:
@@ -210,10 +210,10 @@ class DeclaredParameters:
         self._given = given
         self._changed = changed
         self._log = log
-        self._declarations: dict[str, Declaration] = {}
+        self._declarations: dict[str, DeclaredParameter] = {}
         self._values: dict[str, ParameterValue] = {}
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter and return its value; see `Parameters.declare`."""
         if name in self._declarations:
             raise ParameterRefused(f"parameter {name} of {self._node} is already declared")
@@ -256,7 +256,7 @@ class DeclaredParameters:
         self._values[name] = taken
         self._changed({name: taken})
 
-    def _require(self, name: str, declaration: Declaration, value: ParameterValue) -> None:
+    def _require(self, name: str, declaration: DeclaredParameter, value: ParameterValue) -> None:
         what = f"parameter {name} of {self._node}"
         if (fault := fault_of(value, declaration)) is not None:
             raise ParameterRefused(f"{what} is {fault}")
@@ -264,7 +264,7 @@ class DeclaredParameters:
         if reason is not None:
             raise ParameterRefused(f"{what} cannot be {value!r}: {reason}")
 
-    def _judged(self, declaration: Declaration, value: ParameterValue) -> str | None:
+    def _judged(self, declaration: DeclaredParameter, value: ParameterValue) -> str | None:
         if declaration.accept is None:
             return None
         try:

@@ -5,29 +5,29 @@ from typing import Any
 
 from jacaros.robots.ros.errors import CapabilityMissing, ParameterRefused, ParameterUnknown, ServerGone
 from jacaros.robots.ros.node import Sample
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value
 from jacaros.robots.ros.qos import QoS
 from jacaros.robots.ros.services import Client
 from jacaros.runtime.clock import Clock
 
 EVENTS, EVENT_TYPE, EVENT_QUALITY = "/parameter_events", "rcl_interfaces/msg/ParameterEvent", QoS(depth=1000)
 
-Listener = Callable[[Mapping[str, ParameterValue]], None]
+ParameterCallback = Callable[[Mapping[str, ParameterValue]], None]
 
 
 class ParameterListeners:
     """The callbacks for changed parameters, by node."""
 
     def __init__(self) -> None:
-        self._listeners: dict[str, list[Listener]] = {}
+        self._listeners: dict[str, list[ParameterCallback]] = {}
 
-    def listen(self, node: str, callback: Listener) -> Callable[[], None]:
+    def listen(self, node: str, callback: ParameterCallback) -> Callable[[], None]:
         """Call *callback* with changed parameters of a node. Return a function that removes it."""
         listeners = self._listeners.setdefault(node, [])
         listeners.append(callback)
         return lambda: listeners.remove(callback) if callback in listeners else None
 
-    def of(self, node: str) -> list[Listener]:
+    def of(self, node: str) -> list[ParameterCallback]:
         """Return the callbacks for a node."""
         return list(self._listeners.get(node, ()))
 
@@ -50,7 +50,7 @@ class ParameterEvents(ParameterListeners):
         self._read = read
         self._joined = False
 
-    def listen(self, node: str, callback: Listener) -> Callable[[], None]:
+    def listen(self, node: str, callback: ParameterCallback) -> Callable[[], None]:
         """Call *callback* with changed parameters of a node. Return a function that removes it."""
         if not self._joined:
             self._joined = True
@@ -120,7 +120,7 @@ class NodeParameters:
         self._events = events
         self._clients: dict[str, Client] = {}
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Refuse: only the node itself can do that."""
         raise self._not_ours()
 

@@ -9,7 +9,7 @@ from jacaros.robots.ros.action import SERVER_LOST_AFTER
 from jacaros.robots.ros.errors import CallFailed, CallTimedOut, ServerGone, ServiceUnavailable
 from jacaros.robots.ros.names import request_type, response_type
 from jacaros.robots.ros.node import Entity, N
-from jacaros.robots.ros.waiting import RETRY, Deadline, Waiting, settle
+from jacaros.robots.ros.waiting import RETRY, Deadline, WaitLog, settle
 from jacaros.runtime.clock import Clock, Timer
 
 LOOK = 1.0
@@ -73,7 +73,7 @@ class ServiceClient(Entity[N]):
 
     def __init__(self, node: N, name: str, type_name: str) -> None:
         super().__init__(node, name, type_name)
-        self._waiting = Waiting(node.clock, node.log, f"service {name} ({type_name})")
+        self._waiting = WaitLog(node.clock, node.log, f"service {name} ({type_name})")
         self._answers: set[asyncio.Future[Any]] = set()
 
     @property
@@ -132,7 +132,7 @@ Client = ServiceClient[Any]
 
 
 async def call_when_offered(
-    waiting: Waiting,
+    waiting: WaitLog,
     attempt: Callable[[float | None], Awaitable[Any]],
     timeout: float | None,
     may_be_called: Callable[[], bool] = lambda: True,

@@ -9,7 +9,7 @@ from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Node, Publisher, Sample
 from jacaros.robots.ros.protocols.transform import Transform, TransformBuffer
 from jacaros.robots.ros.qos import QoS
-from jacaros.robots.ros.waiting import Waiting, within
+from jacaros.robots.ros.waiting import WaitLog, within
 
 TF = QoS(depth=100)
 TF_STATIC = QoS(durability="transient_local", depth=1)
@@ -91,7 +91,7 @@ class TransformListener:
                 raise
         what = f"transform from {source} to {target}"
         help = "is the node that publishes it running?"
-        with Waiting(self._node.clock, self._node.log, what, help, QUIET).during():
+        with WaitLog(self._node.clock, self._node.log, what, help, QUIET).during():
             return await self._arrival(target, source, stamp, timeout)
 
     async def _arrival(

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.robots.ros.errors import UnknownInterface
-from jacaros.robots.ros.fields import Definition, FieldType, parse_definition
+from jacaros.robots.ros.fields import FieldType, MessageDefinition, parse_definition
 from jacaros.robots.ros.interfaces import BUILT_IN, KINDS, PARTS, definition, how_to_define, split
 from jacaros.robots.ros.message import DEFAULTS, Schema, zeros
 
@@ -26,7 +26,7 @@ class _Store:
         file = (BUILT_IN / "jazzy.msg").read_text(encoding="utf-8")
         parts = (part.partition("\n") for part in file.split(f"{'=' * 80}\nMSG: ")[1:])
         self._texts = {name: text for name, _, text in parts}
-        self._definitions: dict[str, Definition] = {}
+        self._definitions: dict[str, MessageDefinition] = {}
         self._classes: dict[str, type] = {}
 
     def names(self) -> set[str]:
@@ -36,14 +36,14 @@ class _Store:
     def __contains__(self, type_name: str) -> bool:
         return type_name in self._definitions or type_name in self._texts
 
-    def definition(self, type_name: str) -> Definition:
+    def definition(self, type_name: str) -> MessageDefinition:
         found = self._definitions.get(type_name)
         if found is None:
             text, package = self._texts[type_name], type_name.split("/")[0]
             found = self._definitions[type_name] = parse_definition(text, package)
         return found
 
-    def add(self, type_name: str, added: Definition) -> None:
+    def add(self, type_name: str, added: MessageDefinition) -> None:
         self._definitions[type_name] = added
 
     def message_class(self, type_name: str) -> type:
@@ -58,7 +58,7 @@ def _store() -> _Store:
     return _Store()
 
 
-def _message_class(type_name: str, described: Definition) -> type:
+def _message_class(type_name: str, described: MessageDefinition) -> type:
     names = [_python_name(name) for name in described.fields]
     constants = {_python_name(name): value for name, value in described.constants.items()}
     namespace = {**constants, "__msgtype__": type_name}

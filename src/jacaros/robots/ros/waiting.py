@@ -18,7 +18,7 @@ RETRY = 0.1
 """Seconds between two attempts to call a missing service."""
 
 
-class Waiting:
+class WaitLog:
     """Logs waits for one thing: the start, a message with help after a few seconds, and the end.
 
     Of waits one after another in which it was not found, the 1st, 10th, 100th, … is logged.

@@ -1,6 +1,6 @@
 """The embedded robot world: TurtleBot-like robots on a plane, reached through ROS topics only."""
 
-from jacaros.robots.world.data.ground_truth import Event, GroundTruth, Sample
+from jacaros.robots.world.data.ground_truth import GroundTruth, PathSample, RobotEvent
 from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
 from jacaros.robots.world.files.world import read_world, shipped_worlds
 from jacaros.robots.world.graph.robot_node import RobotNode
@@ -9,11 +9,11 @@ from jacaros.robots.world.physics.world import World
 from jacaros.robots.world.process import serve
 
 __all__ = [
-    "Event",
     "GroundTruth",
+    "PathSample",
     "PersonDescription",
+    "RobotEvent",
     "RobotNode",
-    "Sample",
     "SimNode",
     "World",
     "WorldDescription",

@@ -5,7 +5,7 @@ from typing import Any, Literal, NewType, Optional, Protocol
 import pytest
 
 from jacaros.artifacts import ArtifactId, Atom, InvalidArtifact, Out, Structure
-from jacaros.artifacts.kernel.declaration import WrongArguments, signature_of
+from jacaros.artifacts.kernel.declaration import ArgumentMismatch, signature_of
 
 
 def signature(function):
@@ -21,7 +21,7 @@ def accepted(annotation, argument):
 
 
 def refused(annotation, argument):
-    with pytest.raises(WrongArguments) as caught:
+    with pytest.raises(ArgumentMismatch) as caught:
         accepted(annotation, argument)
     return str(caught.value)
 
@@ -50,7 +50,7 @@ def test_further_arguments_are_checked_when_annotated():
         pass
 
     assert signature(f).bind((1, 2.0)) == (1, 2)
-    with pytest.raises(WrongArguments, match=r"argument 2 \(numbers\): expected an integer"):
+    with pytest.raises(ArgumentMismatch, match=r"argument 2 \(numbers\): expected an integer"):
         signature(f).bind((1, Out()))
 
 
@@ -142,7 +142,7 @@ def test_an_unannotated_parameter_takes_any_input_but_no_output():
         pass
 
     assert signature(f).bind((object,)) == (object,)
-    with pytest.raises(WrongArguments):
+    with pytest.raises(ArgumentMismatch):
         signature(f).bind((Out(),))
 
 

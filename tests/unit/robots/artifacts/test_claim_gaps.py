@@ -5,7 +5,7 @@ import asyncio
 import pytest
 
 from jacaros.artifacts.env.values import Atom, Structure
-from jacaros.robots.artifacts.motion_claim import Claim
+from jacaros.robots.artifacts.motion_claim import MotionClaim
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -15,7 +15,7 @@ class Scene:
     def __init__(self) -> None:
         self.clock = VirtualClock()
         self.stops = 0
-        self.claim = Claim(self.stop)
+        self.claim = MotionClaim(self.stop)
 
     def stop(self) -> None:
         self.stops += 1

@@ -16,14 +16,14 @@ from jacaros.robots.ros.errors import (
     TransformUnavailable,
 )
 from jacaros.robots.ros.open import open_backend
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 
 async def node_with(lab: Lab, name: str, value: Any) -> Any:
     shared: Any = lab.backend
     node = open_backend("memory", lab.clock, name, log=lambda text: None, graph=shared.graph)
     await node.start()
-    node.parameters().declare("p", Declaration(value))
+    node.parameters().declare("p", DeclaredParameter(value))
     return node
 
 

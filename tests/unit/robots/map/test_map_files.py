@@ -6,7 +6,7 @@ import pytest
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.robots.map.map_files import Grid, MapFileError, load, save
+from jacaros.robots.map.map_files import MapFileError, OccupancyGrid, load, save
 from jacaros.robots.map.slam_data import ArtSlamData
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.runtime.files.maps import meanings
@@ -39,7 +39,7 @@ def test_the_map_of_another_tool_is_read(tmp_path: Path) -> None:
         "image: room.pgm\nresolution: 1\norigin: [2.0, 3.0, 0.0]\nnegate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.2\n",
         encoding="utf-8",
     )
-    assert load(tmp_path / "room.yaml").grid == Grid(1.0, 2, Pose(2.0, 3.0, 0.0), meanings([100, 0]))
+    assert load(tmp_path / "room.yaml").grid == OccupancyGrid(1.0, 2, Pose(2.0, 3.0, 0.0), meanings([100, 0]))
 
 
 @pytest.mark.parametrize(
@@ -71,10 +71,13 @@ def test_a_map_that_cannot_be_read_is_refused_with_the_reason(tmp_path: Path, te
 
 def test_cells_of_another_size_are_obstacles_if_some_of_them_is() -> None:
     cells = meanings([0, 0, 100, 0, 0, -1, 50, 0])
-    assert Grid(0.5, 4, Pose(-0.5, -0.5, 0.0), cells).labels(1.0) == {(0, 0): "free", (1, 0): "obstacle"}
-    turned = Grid(1.0, 2, Pose(0.5, -0.5, 1.5707963267948966), meanings([0, 100]))
+    assert OccupancyGrid(0.5, 4, Pose(-0.5, -0.5, 0.0), cells).labels(1.0) == {
+        (0, 0): "free",
+        (1, 0): "obstacle",
+    }
+    turned = OccupancyGrid(1.0, 2, Pose(0.5, -0.5, 1.5707963267948966), meanings([0, 100]))
     assert turned.labels(1.0) == {(0, 0): "free", (0, 1): "obstacle"}
-    assert Grid(1.0, 1, ORIGIN, b"").labels(1.0) == {}
+    assert OccupancyGrid(1.0, 1, ORIGIN, b"").labels(1.0) == {}
 
 
 async def test_an_agent_saves_its_map_and_another_loads_it(lab: Lab, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from jacaros.robots.mapping.checking import check_mapping
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.mapping.interfaces import stored_interfaces
 from jacaros.robots.ros.action import Abort, ActionPolicy, ServerGoal
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 COUNT = """
 operations:
@@ -326,7 +326,7 @@ async def test_a_goal_is_paused_by_a_topic_and_resumed_by_a_parameter(lab: Lab) 
     )
     artifact = await lab.make(mapped(text))
     own = lab.backend.parameters()
-    own.declare("speed", Declaration(0))
+    own.declare("speed", DeclaredParameter(0))
     held: list[bool] = []
     lab.backend.subscription("hold", "std_msgs/msg/Bool", lambda sample: held.append(sample.message.data))
     offer(lab)

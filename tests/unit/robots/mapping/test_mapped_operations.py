@@ -12,7 +12,7 @@ from jacaros.robots.artifacts.motion_claim import motions_of
 from jacaros.robots.mapping.file import MappingError, read_mapping
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.robots.ros.node import Capability
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 DRIVE = """
 operations:
@@ -415,7 +415,7 @@ operations:
 async def test_parameters_of_nodes_are_set_and_given(lab: Lab) -> None:
     artifact = await lab.make(mapped(PARAMETERS))
     own = lab.backend.parameters()
-    own.declare("speed", Declaration(0.5, maximum=2.0))
+    own.declare("speed", DeclaredParameter(0.5, maximum=2.0))
     await lab.do(artifact, "limit", 75)
     assert await own.get("speed") == 0.75
     await lab.do(artifact, "set", 1)
@@ -433,7 +433,7 @@ operations:
 """
     artifact = await lab.make(mapped(text))
     own, out = lab.backend.parameters(), Out()
-    own.declare("turn", Declaration("left"))
+    own.declare("turn", DeclaredParameter("left"))
     failed = await lab.call(artifact, "turn", out)
     assert failed.reason == 'wrong_value("turn")'
     assert failed.outcome is not None
@@ -442,7 +442,7 @@ operations:
     await lab.do(artifact, "turn", out)
     assert out.value == Atom("nowhere")
     own.withdraw("turn")
-    own.declare("turn", Declaration([0.0, math.pi]))
+    own.declare("turn", DeclaredParameter([0.0, math.pi]))
     await lab.do(artifact, "turn", out)
     assert out.value == [0, 180]
 

@@ -435,21 +435,21 @@ async def test_parameters_of_a_missing_node_are_logged_once(lab: Lab) -> None:
 
 
 async def test_parameters_of_nodes_are_properties_that_follow(lab: Lab) -> None:
-    from jacaros.robots.ros.parameter import Declaration
+    from jacaros.robots.ros.parameter import DeclaredParameter
 
     text = "parameters: {a: {node: lab, parameter: speed, fields: {path: ., unit: centimetres}}}"
     t = await talk(lab, text)
     await t.lab.sleep(3)
     assert t.held == []
     own = t.lab.backend.parameters()
-    own.declare("speed", Declaration(0.5))
+    own.declare("speed", DeclaredParameter(0.5))
     await t.lab.sleep(2)
     assert t.held == [(50.0,)]
     await own.set("speed", 0.75)
     await settle()
     assert t.held == [(75.0,)]
     own.withdraw("speed")
-    own.declare("speed", Declaration("fast"))
+    own.declare("speed", DeclaredParameter("fast"))
     await t.lab.sleep(2)
     assert t.held == []
     told = "\n".join(t.lab.logged)

@@ -10,7 +10,7 @@ from hypothesis import strategies as some
 
 from jacaros.artifacts.env.values import Atom, Structure, plain
 from jacaros.robots.mapping.decoding import extractor
-from jacaros.robots.mapping.fields import FieldPart, Place, read_path
+from jacaros.robots.mapping.fields import FieldPart, FilePosition, read_path
 from jacaros.robots.mapping.interfaces import known_types, stored_interfaces
 from jacaros.robots.mapping.properties import TopicPart
 from jacaros.robots.ros.fields import FLOATS, INTEGER_RANGES, FieldType
@@ -18,7 +18,7 @@ from jacaros.robots.ros.message import TIMES
 
 KNOWN = stored_interfaces()
 TYPES = [name for name in known_types("msg") if not name.endswith(("_Request", "_Response"))]
-HERE = Place(1, 1)
+HERE = FilePosition(1, 1)
 
 
 def leaves(type_name: str, before: str = "") -> Iterator[tuple[str, FieldType]]:

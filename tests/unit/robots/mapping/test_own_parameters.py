@@ -9,7 +9,7 @@ from robot_lab import Lab
 from jacaros.artifacts import ArtifactId, Atom, Out
 from jacaros.artifacts.env.errors import OperationFailed
 from jacaros.robots.ros.errors import ParameterRefused
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 
 TUNED = """
 parameters:
@@ -97,7 +97,7 @@ async def test_infinity_is_not_shown(lab: Lab) -> None:
 
 
 async def test_a_duplicate_declaration_is_reported_with_its_line(lab: Lab) -> None:
-    lab.backend.parameters().declare("speed", Declaration(1))
+    lab.backend.parameters().declare("speed", DeclaredParameter(1))
     with pytest.raises(OperationFailed) as failed:
         await lab.make(mapped(TUNED))
     told = failed.value.message

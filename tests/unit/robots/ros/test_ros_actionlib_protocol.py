@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from jacaros.robots.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalOutcome, GoalStatus
 from jacaros.robots.ros.errors import ServiceError
-from jacaros.robots.ros.protocols.actionlib import ENOUGH_NEWS, OVERTAKEN, SentGoal, SentGoals, State
+from jacaros.robots.ros.protocols.actionlib import ENOUGH_NEWS, OVERTAKEN, GoalState, SentGoal, SentGoals
 
 
 class Client:
@@ -24,7 +24,7 @@ class Client:
     def sends(self, goal_id: str, now: float = 0.0) -> None:
         self.goals[goal_id] = SentGoal(f"message of {goal_id}", now)
 
-    def hears(self, now: float = 0.0, times: int = 1, **states: State) -> list[tuple[Any, ...]]:
+    def hears(self, now: float = 0.0, times: int = 1, **states: GoalState) -> list[tuple[Any, ...]]:
         """Receive the server's list of goals N times; return what it reported."""
         self.told.clear()
         for _ in range(times):
@@ -34,7 +34,7 @@ class Client:
     def accepted(self, goal_id: str) -> None:
         self.told.append(("accepted", goal_id))
 
-    def ended(self, goal_id: str, outcome: Outcome) -> None:
+    def ended(self, goal_id: str, outcome: GoalOutcome) -> None:
         self.told.append(("ended", goal_id, outcome.status, outcome.result, outcome.text))
         del self.goals[goal_id]
 
@@ -52,18 +52,18 @@ class Client:
 def test_a_goal_is_accepted_once_and_ends_with_its_result() -> None:
     client = Client()
     client.sends("a")
-    assert client.hears(a=State.PENDING) == []
-    assert client.hears(a=State.ACTIVE, times=3) == [("accepted", "a")]
-    client.goals.take_result("a", State.SUCCEEDED, "result", "there")
+    assert client.hears(a=GoalState.PENDING) == []
+    assert client.hears(a=GoalState.ACTIVE, times=3) == [("accepted", "a")]
+    client.goals.take_result("a", GoalState.SUCCEEDED, "result", "there")
     assert client.told[-1] == ("ended", "a", GoalStatus.SUCCEEDED, "result", "there")
-    assert client.hears(a=State.SUCCEEDED) == [], "no caller waits for it"
+    assert client.hears(a=GoalState.SUCCEEDED) == [], "no caller waits for it"
 
 
 def test_a_result_that_was_lost_is_not_awaited_for_ever() -> None:
     client = Client()
     client.sends("a")
-    assert client.hears(a=State.ABORTED, times=ENOUGH_NEWS - 1) == [("accepted", "a")]
-    assert client.hears(a=State.ABORTED) == [("ended", "a", GoalStatus.ABORTED, "no result", "")]
+    assert client.hears(a=GoalState.ABORTED, times=ENOUGH_NEWS - 1) == [("accepted", "a")]
+    assert client.hears(a=GoalState.ABORTED) == [("ended", "a", GoalStatus.ABORTED, "no result", "")]
 
 
 def test_a_goal_that_never_arrived_is_sent_again_but_not_immediately() -> None:
@@ -78,15 +78,15 @@ def test_a_replaced_goal_is_not_sent_again() -> None:
     client = Client()
     client.sends("a")
     client.sends("b")
-    assert client.hears(1.0, b=State.ACTIVE) == [("accepted", "b")]
-    told = client.hears(2.0, times=ENOUGH_NEWS, b=State.ACTIVE)
+    assert client.hears(1.0, b=GoalState.ACTIVE) == [("accepted", "b")]
+    told = client.hears(2.0, times=ENOUGH_NEWS, b=GoalState.ACTIVE)
     assert told == [("send cancel", "a"), ("ended", "a", GoalStatus.CANCELED, "no result", OVERTAKEN)]
 
 
 def test_a_server_that_was_started_again_does_not_know_the_goal() -> None:
     client = Client()
     client.sends("a")
-    client.hears(a=State.ACTIVE)
+    client.hears(a=GoalState.ACTIVE)
     lost = "the server of action act was restarted and does not know goal a"
     assert client.hears(5.0, times=ENOUGH_NEWS) == [("lost", "a", lost)]
 
@@ -94,20 +94,20 @@ def test_a_server_that_was_started_again_does_not_know_the_goal() -> None:
 def test_a_request_for_cancelling_is_refused_by_silence() -> None:
     client = Client()
     client.sends("a")
-    client.hears(a=State.ACTIVE)
+    client.hears(a=GoalState.ACTIVE)
     client.goals.ask_to_cancel("a", 1.0)
     assert client.told[-1] == ("send cancel", "a")
-    assert client.hears(1.9, times=ENOUGH_NEWS, a=State.ACTIVE) == []
-    assert client.hears(2.1, a=State.ACTIVE) == [("cancel answered", "a", False)]
+    assert client.hears(1.9, times=ENOUGH_NEWS, a=GoalState.ACTIVE) == []
+    assert client.hears(2.1, a=GoalState.ACTIVE) == [("cancel answered", "a", False)]
     client.goals.ask_to_cancel("a", 3.0)
-    assert client.hears(3.1, a=State.PREEMPTING) == [("cancel answered", "a", True)]
+    assert client.hears(3.1, a=GoalState.PREEMPTING) == [("cancel answered", "a", True)]
 
 
 def test_goals_without_an_answer_are_lost_with_their_server() -> None:
     client = Client()
     client.sends("a")
     client.sends("b")
-    client.hears(a=State.ACTIVE)
+    client.hears(a=GoalState.ACTIVE)
     client.told.clear()
     client.goals.lose_unanswered()
     assert client.told == [("lost", "b", "the server of action act went away before it accepted goal b")]

@@ -9,7 +9,7 @@ from jacaros.robots.ros.message import stamp
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.ros.ros_clock import CLOCK_TYPE, RosClock
 from jacaros.robots.ros.services import call_when_offered
-from jacaros.robots.ros.waiting import Waiting
+from jacaros.robots.ros.waiting import WaitLog
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -234,7 +234,7 @@ def test_attempts_to_call_end_in_time_when_the_clock_jumps_back() -> None:
 
         clock.move_to(100.0)
         call = asyncio.ensure_future(
-            call_when_offered(Waiting(clock, lines.append, "service /x"), nobody, 1.0)
+            call_when_offered(WaitLog(clock, lines.append, "service /x"), nobody, 1.0)
         )
         await pass_by(clock, 100.0, 100.5, 5.0, 5.2)
         assert not call.done()

@@ -16,8 +16,8 @@ from jacaros.robots.ros.action import (
     SERVER_LOST_AFTER,
     Abort,
     ActionPolicy,
+    GoalOutcome,
     GoalStatus,
-    Outcome,
     ServedGoals,
 )
 from jacaros.robots.ros.action_client import ENDING, ActionClient, GoalHandle
@@ -58,13 +58,13 @@ class _Listener:
     """Takes the news of one goal of the server."""
 
     def __init__(self) -> None:
-        self.ends: list[Outcome] = []
+        self.ends: list[GoalOutcome] = []
         self.feedback_after_end = False
 
     def feedback(self, message: Any) -> None:
         self.feedback_after_end |= bool(self.ends)
 
-    def ended(self, outcome: Outcome) -> None:
+    def ended(self, outcome: GoalOutcome) -> None:
         self.ends.append(outcome)
 
 
@@ -131,7 +131,7 @@ class ServerLife(RuleBasedStateMachine):
         if refusal is None:
             self.run.do(self.served.begin, name, request, listener.feedback, listener.ended)
         else:
-            listener.ends.append(Outcome(GoalStatus.ABORTED, None))
+            listener.ends.append(GoalOutcome(GoalStatus.ABORTED, None))
         return name
 
     @rule(agree=st.booleans())
@@ -264,7 +264,7 @@ class ClientLife(RuleBasedStateMachine):
         elif news == "feedback":
             self.run.do(self.sender.feedback, name, FACTORY.make(f"{COUNT}_Feedback"))
         elif news == "ended":
-            self.run.do(self.sender.ended, name, Outcome(GoalStatus.SUCCEEDED, None, str(number)))
+            self.run.do(self.sender.ended, name, GoalOutcome(GoalStatus.SUCCEEDED, None, str(number)))
         else:
             self.run.do(self.sender.cancel_answered, name, news == "agreed")
 

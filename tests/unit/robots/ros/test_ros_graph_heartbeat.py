@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from jacaros.robots.ros import heartbeat
-from jacaros.robots.ros.guard import NETWORK_TIMEOUT, Guard, Watch
+from jacaros.robots.ros.guard import NETWORK_TIMEOUT, Guard, HeartbeatMonitor
 from jacaros.robots.ros.guarded import Guarded, guarded_by
 from jacaros.robots.ros.heartbeat import TEXT, GraphHeartbeat, Heartbeat, topics_of
 from jacaros.robots.ros.node import Publisher
@@ -57,7 +57,7 @@ class Lab:
             end()
 
     @property
-    def state(self) -> Watch:
+    def state(self) -> HeartbeatMonitor:
         return self.guard._watch
 
     async def until(self, condition: Callable[[], object]) -> None:
@@ -273,7 +273,7 @@ def test_a_run_reports_a_guard_that_appears_and_one_that_disappears(
 @pytest.mark.parametrize(("gap", "trips"), [(0.4, False), (0.6, True)])
 def test_gaps_that_are_usual_on_a_wireless_network_do_not_trip_the_guard(gap: float, trips: bool) -> None:
     tripped: list[str] = []
-    watch = Watch(0.3, tripped.append, lambda: None)
+    watch = HeartbeatMonitor(0.3, tripped.append, lambda: None)
     watch.connect(10.0, NETWORK_TIMEOUT)
     watch.armed = True
     for beat in range(100):

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.guard import LEAVING, Brakes, Guard, Watch
+from jacaros.robots.ros.guard import LEAVING, Brakes, Guard, HeartbeatMonitor
 from jacaros.robots.ros.guarded import STAMPED, Guarded
 from jacaros.robots.ros.heartbeat import LOCAL, Heartbeat, line
 from jacaros.robots.ros.open import GraphAddress, open_backend
@@ -26,7 +26,7 @@ class Watched:
 
     def __init__(self, armed: bool = True) -> None:
         self.done: list[str] = []
-        self.watch = Watch(0.3, self.done.append, lambda: self.done.append("released"))
+        self.watch = HeartbeatMonitor(0.3, self.done.append, lambda: self.done.append("released"))
         self.watch.connect(10.0)
         self.watch.armed = armed
 

@@ -11,7 +11,7 @@ from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.drivers.memory.graph import MemoryGraph, both, delayed, dropped, duplicated
 from jacaros.robots.ros.errors import CallFailed, RosError, ServerLost, ServiceUnavailable
 from jacaros.robots.ros.open import open_backend
-from jacaros.robots.ros.parameter import Declaration
+from jacaros.robots.ros.parameter import DeclaredParameter
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import VirtualClock, run
 from played import played
@@ -237,7 +237,7 @@ async def test_a_long_interruption_loses_a_goal(lab: Lab) -> None:
 @played(play)
 async def test_parameters_cannot_be_reached_in_an_interrupted_graph(lab: Lab) -> None:
     here, there = await lab.open()
-    there.parameters().declare("speed", Declaration(1.0))
+    there.parameters().declare("speed", DeclaredParameter(1.0))
     lab.graph.interrupt()
     with pytest.raises(ServiceUnavailable, match="parameters of node /there"):
         await here.parameters("/there").get("speed", timeout=1.0)

@@ -8,7 +8,7 @@ import pytest
 
 from jacaros.robots.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.robots.ros.parameter import (
-    Declaration,
+    DeclaredParameter,
     DeclaredParameters,
     GivenParameters,
     ParameterValue,
@@ -27,7 +27,7 @@ class Store:
         self.parameters = DeclaredParameters("/node", self.given, self.news.append, self.log.append)
 
     def declare(self, name: str, default: ParameterValue, **more: Any) -> ParameterValue:
-        return self.parameters.declare(name, Declaration(default, **more))
+        return self.parameters.declare(name, DeclaredParameter(default, **more))
 
 
 def test_every_declaration_and_change_is_reported() -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from jacaros.robots.ros.errors import CallTimedOut, ServiceUnavailable
 from jacaros.robots.ros.services import call_when_offered
-from jacaros.robots.ros.waiting import Waiting
+from jacaros.robots.ros.waiting import WaitLog
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -23,7 +23,7 @@ def end_of_call(takes: float, offered: bool) -> str:
 
     async def main() -> str:
         with pytest.raises((ServiceUnavailable, CallTimedOut)) as caught:
-            await call_when_offered(Waiting(clock, print, "service /x"), attempt, 1.0, lambda: offered)
+            await call_when_offered(WaitLog(clock, print, "service /x"), attempt, 1.0, lambda: offered)
         assert clock.elapsed == pytest.approx(1.0, abs=0.11)
         return str(caught.value)
 
@@ -47,7 +47,7 @@ def test_the_1st_10th_and_100th_unsuccessful_wait_is_logged() -> None:
     clock = VirtualClock()
     said: list[str] = []
     there = False
-    waiting = Waiting(clock, said.append, "service /x")
+    waiting = WaitLog(clock, said.append, "service /x")
 
     async def attempt(_: float | None) -> str:
         if not there:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from jacaros.robots.ros.action import Outcome
+from jacaros.robots.ros.action import GoalOutcome
 from jacaros.robots.ros.open import open_backend
 from jacaros.robots.world import SimNode, World
 from jacaros.runtime.clock import VirtualClock, run
@@ -28,12 +28,14 @@ class Lab:
         client = self.backend.action_client(name, type_name)
         return await client.send(goal, self.feedback.append, timeout=5.0)
 
-    async def do(self, name: str, type_name: str, **goal: Any) -> Outcome:
+    async def do(self, name: str, type_name: str, **goal: Any) -> GoalOutcome:
         handle = await self.send(name, type_name, **goal)
-        outcome: Outcome = await handle.outcome(timeout=300.0)
+        outcome: GoalOutcome = await handle.outcome(timeout=300.0)
         return outcome
 
-    async def go(self, x: float, y: float, yaw: float = 0.0, frame: str = "map", robot: str = "") -> Outcome:
+    async def go(
+        self, x: float, y: float, yaw: float = 0.0, frame: str = "map", robot: str = ""
+    ) -> GoalOutcome:
         return await self.do(f"{robot}/navigate_to_pose", NAVIGATE, pose=pose(x, y, yaw, frame))
 
     async def stands(self, robot: str | None = None) -> None:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from jacaros.robots.world import PersonDescription, World, WorldError, read_world
-from jacaros.robots.world.data.ground_truth import Event
+from jacaros.robots.world.data.ground_truth import RobotEvent
 from jacaros.runtime.errors import UsageError
 
 WORLD = """
@@ -27,7 +27,7 @@ def world(ann: str = ANN, *more: str) -> World:
     return World.load(text + "".join(f"  - {each}\n" for each in more))
 
 
-def told(world: World) -> list[Event]:
+def told(world: World) -> list[RobotEvent]:
     return [event for event in world.log if event.kind.startswith("person_")]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from jacaros.robots.mapping.checking import check_mapping
-from jacaros.robots.mapping.fields import FieldPart, Place, read_path
+from jacaros.robots.mapping.fields import FieldPart, FilePosition, read_path
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.mapping.interfaces import StoredInterfaces, stored_interfaces
 from jacaros.robots.mapping.manual import word_for_field
@@ -235,5 +235,5 @@ def test_an_aborted_goal_has_a_named_code_if_the_result_has_constants(types: Sto
 def test_a_first_mapping_names_units_as_describe_does(type_name: str, field: str) -> None:
     interfaces = stored_interfaces(())
     value = next(each for each in values_of(interfaces, type_name) if each.path == field)
-    part = FieldPart(read_path(field), Place(1, 1), name="v")
+    part = FieldPart(read_path(field), FilePosition(1, 1), name="v")
     assert word_for_field(part, FieldType(type_name), None, interfaces) == f"number in {value.unit.word}"

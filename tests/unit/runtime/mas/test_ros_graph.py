@@ -9,7 +9,7 @@ import pytest
 
 from jacaros.robots.ros.errors import BackendUnavailable
 from jacaros.robots.ros.open import open_backend as _open
-from jacaros.robots.world import Event, WorldError
+from jacaros.robots.world import RobotEvent, WorldError
 from jacaros.runtime.clock import VirtualClock, WallClock, run
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
@@ -177,7 +177,7 @@ def test_the_ground_truth_is_kept_only_on_request(asked: bool, kept: int) -> Non
         assert ros.world is not None
         truth = ros.world.ground_truth
         for number in range(3000):
-            truth.record_event(Event(number, "", "door_opened", 0.0, 0.0, 0.0, {"door": "gate"}))
+            truth.record_event(RobotEvent(number, "", "door_opened", 0.0, 0.0, 0.0, {"door": "gate"}))
         assert (len(truth.events) >= 3000) == asked
         assert len(truth.events) <= kept
         await ros.close()

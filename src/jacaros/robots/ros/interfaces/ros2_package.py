@@ -39,7 +39,7 @@ _CONSTANT = re.compile(r"\s*\w+\s+[A-Z][A-Z0-9_]*\s*=.*")
 
 
 @dataclass(frozen=True)
-class Definition:
+class DefinitionFile:
     """A definition file.
 
     Attributes:
@@ -58,21 +58,21 @@ class Definition:
         return f"{self.kind}/{self.path.name}"
 
 
-def definitions(root: Path = BUILT_IN) -> Iterator[Definition]:
+def definitions(root: Path = BUILT_IN) -> Iterator[DefinitionFile]:
     """Yield all definitions below *root*, sorted by name."""
     for path in sorted(root.glob("*/*/*.*")):
         kind = path.parent.name
         if kind in KINDS and path.suffix == f".{kind}":
-            yield Definition(path.parent.parent.name, kind, path.stem, path)
+            yield DefinitionFile(path.parent.parent.name, kind, path.stem, path)
 
 
-def similar_types(root: Path = BUILT_IN) -> dict[str, Definition]:
+def similar_types(root: Path = BUILT_IN) -> dict[str, DefinitionFile]:
     """Return the definitions in `PACKAGE`, by their paths in it.
 
     Raises:
         ValueError: two packages have different types of one name.
     """
-    found: dict[str, Definition] = {}
+    found: dict[str, DefinitionFile] = {}
     for definition in definitions(root):
         if definition.package in COMMON | OWN_NAME | ROS1_ONLY:
             continue
@@ -120,7 +120,7 @@ def _write(file: Path, text: str) -> None:
     file.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _meaning(definition: Definition) -> list[str]:
+def _meaning(definition: DefinitionFile) -> list[str]:
     """Return the lines of a definition, without comments."""
     lines = definition.path.read_text(encoding="utf-8").splitlines()
     return [line for line in (line.split("#")[0].strip() for line in lines) if line]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from jacaros.robots.ros.action import GoalStatus, Outcome
+from jacaros.robots.ros.action import GoalOutcome, GoalStatus
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.errors import ServerLost
 from jacaros.robots.ros.qos import QoS
@@ -41,7 +41,7 @@ NEWS = QoS(depth=100)
 STATUS = QoS(durability="transient_local", depth=1)
 
 
-class State(IntEnum):
+class GoalState(IntEnum):
     """States of a goal, ``actionlib_msgs/GoalStatus``."""
 
     PENDING = 0
@@ -57,15 +57,15 @@ class State(IntEnum):
 
 
 ENDS = {
-    State.SUCCEEDED: GoalStatus.SUCCEEDED,
-    State.PREEMPTED: GoalStatus.CANCELED,
-    State.RECALLED: GoalStatus.CANCELED,
-    State.ABORTED: GoalStatus.ABORTED,
-    State.LOST: GoalStatus.ABORTED,
+    GoalState.SUCCEEDED: GoalStatus.SUCCEEDED,
+    GoalState.PREEMPTED: GoalStatus.CANCELED,
+    GoalState.RECALLED: GoalStatus.CANCELED,
+    GoalState.ABORTED: GoalStatus.ABORTED,
+    GoalState.LOST: GoalStatus.ABORTED,
 }
 """Statuses in the port of the final states of accepted goals."""
-UNDER_WAY = frozenset({State.PENDING, State.ACTIVE, State.PREEMPTING, State.RECALLING})
-CANCELLING = frozenset({State.PREEMPTING, State.RECALLING, State.PREEMPTED, State.RECALLED})
+UNDER_WAY = frozenset({GoalState.PENDING, GoalState.ACTIVE, GoalState.PREEMPTING, GoalState.RECALLING})
+CANCELLING = frozenset({GoalState.PREEMPTING, GoalState.RECALLING, GoalState.PREEMPTED, GoalState.RECALLED})
 """States that show that a request to cancel was accepted."""
 
 
@@ -147,7 +147,7 @@ class SentGoals(dict[str, SentGoal]):
 
     def take_status(self, told: Iterable[tuple[str, int, str]], now: float) -> None:
         """Handle a status message: id, state and text of each goal; *now* in seconds of a monotonic clock."""
-        known = {goal_id: (State(state), text) for goal_id, state, text in told if goal_id in self}
+        known = {goal_id: (GoalState(state), text) for goal_id, state, text in told if goal_id in self}
         for goal_id, goal in list(self.items()):
             if goal_id in known:
                 goal.missing = 0
@@ -169,12 +169,12 @@ class SentGoals(dict[str, SentGoal]):
             self._accept(goal_id, goal)
         return goal is not None
 
-    def take_result(self, goal_id: str, state: State, result: Any, text: str) -> None:
+    def take_result(self, goal_id: str, state: GoalState, result: Any, text: str) -> None:
         """Handle the result message of a goal."""
         goal = self.get(goal_id)
         if goal is None:
             return
-        if state is State.REJECTED:
+        if state is GoalState.REJECTED:
             self._sender.rejected(goal_id, text)
         elif state in ENDS:
             self._accept(goal_id, goal)
@@ -182,7 +182,7 @@ class SentGoals(dict[str, SentGoal]):
 
     def _end(self, goal_id: str, status: GoalStatus, result: Any, text: str) -> None:
         given = self._make_result() if result is None else result
-        self._sender.ended(goal_id, Outcome(status, given, text))
+        self._sender.ended(goal_id, GoalOutcome(status, given, text))
 
     def _lose(self, goal_id: str, how: str) -> None:
         self._sender.fail(
@@ -204,11 +204,11 @@ class SentGoals(dict[str, SentGoal]):
     def _newer_than(self, goal: SentGoal) -> Iterator[SentGoal]:
         return itertools.islice(itertools.dropwhile(lambda each: each is not goal, self.values()), 1, None)
 
-    def _advance(self, goal_id: str, goal: SentGoal, state: State, text: str, now: float) -> None:
-        if state is State.REJECTED:
+    def _advance(self, goal_id: str, goal: SentGoal, state: GoalState, text: str, now: float) -> None:
+        if state is GoalState.REJECTED:
             self._sender.rejected(goal_id, text)
             return
-        if state not in (State.PENDING, State.RECALLING):
+        if state not in (GoalState.PENDING, GoalState.RECALLING):
             self._accept(goal_id, goal)
         if goal.cancelling is not None:
             self._see_cancelling(goal_id, goal, goal.cancelling, state, now)
@@ -224,11 +224,13 @@ class SentGoals(dict[str, SentGoal]):
                 older.overtaken = not older.heard_of and not older.accepted
             self._sender.accepted(goal_id)
 
-    def _see_cancelling(self, goal_id: str, goal: SentGoal, asked: float, state: State, now: float) -> None:
+    def _see_cancelling(
+        self, goal_id: str, goal: SentGoal, asked: float, state: GoalState, now: float
+    ) -> None:
         if state in CANCELLING:
             goal.cancelling = None
             self._sender.cancel_answered(goal_id, True)
-        elif state is State.ACTIVE:
+        elif state is GoalState.ACTIVE:
             goal.unmoved += 1
             if goal.unmoved >= ENOUGH_NEWS and now - asked >= REFUSED_AFTER:
                 goal.cancelling = None

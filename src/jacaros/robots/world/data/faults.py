@@ -11,7 +11,7 @@ from jacaros.robots.world.data.world import PersonDescription
 from jacaros.runtime.files.entries import Entry, choice, number, whole
 
 
-class Kind(NamedTuple):
+class FaultKind(NamedTuple):
     """A kind of faults.
 
     Attributes:
@@ -25,27 +25,27 @@ class Kind(NamedTuple):
     lasts: bool = True
 
 
-MESSAGES: Final[Mapping[str, Kind]] = {
-    "dead": Kind(("topic",), True),
-    "frozen": Kind(("topic",), True),
-    "nan": Kind(("topic",), True),
-    "lost": Kind(("topic", "share"), True),
-    "delayed": Kind(("topic", "seconds", "jitter"), True),
-    "duplicated": Kind(("topic", "copies"), True),
+MESSAGES: Final[Mapping[str, FaultKind]] = {
+    "dead": FaultKind(("topic",), True),
+    "frozen": FaultKind(("topic",), True),
+    "nan": FaultKind(("topic",), True),
+    "lost": FaultKind(("topic", "share"), True),
+    "delayed": FaultKind(("topic", "seconds", "jitter"), True),
+    "duplicated": FaultKind(("topic", "copies"), True),
 }
 """Kinds that affect the messages of a topic."""
 
-KINDS: Final[Mapping[str, Kind]] = {
-    "wheel_slip": Kind(("share",), True),
-    "blocked_wheel": Kind(("wheel",), True),
-    "kidnapped_robot": Kind(("to",), True, lasts=False),
-    "battery_drop": Kind(("to",), True, lasts=False),
-    "dead_dock": Kind(("dock",)),
-    "closed_door": Kind(("door",)),
-    "stuck_door": Kind(("door", "share")),
-    "person": Kind(("path", "radius", "speed", "loop", "careless")),
+KINDS: Final[Mapping[str, FaultKind]] = {
+    "wheel_slip": FaultKind(("share",), True),
+    "blocked_wheel": FaultKind(("wheel",), True),
+    "kidnapped_robot": FaultKind(("to",), True, lasts=False),
+    "battery_drop": FaultKind(("to",), True, lasts=False),
+    "dead_dock": FaultKind(("dock",)),
+    "closed_door": FaultKind(("door",)),
+    "stuck_door": FaultKind(("door", "share")),
+    "person": FaultKind(("path", "radius", "speed", "loop", "careless")),
     **MESSAGES,
-    "aborted_action": Kind(("action", "share"), True),
+    "aborted_action": FaultKind(("action", "share"), True),
 }
 
 

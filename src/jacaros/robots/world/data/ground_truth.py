@@ -19,7 +19,7 @@ JsonRecord = dict[str, Any]
 """One line of a ground truth file: ``kind`` is ``world``, ``sample``, ``event`` or ``end``."""
 
 
-class Event(NamedTuple):
+class RobotEvent(NamedTuple):
     """An event of a robot (``""`` for none), ``time`` seconds after the start of the world, with the true pose.
 
     The kinds, with the names in their data, are those of `FIELDS`.
@@ -91,7 +91,7 @@ class RobotState(NamedTuple):
     touching: bool = False
 
 
-class Sample(NamedTuple):
+class PathSample(NamedTuple):
     """A point of a robot's path; ``odometer`` is the true distance driven so far, in metres."""
 
     time: float
@@ -116,15 +116,15 @@ class GroundTruth:
     """
 
     def __init__(self, robots: Iterable[str] = (), world: JsonRecord | None = None) -> None:
-        self.events: list[Event] = []
+        self.events: list[RobotEvent] = []
         self.world: JsonRecord = world or {}
         self.dirt: dict[tuple[str, str], float] = {
             (room["name"], dirt["kind"]): dirt["grams"]
             for room in self.world.get("rooms", ())
             for dirt in room.get("dirt", ())
         }
-        self._paths: dict[str, list[Sample]] = {robot: [] for robot in robots}
-        self._latest: dict[str, Sample] = {}
+        self._paths: dict[str, list[PathSample]] = {robot: [] for robot in robots}
+        self._latest: dict[str, PathSample] = {}
         self._listeners: list[Callable[[JsonRecord], None]] = []
         self._event_listeners: list[Callable[[JsonRecord], None]] = []
         self.keep: int | None = None
@@ -134,11 +134,11 @@ class GroundTruth:
         """Names of the robots, in the order of the world file."""
         return list(self._paths)
 
-    def path(self, robot: str | None = None) -> list[Sample]:
+    def path(self, robot: str | None = None) -> list[PathSample]:
         """Return the path of *robot* (default: the first): ten samples per second in motion, one at rest."""
         return self._paths[robot or self._first()]
 
-    def latest(self, robot: str | None = None) -> Sample:
+    def latest(self, robot: str | None = None) -> PathSample:
         """Return the newest sample of *robot* (default: the first)."""
         return self._latest[robot or self._first()]
 
@@ -155,7 +155,7 @@ class GroundTruth:
         """Return the battery level of *robot*, in percent."""
         return self.latest(robot).battery
 
-    def events_of(self, *kinds: str, robot: str | None = None) -> list[Event]:
+    def events_of(self, *kinds: str, robot: str | None = None) -> list[RobotEvent]:
         """Return the events of the given kinds (default: all), of one robot or of all."""
         return [
             event
@@ -184,12 +184,12 @@ class GroundTruth:
         self._event_listeners.append(listener)
         return lambda: self._event_listeners.remove(listener)
 
-    def record_event(self, event: Event) -> None:
+    def record_event(self, event: RobotEvent) -> None:
         """Record an event; one of `FIELDS` has the data of its kind."""
         assert event.data.keys() >= set(FIELDS.get(event.kind, ())), event
         self._add(event)
 
-    def _add(self, event: Event) -> None:
+    def _add(self, event: RobotEvent) -> None:
         self.events.append(event)
         if event.kind == "cleaned":
             self.dirt[event.data["room"], event.data["dirt"]] = event.data["grams"]
@@ -200,7 +200,7 @@ class GroundTruth:
             for listener in tuple(self._event_listeners):
                 listener(record)
 
-    def record_sample(self, robot: str, sample: Sample) -> None:
+    def record_sample(self, robot: str, sample: PathSample) -> None:
         """Add a point to the path of *robot*."""
         path = self._paths.setdefault(robot, [])
         path.append(sample)
@@ -209,7 +209,7 @@ class GroundTruth:
         if self._listeners:
             self._tell({"kind": "sample", "robot": robot, **sample._asdict()})
 
-    def update_latest(self, robot: str, sample: Sample) -> None:
+    def update_latest(self, robot: str, sample: PathSample) -> None:
         """Update the pose of *robot* without adding a point to its path."""
         self._latest[robot] = sample
 
@@ -249,10 +249,10 @@ class GroundTruth:
 
     def _take(self, record: JsonRecord) -> None:
         if record["kind"] == "sample":
-            self.record_sample(record["robot"], Sample(*(record[name] for name in Sample._fields)))
+            self.record_sample(record["robot"], PathSample(*(record[name] for name in PathSample._fields)))
         elif record["kind"] == "event":
             record = {**record, "kind": present_kind(record["event"], record["data"])}
-            self._add(Event(*(record[name] for name in Event._fields)))
+            self._add(RobotEvent(*(record[name] for name in RobotEvent._fields)))
         elif record["kind"] == "end":
             self.dirt |= {(room, kind): grams for room, kind, grams in record.get("dirt", ())}
 
@@ -270,7 +270,7 @@ def _records(path: str | Path) -> list[JsonRecord]:
     return records
 
 
-def event_record(event: Event) -> JsonRecord:
+def event_record(event: RobotEvent) -> JsonRecord:
     """Return the record of an event."""
     return {**event._asdict(), "kind": "event", "event": event.kind}
 

@@ -175,7 +175,7 @@ class Added:
 
 
 @dataclass(frozen=True, slots=True)
-class Interface:
+class RobotInterface:
     """The names of one robot's topics, services and actions.
 
     Attributes:
@@ -203,7 +203,7 @@ class Interface:
         return absolute(self.renamed.get(plain, plain), prefix)
 
 
-EVERYTHING: Final = Interface()
+EVERYTHING: Final = RobotInterface()
 """All names of the simulator."""
 
 
@@ -233,7 +233,7 @@ class RobotDescription:
     tools: Annotated[tuple[CleaningTool, ...], Entry("mapping", "cleaning tools by name")] = ()
     gripper_reach: Annotated[float, Entry("mapping or flag", "gripper", "gripper")] = 0.0
     footprint: Annotated[tuple[float, float] | None, Entry("`[length, width]` m", "of a rectangle")] = None
-    interface: Interface = EVERYTHING
+    interface: RobotInterface = EVERYTHING
 
 
 USUAL: Final = "turtlebot"
@@ -245,7 +245,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         radius=0.177,
         limits=RobotLimits(speed=0.7, turn_rate=PI, acceleration=0.8, command_timeout=0.6),
         laser=LaserSettings(field=radians(57.0), range_min=0.45, range_max=10.0),
-        interface=Interface(CREATE3 | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(CREATE3 | TURTLEBOT3 | SONAR),
     ),
     # Burger: its specification, the acceleration of its Nav2 parameters, and the LDS-01.
     "turtlebot3": RobotDescription(
@@ -253,7 +253,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.22, turn_rate=2.84, acceleration=2.5, turn_acceleration=3.2),
         laser=LaserSettings(range_min=0.12, range_max=3.5),
         navigation=NavigationSettings(speed=0.22),
-        interface=Interface(KOBUKI | CREATE3 | CAMERA | SONAR),
+        interface=RobotInterface(KOBUKI | CREATE3 | CAMERA | SONAR),
     ),
     # Create 3 with its safety features on, and the RPLIDAR A1.
     "turtlebot4": RobotDescription(
@@ -261,7 +261,7 @@ KINDS: Final[Mapping[str, RobotDescription]] = {
         limits=RobotLimits(speed=0.306, turn_rate=1.9, acceleration=0.9),
         laser=LaserSettings(range_min=0.15, range_max=12.0),
         navigation=NavigationSettings(speed=0.26),
-        interface=Interface(KOBUKI | TURTLEBOT3 | SONAR),
+        interface=RobotInterface(KOBUKI | TURTLEBOT3 | SONAR),
     ),
 }
 """Robots that a world file names by kind, with the data of their makers and drivers.

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.world.data.faults import KINDS, Fault, Kind
+from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind
 from jacaros.robots.world.data.robot import absolute
 from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
 from jacaros.robots.world.files.floor import place_problem, read_path
@@ -114,7 +114,7 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
     return fault
 
 
-def _robot(node: Node, given: Node | None, word: str, kind: Kind, world: WorldDescription | None) -> str:
+def _robot(node: Node, given: Node | None, word: str, kind: FaultKind, world: WorldDescription | None) -> str:
     """Read the affected robot; by default, the only one."""
     if not kind.robot:
         if given is not None:

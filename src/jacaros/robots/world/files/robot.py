@@ -28,9 +28,9 @@ from jacaros.robots.world.data.robot import (
     USUAL,
     Added,
     CleaningTool,
-    Interface,
     NavigationSettings,
     RobotDescription,
+    RobotInterface,
 )
 from jacaros.runtime.files.entries import declared_entries, read, values
 from jacaros.runtime.files.texts import suggestion
@@ -125,7 +125,7 @@ _FASTEST = 20.0
 """Highest rate of an added topic, in messages per second: that of the world's ticks."""
 
 
-def read_interface(entries: Mapping[str, Node], usual: Interface) -> Interface:
+def read_interface(entries: Mapping[str, Node], usual: RobotInterface) -> RobotInterface:
     """Read the names of one robot; *usual* are those of its kind."""
     renamed: dict[str, str] = {}
     added: dict[str, list[Added]] = {section: [] for section in _TYPES}
@@ -147,7 +147,7 @@ def read_interface(entries: Mapping[str, Node], usual: Interface) -> Interface:
                     f"`{offered}` is also the name of `{used[offered]}`", "give one of them another name"
                 )
             used[offered] = name
-    return Interface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
+    return RobotInterface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
 
 
 def _name(node: Node) -> str:

@@ -11,12 +11,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, cast
 
-from jacaros.robots.ros.action import Abort, ActionPolicy, ActionServer, Execute, ServerGoal
+from jacaros.robots.ros.action import Abort, ActionPolicy, ActionServer, ExecuteCallback, ServerGoal
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.message import field_names
 from jacaros.robots.ros.node import Publisher, Sample, Subscription
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
-from jacaros.robots.world.physics.faults import Disturbance, Faults
+from jacaros.robots.world.physics.faults import Faults, TopicFault
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import suggestion
@@ -29,7 +29,7 @@ Late = tuple[float, Any]
 """A message, with its delay in seconds."""
 
 
-def disturbed(by: Disturbance, message: Any) -> Sequence[Late]:
+def disturbed(by: TopicFault, message: Any) -> Sequence[Late]:
     """Return what a fault delivers instead of a message."""
     fault = by.fault
     match fault.kind:
@@ -106,7 +106,7 @@ class FaultyGraph:
         )
 
     def action_server(
-        self, action: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, action: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
     ) -> ActionServer:
         """Offer an action, a faulty one if its goals have faults."""
         self._offered.add(action)

@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
 from typing import Any, Final, NoReturn, TypeVar, cast
 
-from jacaros.robots.ros.action import Abort, Accept, ActionPolicy, GoalStatus, ServerGoal
+from jacaros.robots.ros.action import Abort, ActionPolicy, GoalCallback, GoalStatus, ServerGoal
 from jacaros.robots.ros.backend import Backend, Sample
 from jacaros.robots.ros.errors import RosError, UnknownInterface
 from jacaros.robots.ros.message import stamp
@@ -13,7 +13,7 @@ from jacaros.robots.ros.names import result_type
 from jacaros.robots.ros.node import Capability, Closable, Publisher
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
 from jacaros.robots.ros.services import Handler
-from jacaros.robots.world.physics.perception import Localisation
+from jacaros.robots.world.physics.perception import SimulatedLocalisation
 from jacaros.robots.world.physics.robot import Robot
 from jacaros.robots.world.physics.world import STEP, World
 from jacaros.runtime.clock import Clock
@@ -71,7 +71,7 @@ class Overtaken(Exception):
         super().__init__("preempted by a newer goal")
 
 
-class Goal:
+class ActiveGoal:
     """An active goal of an action.
 
     Attributes:
@@ -94,7 +94,7 @@ class Goal:
         return {name: value for name, value in fields.items() if name in known}
 
 
-Execute = Callable[[Goal], Awaitable[Mapping[str, Any]]]
+GoalExecution = Callable[[ActiveGoal], Awaitable[Mapping[str, Any]]]
 
 
 class OnGraph:
@@ -168,8 +168,8 @@ class OnGraph:
         self,
         name: str,
         type_name: str,
-        execute: Execute,
-        accept: Accept | None = None,
+        execute: GoalExecution,
+        accept: GoalCallback | None = None,
         overtaken: GoalStatus = GoalStatus.ABORTED,
     ) -> None:
         """Offer an action whose newer goals preempt older ones, which then end as *overtaken*.
@@ -178,7 +178,7 @@ class OnGraph:
         """
 
         async def carry_out(served: ServerGoal) -> Any:
-            goal = Goal(self.backend, type_name, served)
+            goal = ActiveGoal(self.backend, type_name, served)
             try:
                 return goal.result(await execute(goal))
             except Overtaken as overtaken:
@@ -225,11 +225,15 @@ class RobotOnGraph(OnGraph):
     """
 
     def __init__(
-        self, time: WorldTime, robot: Robot, backend: Backend, localisation: Localisation | None = None
+        self,
+        time: WorldTime,
+        robot: Robot,
+        backend: Backend,
+        localisation: SimulatedLocalisation | None = None,
     ) -> None:
         super().__init__(time, backend)
         self.robot = robot
-        self.localisation = localisation or Localisation(robot)
+        self.localisation = localisation or SimulatedLocalisation(robot)
         namespace = robot.description.namespace
         self.prefix = f"/{namespace}" if namespace else ""
         self.frame_prefix = f"{namespace}/" if namespace else ""

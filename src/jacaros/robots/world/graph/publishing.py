@@ -6,9 +6,9 @@ from typing import Any
 from jacaros.robots.ros.message import constant
 from jacaros.robots.world.graph.on_graph import RobotOnGraph
 
-Fill = Callable[[RobotOnGraph, Any], object]
+FillMessage = Callable[[RobotOnGraph, Any], object]
 """Writes the state of a robot into a message."""
-Fields = Callable[[RobotOnGraph], Mapping[str, Any]]
+FieldsOf = Callable[[RobotOnGraph], Mapping[str, Any]]
 Tick = Callable[[int], object]
 """Publishes if due at a tick of 20 Hz, after the world has caught up."""
 Sensor = Callable[[RobotOnGraph], Tick]
@@ -26,10 +26,10 @@ def _no_fields(at: RobotOnGraph) -> Mapping[str, Any]:
 def sensor(
     topic: str,
     type_name: str,
-    fill: Fill = _nothing,
+    fill: FillMessage = _nothing,
     every: int = 1,
     *,
-    fields: Fields = _no_fields,
+    fields: FieldsOf = _no_fields,
     frame: str = "base_link",
     changed: Callable[[RobotOnGraph], object] = bool,
     always: bool = False,

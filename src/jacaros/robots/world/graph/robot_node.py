@@ -13,7 +13,7 @@ from jacaros.robots.ros.message import plain, to_seconds
 from jacaros.robots.ros.names import response_type
 from jacaros.robots.world.data.robot import Added, absolute
 from jacaros.robots.world.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fault, pose_of
-from jacaros.robots.world.graph.on_graph import TICKS_PER_SECOND, Goal, RobotOnGraph, WorldTime
+from jacaros.robots.world.graph.on_graph import TICKS_PER_SECOND, ActiveGoal, RobotOnGraph, WorldTime
 from jacaros.robots.world.graph.publishing import Tick
 from jacaros.robots.world.graph.sensors import SENSORS
 from jacaros.robots.world.physics.robot import Robot, approach
@@ -148,7 +148,7 @@ class _Gripper:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
 
-    async def move(self, goal: Goal) -> Mapping[str, Any]:
+    async def move(self, goal: ActiveGoal) -> Mapping[str, Any]:
         wanted = min(max(float(goal.request.command.position), 0.0), OPENING)
         stalled = False
         while not stalled and self._opening != wanted:

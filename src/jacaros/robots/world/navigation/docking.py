@@ -8,7 +8,7 @@ from jacaros.robots.plane.pose import Placement, distance
 from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.world.data.world import Dock
 from jacaros.robots.world.graph.frames import FrameUnknown, on_map, pose_fault
-from jacaros.robots.world.graph.on_graph import Execute, Goal
+from jacaros.robots.world.graph.on_graph import ActiveGoal, GoalExecution
 from jacaros.robots.world.navigation.driver import STOP
 from jacaros.robots.world.navigation.navigator import PERIOD, Navigator
 from jacaros.robots.world.navigation.planner import GOAL_MARGIN, NavigationFailure
@@ -188,12 +188,12 @@ class Docking:
         )
 
     def _create3(
-        self, name: str, action: str, execute: Execute, cannot: Callable[[], str | None] = lambda: None
+        self, name: str, action: str, execute: GoalExecution, cannot: Callable[[], str | None] = lambda: None
     ) -> None:
         """Serve an action that, like a Create 3, rejects impossible goals, and a second goal while one is running."""
         running = 0
 
-        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+        async def carry_out(goal: ActiveGoal) -> Mapping[str, Any]:
             nonlocal running
             running += 1
             try:
@@ -206,7 +206,7 @@ class Docking:
 
         self.navigator.serve(name, f"irobot_create_msgs/action/{action}", carry_out, accept)
 
-    async def _dock_robot(self, goal: Goal) -> Mapping[str, Any]:
+    async def _dock_robot(self, goal: ActiveGoal) -> Mapping[str, Any]:
         clock = self._at.time.clock
         began = clock.now()
 
@@ -229,7 +229,7 @@ class Docking:
         except FrameUnknown as problem:
             raise NavigationFailure(FAILED_TO_STAGE, str(problem)) from None
 
-    async def _undock_robot(self, goal: Goal) -> Mapping[str, Any]:
+    async def _undock_robot(self, goal: ActiveGoal) -> Mapping[str, Any]:
         if not self.docked:
             # Nav2 has nothing to do, and aborts without a code.
             raise NavigationFailure(0, "the robot is not docked")
@@ -250,24 +250,24 @@ class Docking:
             raise NavigationFailure(0, "no dock in sight")
         return dock
 
-    async def _dock(self, goal: Goal) -> Mapping[str, Any]:
+    async def _dock(self, goal: ActiveGoal) -> Mapping[str, Any]:
         goal.feedback(sees_dock=self.visible_dock() is not None)
         await self.dock(self._dock_in_sight(), True, lambda state: goal.feedback(sees_dock=True))
         return {"is_docked": self.docked}
 
-    async def _undock(self, goal: Goal) -> Mapping[str, Any]:
+    async def _undock(self, goal: ActiveGoal) -> Mapping[str, Any]:
         await self.undock()
         await self.turn_away()
         return {"is_docked": self.docked}
 
-    async def _auto_docking(self, goal: Goal) -> Mapping[str, Any]:
+    async def _auto_docking(self, goal: ActiveGoal) -> Mapping[str, Any]:
         dock = self._dock_in_sight()
         await self.dock(
             dock, True, lambda state: goal.feedback(state=_KOBUKI.get(state, "SCAN"), text=dock.name)
         )
         return {"text": f"docked in {dock.name}"}
 
-    async def _drive_distance(self, goal: Goal) -> Mapping[str, Any]:
+    async def _drive_distance(self, goal: ActiveGoal) -> Mapping[str, Any]:
         request = goal.request
         speed = min(max(request.max_translation_speed, 0.02), self._at.robot.description.limits.speed)
         with self.navigator.wheels.claimed() as claim:
@@ -276,7 +276,7 @@ class Docking:
             )
         return self._moved(made, request.distance, 0.02, "m")
 
-    async def _rotate_angle(self, goal: Goal) -> Mapping[str, Any]:
+    async def _rotate_angle(self, goal: ActiveGoal) -> Mapping[str, Any]:
         request = goal.request
         rate = min(max(request.max_rotation_speed, 0.05), self._at.robot.description.limits.turn_rate)
         with self.navigator.wheels.claimed() as claim:

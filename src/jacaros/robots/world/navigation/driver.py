@@ -96,14 +96,14 @@ _SKIN = 0.012
 """Clearance in metres (in addition to the radius) at which the robot does not approach a wall further."""
 
 
-class Command(NamedTuple):
+class WheelCommand(NamedTuple):
     """A command for the wheels: m/s and rad/s."""
 
     speed: float
     turn_rate: float
 
 
-STOP = Command(0.0, 0.0)
+STOP = WheelCommand(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,14 +133,14 @@ class Driver:
         self._turning = False
         self._speed = 0.0
 
-    def command(self, pose: Placement, route: Route, others: Sequence[Circle] = ()) -> Command:
+    def command(self, pose: Placement, route: Route, others: Sequence[Circle] = ()) -> WheelCommand:
         """Return the next command; *route* must be up to date (`Route.advance`)."""
         here = (pose.x, pose.y)
         target, ahead = self._target(here, route)
         forward, left = pose.local(*target)
         if self._must_turn(forward, left):
             self._speed = 0.0
-            return Command(0.0, self._turn(forward, left))
+            return WheelCommand(0.0, self._turn(forward, left))
         apart2 = forward * forward + left * left
         curvature = 2.0 * left / apart2 if apart2 > 1e-6 else 0.0
         speed = min(self.pace.speed, self._for_end(route), self._for_others(pose, others), 0.1 + ahead)
@@ -151,15 +151,15 @@ class Driver:
             speed = self.pace.turn_rate / abs(curvature)
         speed = self._for_walls(pose, speed, curvature)
         self._speed = speed
-        return Command(speed, clamp(speed * curvature, self.pace.turn_rate))
+        return WheelCommand(speed, clamp(speed * curvature, self.pace.turn_rate))
 
-    def heading(self, pose: Placement, wanted: Placement, tolerance: float) -> Command | None:
+    def heading(self, pose: Placement, wanted: Placement, tolerance: float) -> WheelCommand | None:
         """Return a command that turns to the heading of *wanted*; None if it is reached to *tolerance* radians."""
         forward = pose.cosine * wanted.cosine + pose.sine * wanted.sine
         left = pose.cosine * wanted.sine - pose.sine * wanted.cosine
         if forward > 0.0 and abs(left) <= tolerance:
             return None
-        return Command(0.0, self._turn(forward, left))
+        return WheelCommand(0.0, self._turn(forward, left))
 
     def _target(self, here: Point, route: Route) -> tuple[Point, float]:
         """Return the target point and its distance: at most as far as the straight line to it is free."""

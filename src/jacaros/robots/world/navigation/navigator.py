@@ -8,12 +8,12 @@ from typing import Any
 
 from jacaros.robots.plane.pose import Placement, Point, clamp, distance, wrap
 from jacaros.robots.plane.shapes import Circle
-from jacaros.robots.ros.action import Accept, GoalStatus
+from jacaros.robots.ros.action import GoalCallback, GoalStatus
 from jacaros.robots.ros.node import Publisher
 from jacaros.robots.world.data.grid import Grid
 from jacaros.robots.world.graph.frames import ODOMETRY, stamped_pose
-from jacaros.robots.world.graph.on_graph import Execute, Goal, Overtaken, RobotOnGraph
-from jacaros.robots.world.navigation.driver import STOP, Command, Pace
+from jacaros.robots.world.graph.on_graph import ActiveGoal, GoalExecution, Overtaken, RobotOnGraph
+from jacaros.robots.world.navigation.driver import STOP, Pace, WheelCommand
 from jacaros.robots.world.navigation.planner import NavigationFailure, Planner
 from jacaros.robots.world.physics.perception import LaserPerception
 
@@ -23,13 +23,13 @@ _BRAKES_IN = 0.05
 _GIVE_UP = 2.0
 
 
-class Claim:
+class WheelClaim:
     """A claim of the wheels, until another goal claims them."""
 
     def __init__(self, wheels: "Wheels") -> None:
         self._wheels = wheels
 
-    async def drive(self, command: Command) -> None:
+    async def drive(self, command: WheelCommand) -> None:
         """Publish a command, and wait until the next one is due.
 
         Raises:
@@ -50,13 +50,13 @@ class Wheels:
 
     def __init__(self, at: RobotOnGraph) -> None:
         self.at = at
-        self.holder: Claim | None = None
+        self.holder: WheelClaim | None = None
         self._publisher: Publisher | None = None
 
     @contextmanager
-    def claimed(self) -> Iterator[Claim]:
+    def claimed(self) -> Iterator[WheelClaim]:
         """Claim the wheels from the current driver; afterwards stop the robot, unless another driver claimed them."""
-        self.holder = claim = Claim(self)
+        self.holder = claim = WheelClaim(self)
         try:
             yield claim
         finally:
@@ -64,7 +64,7 @@ class Wheels:
                 self.holder = None
                 self.send(STOP)
 
-    def send(self, command: Command) -> None:
+    def send(self, command: WheelCommand) -> None:
         """Publish a command."""
         if self._publisher is None:  # no publisher before the first command
             topic = self.at.name("/cmd_vel") or "/cmd_vel"
@@ -122,14 +122,14 @@ class Navigator:
         self,
         name: str,
         type_name: str,
-        execute: Execute,
-        accept: Accept | None = None,
+        execute: GoalExecution,
+        accept: GoalCallback | None = None,
         overtaken: GoalStatus = GoalStatus.ABORTED,
         coded: Callable[[int], int] = int,
     ) -> None:
         """Serve an action; a failure, with its code, sets those of the fields below that the action's result has."""
 
-        async def carry_out(goal: Goal) -> Mapping[str, Any]:
+        async def carry_out(goal: ActiveGoal) -> Mapping[str, Any]:
             try:
                 return await execute(goal)
             except NavigationFailure as failure:
@@ -159,7 +159,7 @@ class Navigator:
 
     async def straight(
         self,
-        claim: Claim,
+        claim: WheelClaim,
         metres: float,
         speed: float,
         tell: Callable[[float], object] = bool,
@@ -179,7 +179,7 @@ class Navigator:
                 left = abs(metres) - made
                 wanted = min(speed, max(0.03, left * 1.5))
                 off = begin.cosine * last.sine - begin.sine * last.cosine
-                command = Command(sign * wanted, clamp(-2.0 * off, 0.5))
+                command = WheelCommand(sign * wanted, clamp(-2.0 * off, 0.5))
             await claim.drive(command)
             pose = self.pose()
             now = sign * begin.local(pose.x, pose.y)[0]
@@ -206,7 +206,7 @@ class Navigator:
         )
 
     async def rotate(
-        self, claim: Claim, angle: float, rate: float, tell: Callable[[float], object] = bool
+        self, claim: WheelClaim, angle: float, rate: float, tell: Callable[[float], object] = bool
     ) -> float:
         """Turn on the spot by *angle* radians of odometry; return the angle turned."""
         self.time.catch_up()
@@ -214,7 +214,7 @@ class Navigator:
         sign = 1.0 if angle >= 0.0 else -1.0
         while made < abs(angle) - 0.01 and waited < _GIVE_UP:
             left = abs(angle) - made
-            await claim.drive(Command(0.0, sign * min(rate, max(0.08, 2.0 * left))))
+            await claim.drive(WheelCommand(0.0, sign * min(rate, max(0.08, 2.0 * left))))
             self.time.catch_up()
             yaw = self.robot.odometry.yaw
             turned = sign * wrap(yaw - last)

@@ -13,11 +13,11 @@ from jacaros.robots.ros.action import GoalStatus
 from jacaros.robots.ros.backend import Sample
 from jacaros.robots.world.data.grid import Grid
 from jacaros.robots.world.graph.frames import MAP, POSE, FrameUnknown, on_map, pose_fault, stamped_pose
-from jacaros.robots.world.graph.on_graph import Goal, Overtaken, RobotOnGraph
+from jacaros.robots.world.graph.on_graph import ActiveGoal, Overtaken, RobotOnGraph
 from jacaros.robots.world.navigation.docking import Docking
 from jacaros.robots.world.navigation.navigator import Navigator
 from jacaros.robots.world.navigation.planner import NO_POSES, TF_ERROR, NavigationFailure, through_poses
-from jacaros.robots.world.navigation.trip import Progress, go
+from jacaros.robots.world.navigation.trip import TripProgress, go
 
 NO_VALID_WAYPOINTS = 602
 _TO_POSE, _THROUGH_POSES = "navigate_to_pose", "navigate_through_poses"
@@ -100,7 +100,7 @@ class RobotNavigation:
         return {}
 
     @contextmanager
-    def _navigating(self, navigator: str, goal: Goal) -> Iterator[None]:
+    def _navigating(self, navigator: str, goal: ActiveGoal) -> Iterator[None]:
         """Run a goal; like Nav2's two navigators, preempt only goals of the same one, and abort those of the other."""
         if self._running not in (None, navigator):
             goal.abort(f"{self._running} is running; cancel that goal first")
@@ -110,12 +110,12 @@ class RobotNavigation:
         finally:
             self._running = None
 
-    async def _to_pose(self, goal: Goal) -> Mapping[str, Any]:
+    async def _to_pose(self, goal: ActiveGoal) -> Mapping[str, Any]:
         with self._navigating(_TO_POSE, goal):
             return await self._go(goal, [goal.request.pose], self._feedback)
 
-    async def _through_poses(self, goal: Goal) -> Mapping[str, Any]:
-        def feedback(progress: Progress) -> dict[str, Any]:
+    async def _through_poses(self, goal: ActiveGoal) -> Mapping[str, Any]:
+        def feedback(progress: TripProgress) -> dict[str, Any]:
             return {**self._feedback(progress), "number_of_poses_remaining": progress.poses_left}
 
         poses = _poses(goal.request)
@@ -124,7 +124,7 @@ class RobotNavigation:
         with self._navigating(_THROUGH_POSES, goal):
             return await self._go(goal, poses, feedback)
 
-    async def _move_base(self, goal: Goal) -> Mapping[str, Any]:
+    async def _move_base(self, goal: ActiveGoal) -> Mapping[str, Any]:
         # move_base accepts any goal, and aborts invalid ones.
         pose = goal.request.target_pose
         fault = pose_fault(pose.pose)
@@ -132,7 +132,7 @@ class RobotNavigation:
             goal.abort(fault)
         return await self._go(goal, [pose], lambda progress: {"base_position": self._stamped(progress.pose)})
 
-    async def _waypoints(self, goal: Goal) -> Mapping[str, Any]:
+    async def _waypoints(self, goal: ActiveGoal) -> Mapping[str, Any]:
         """Stop at each waypoint; if one cannot be reached, record it as missed and try the next."""
         poses = _poses(goal.request)
         if not poses:
@@ -156,12 +156,12 @@ class RobotNavigation:
         )
 
     async def _go(
-        self, goal: Goal, poses: list[Any], feedback: Callable[[Progress], dict[str, Any]]
+        self, goal: ActiveGoal, poses: list[Any], feedback: Callable[[TripProgress], dict[str, Any]]
     ) -> Mapping[str, Any]:
         await self._drive(poses, lambda progress: goal.feedback(**feedback(progress)))
         return {}
 
-    async def _drive(self, poses: list[Any], tell: Callable[[Progress], object] = bool) -> None:
+    async def _drive(self, poses: list[Any], tell: Callable[[TripProgress], object] = bool) -> None:
         self._navigator.pose()  # updates the estimate
         try:
             places = [await on_map(self._at, pose) for pose in poses]
@@ -172,7 +172,7 @@ class RobotNavigation:
     def _stamped(self, place: Placement) -> Any:
         return stamped_pose(self._at, place, MAP)
 
-    def _feedback(self, progress: Progress) -> dict[str, Any]:
+    def _feedback(self, progress: TripProgress) -> dict[str, Any]:
         return {
             "current_pose": self._stamped(progress.pose),
             "navigation_time": progress.time,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from jacaros.robots.plane.pose import Placement, Point, distance
 from jacaros.robots.plane.shapes import Circle
 from jacaros.robots.world.navigation.driver import STOP, Driver, Route, in_the_way
-from jacaros.robots.world.navigation.navigator import PERIOD, Claim, Navigator
+from jacaros.robots.world.navigation.navigator import PERIOD, Navigator, WheelClaim
 from jacaros.robots.world.navigation.planner import (
     FAILED_TO_MAKE_PROGRESS,
     NO_VALID_PATH,
@@ -41,7 +41,7 @@ _DETOUR = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class TripProgress:
     """Progress of a goal: estimated pose, seconds since its start, remaining metres and poses, number of recoveries."""
 
     pose: Placement
@@ -51,10 +51,12 @@ class Progress:
     recoveries: int
 
 
-Tell = Callable[[Progress], object]
+FeedbackCallback = Callable[[TripProgress], object]
 
 
-async def go(navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf) -> None:
+async def go(
+    navigator: Navigator, goals: Sequence[Placement], tell: FeedbackCallback, limit: float = math.inf
+) -> None:
     """Drive through all *goals*, and stop at the last one, with its heading.
 
     Args:
@@ -85,7 +87,11 @@ class Trip:
     """
 
     def __init__(
-        self, navigator: Navigator, goals: Sequence[Placement], tell: Tell, limit: float = math.inf
+        self,
+        navigator: Navigator,
+        goals: Sequence[Placement],
+        tell: FeedbackCallback,
+        limit: float = math.inf,
     ) -> None:
         self.navigator, self.goals, self._tell = navigator, list(goals), tell
         self._clock = navigator.time.clock
@@ -107,7 +113,7 @@ class Trip:
         self._drive_along(self._first_way())
         self._allowance = min(limit, _LEAST_ALLOWANCE + 4.0 * self._route.length / navigator.pace.speed)
 
-    async def run(self, claim: Claim) -> None:
+    async def run(self, claim: WheelClaim) -> None:
         """Drive to the end; see `go`."""
         while not self._arrived():
             self._check()
@@ -118,7 +124,7 @@ class Trip:
             self._follow()
         await self._turn(claim)
 
-    async def _turn(self, claim: Claim) -> None:
+    async def _turn(self, claim: WheelClaim) -> None:
         """Turn to the heading of the last goal."""
         self._marked = self._clock.now()
         while (command := self._driver.heading(self._pose, self.goals[-1], YAW_TOLERANCE)) is not None:
@@ -176,7 +182,7 @@ class Trip:
 
     def _report(self) -> None:
         self._tell(
-            Progress(
+            TripProgress(
                 self._pose,
                 self._clock.now() - self._began,
                 self._route.remaining,
@@ -265,7 +271,7 @@ class Trip:
         self._route = Route(points)
         self._driver = Driver(self.navigator.planner, self.navigator.pace)
 
-    async def _recover(self, claim: Claim) -> None:
+    async def _recover(self, claim: WheelClaim) -> None:
         """Recover: step back if there is room, wait a moment, and replan."""
         if self._in_a_row >= MOST_RECOVERIES:
             self._give_up()

@@ -15,7 +15,7 @@ Abort = Callable[[str], object]
 
 
 @dataclass(slots=True)
-class Disturbance:
+class TopicFault:
     """An active fault of the messages of a topic.
 
     Attributes:
@@ -64,7 +64,7 @@ class Faults:
         self._begins = {fault.name: fault.at for fault in self.by_name.values() if fault.at is not None}
         self._ends: dict[str, float] = {}
         self._undo: dict[str, Undo] = {}
-        self._disturbances: dict[str, dict[str, Disturbance]] = {}
+        self._disturbances: dict[str, dict[str, TopicFault]] = {}
         self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
         """Active faults that abort goals: their actions, and a function that decides about the next goal."""
         self._goals: dict[Abort, str] = {}
@@ -75,7 +75,7 @@ class Faults:
         """Names of the active faults, oldest first."""
         return list(self._undo)
 
-    def disturbances(self, topic: str) -> Iterable[Disturbance]:
+    def disturbances(self, topic: str) -> Iterable[TopicFault]:
         """Return the active faults of the messages of a topic, oldest first."""
         return self._disturbances.get(topic, {}).values()
 
@@ -170,7 +170,7 @@ class Faults:
         """
         if fault.kind in MESSAGES:
             active = self._disturbances.setdefault(fault.topic, {})
-            active[fault.name] = Disturbance(fault, fault.draw(self._seed, "messages"))
+            active[fault.name] = TopicFault(fault, fault.draw(self._seed, "messages"))
             return partial(active.pop, fault.name)
         if fault.kind == "aborted_action":
             happens = fault.chance(self._seed)

@@ -19,7 +19,7 @@ FOUND = (0.0025, 0.001)
 _SAME = 1e-6
 
 
-class Localisation:
+class SimulatedLocalisation:
     """The transform from map to odometry, as estimated by a robot with a good laser.
 
     Twice a second it removes the accumulated error of odometry; between corrections the robot trusts its wheels. (Scan

@@ -10,7 +10,7 @@ from jacaros.robots.plane.contact import Push, WallIndex, push_apart, push_out, 
 from jacaros.robots.plane.pose import Placement, Pose, clamp, wrap
 from jacaros.robots.plane.shapes import Circle, Rectangle
 from jacaros.robots.plane.trigonometry import sine_cosine
-from jacaros.robots.world.data.ground_truth import RobotState, Sample
+from jacaros.robots.world.data.ground_truth import PathSample, RobotState
 from jacaros.robots.world.data.robot import BatterySettings, OdometrySettings, RobotDescription
 from jacaros.robots.world.data.world import Dock
 
@@ -37,7 +37,7 @@ def advance(x: float, y: float, yaw: float, distance: float, turn: float) -> tup
 _WIDTH = math.sqrt(12.0)
 
 
-class Odometry:
+class WheelOdometry:
     """The pose estimated from the wheels.
 
     The standard deviation of errors grows with the square root of the distance in the step, hence of its duration: the
@@ -111,7 +111,7 @@ class Robot:
         self.x, self.y, self.yaw = description.pose
         self.speed = self.turn_rate = self.odometer = 0.0
         self.wanted_speed = self.wanted_turn_rate = 0.0
-        self.odometry = Odometry(description.odometry, description.pose, f"{seed}/{self.name}/odometry")
+        self.odometry = WheelOdometry(description.odometry, description.pose, f"{seed}/{self.name}/odometry")
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
         self.fallen = False
@@ -154,9 +154,9 @@ class Robot:
         """Add an event of the robot to the ground truth."""
         self._note(self, kind, data)
 
-    def sample(self, time: float) -> Sample:
+    def sample(self, time: float) -> PathSample:
         """Return the state as a point of the path."""
-        return Sample(time, *self.state(), self.odometer)
+        return PathSample(time, *self.state(), self.odometer)
 
     def state(self) -> RobotState:
         """Return the true pose, the battery and the contacts."""

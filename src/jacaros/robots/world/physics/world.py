@@ -15,7 +15,7 @@ from jacaros.robots.plane.contact import WallIndex, push_apart
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Circle, Segment
 from jacaros.robots.world.data.faults import Fault
-from jacaros.robots.world.data.ground_truth import Event, GroundTruth
+from jacaros.robots.world.data.ground_truth import GroundTruth, RobotEvent
 from jacaros.robots.world.data.world import Dock, PersonDescription, WorldDescription
 from jacaros.robots.world.files.faults import read_faults
 from jacaros.robots.world.files.world import load_world, read_world
@@ -126,7 +126,7 @@ class World:
         return self._truth
 
     @property
-    def log(self) -> list[Event]:
+    def log(self) -> list[RobotEvent]:
         """All events so far, oldest first."""
         return self._truth.events
 
@@ -394,10 +394,10 @@ class World:
         return end
 
     def _note(self, robot: Robot, kind: str, data: dict[str, Any]) -> None:
-        self._truth.record_event(Event(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
+        self._truth.record_event(RobotEvent(self.time, robot.name, kind, robot.x, robot.y, robot.yaw, data))
 
     def _note_place(self, kind: str, x: float, y: float, data: dict[str, Any]) -> None:
-        self._truth.record_event(Event(self.time, "", kind, x, y, 0.0, data))
+        self._truth.record_event(RobotEvent(self.time, "", kind, x, y, 0.0, data))
 
     def _let_happen(self, fault: Fault) -> Undo | None:
         """Let a fault happen, and return what ends it; None for faults without duration.

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from jacaros.robots.mapping.checking import UNCERTAIN, check_topic, type_problems
-from jacaros.robots.mapping.fields import Place, Written
+from jacaros.robots.mapping.fields import FilePosition, Written
 from jacaros.robots.mapping.file import ArtifactPart
 from jacaros.robots.mapping.operations import OperationKind, OperationPart
 from jacaros.robots.mapping.properties import FramePart, TopicPart
@@ -142,7 +142,7 @@ def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
 
 
 def _of_qos(
-    place: Place, topic: str, end: Endpoint, offered: QoS | None, requested: QoS | None, help: str
+    place: FilePosition, topic: str, end: Endpoint, offered: QoS | None, requested: QoS | None, help: str
 ) -> Iterator[Problem]:
     """Yield a problem if the quality of service is incompatible with that of *end*; None: unknown."""
     why = None if offered is None or requested is None else incompatibility(offered, requested)
@@ -162,7 +162,7 @@ def _suiting(offered: QoS, requested: QoS) -> str:
     return f"qos: {{reliability: {reliability}, durability: {durability}{deadline}}}"
 
 
-def _of_type(written: Written | None, found: Iterable[str], place: Place) -> list[Problem]:
+def _of_type(written: Written | None, found: Iterable[str], place: FilePosition) -> list[Problem]:
     """Compare the type in the file with the types found; `place` is that of the name."""
     types = [each for each in found if each]
     if len(types) > 1:
@@ -243,7 +243,7 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
         )
 
 
-async def _of_parameter(names: Names, node: str, parameter: str, place: Place) -> Problem | None:
+async def _of_parameter(names: Names, node: str, parameter: str, place: FilePosition) -> Problem | None:
     joined = names.joined
     if Capability.PARAMETERS not in joined.backend.capabilities:
         return place.problem("this graph has no parameters", "remove the entry")

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from jacaros.artifacts.env.arbiter import REPORTED, Arbiter, Claim, Policy, State, read_uses, scoped
+from jacaros.artifacts.env.arbiter import REPORTED, Arbiter, Claim, ClaimState, Policy, read_uses, scoped
 from jacaros.artifacts.env.values import Atom, Structure, text
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -71,15 +71,15 @@ def table() -> Table:
 
 def test_equal_claims_are_granted_in_order(table: Table) -> None:
     a, b, c = (table.claim("wheels") for _ in range(3))
-    assert [each.state for each in (a, b, c)] == [State.HELD, State.WAITING, State.WAITING]
+    assert [each.state for each in (a, b, c)] == [ClaimState.HELD, ClaimState.WAITING, ClaimState.WAITING]
     table.arbiter.leave(b)
     table.arbiter.leave(a)
-    assert c.state is State.HELD
+    assert c.state is ClaimState.HELD
     table.arbiter.leave(a)
     assert table.arbiter.holders("wheels") == (c,)
     table.arbiter.enter(b)
     table.arbiter.leave(c)
-    assert b.state is State.HELD
+    assert b.state is ClaimState.HELD
 
 
 def test_several_resources_are_granted_together_or_not_at_all(table: Table) -> None:
@@ -87,7 +87,7 @@ def test_several_resources_are_granted_together_or_not_at_all(table: Table) -> N
     both = table.claim("base", "arm")
     assert not table.arbiter.holders("base")
     later = table.claim("base")
-    assert later.state is State.WAITING, "or the claim to both would starve"
+    assert later.state is ClaimState.WAITING, "or the claim to both would starve"
     table.arbiter.leave(arm)
     assert both.holds
     table.arbiter.leave(both)
@@ -101,13 +101,13 @@ def test_a_more_urgent_claim_preempts_and_the_preempted_one_is_granted_again(tab
     assert told(patrol) == ["granted", "preempted(wheels)"]
     table.arbiter.leave(flee)
     assert patrol.holds
-    assert other.state is State.WAITING
+    assert other.state is ClaimState.WAITING
 
 
 def test_a_holder_keeps_the_resource_until_it_has_yielded(table: Table) -> None:
     patrol = table.claim("wheels", brakes=True)
     flee = table.claim("wheels", urgency=10)
-    assert (patrol.state, flee.state) == (State.YIELDING, State.WAITING)
+    assert (patrol.state, flee.state) == (ClaimState.YIELDING, ClaimState.WAITING)
     table.arbiter.gave_way(patrol)
     assert flee.holds
 
@@ -135,7 +135,7 @@ def test_a_claim_within_another_does_not_wait_for_it(table: Table) -> None:
     drive = table.claim("base", within=(plan,))
     assert drive.holds
     turn = table.claim("base", within=(plan,))
-    assert turn.state is State.WAITING, "two motions of one plan exclude each other"
+    assert turn.state is ClaimState.WAITING, "two motions of one plan exclude each other"
     table.arbiter.leave(drive)
     assert turn.holds
 
@@ -144,7 +144,11 @@ def test_preempting_a_plan_preempts_its_operation_and_both_are_granted_again(tab
     plan = table.claim("base", "arm")
     drive = table.claim("base", within=(plan,), brakes=True)
     flee = table.claim("base", urgency=1)
-    assert (plan.state, drive.state, flee.state) == (State.WAITING, State.YIELDING, State.WAITING)
+    assert (plan.state, drive.state, flee.state) == (
+        ClaimState.WAITING,
+        ClaimState.YIELDING,
+        ClaimState.WAITING,
+    )
     table.arbiter.gave_way(drive)
     assert flee.holds
     table.arbiter.leave(flee)
@@ -165,7 +169,7 @@ def test_a_holder_that_cannot_yield_inherits_the_urgency_of_what_it_blocks(table
     atomic = table.claim("base", can_yield=False)
     middle = table.claim("arm", urgency=5)
     urgent = table.claim("base", urgency=10)
-    assert atomic.state is State.HELD
+    assert atomic.state is ClaimState.HELD
     inner = table.claim("arm", within=(atomic,))
     assert inner.holds, "it goes before the one with urgency 5"
     assert not middle.holds
@@ -230,9 +234,9 @@ def test_an_atomic_plan_takes_what_a_plan_of_its_agent_holds_however_urgent_that
     table = Table()
     plan = table.claim("wheels", urgency=5, plan_of="robot")
     atomic = table.claim("wheels", can_yield=False, blocks="robot")
-    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    assert (plan.state, atomic.state) == (ClaimState.WAITING, ClaimState.HELD)
     table.arbiter.leave(atomic)
-    assert plan.state is State.HELD
+    assert plan.state is ClaimState.HELD
 
 
 def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
@@ -240,9 +244,9 @@ def test_an_atomic_plan_waits_for_operations_and_for_other_agents() -> None:
     for holder in (table.claim("wheels"), table.claim("wheels", plan_of="other", enter=False)):
         table.arbiter.enter(holder)
         atomic = table.claim("wheels", blocks="robot")
-        assert atomic.state is State.WAITING
+        assert atomic.state is ClaimState.WAITING
         table.arbiter.leave(holder)
-        assert atomic.state is State.HELD
+        assert atomic.state is ClaimState.HELD
         table.arbiter.leave(atomic)
 
 
@@ -251,9 +255,9 @@ def test_a_running_operation_ends_before_its_plan_yields_to_an_atomic_one() -> N
     plan = table.claim("wheels", plan_of="robot")
     drive = table.claim("wheels", within=(plan,))
     atomic = table.claim("wheels", blocks="robot")
-    assert (plan.state, drive.state, atomic.state) == (State.HELD, State.HELD, State.WAITING)
+    assert (plan.state, drive.state, atomic.state) == (ClaimState.HELD, ClaimState.HELD, ClaimState.WAITING)
     table.arbiter.leave(drive)
-    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    assert (plan.state, atomic.state) == (ClaimState.WAITING, ClaimState.HELD)
 
 
 def test_a_waiting_plan_queues_only_behind_an_atomic_one_of_its_agent() -> None:
@@ -263,11 +267,15 @@ def test_a_waiting_plan_queues_only_behind_an_atomic_one_of_its_agent() -> None:
     guest = table.claim("wheels", urgency=5)
     atomic = table.claim("wheels", plan_of="robot", blocks="robot")
     table.arbiter.leave(holder)
-    assert (plan.state, guest.state, atomic.state) == (State.WAITING, State.HELD, State.WAITING)
+    assert (plan.state, guest.state, atomic.state) == (
+        ClaimState.WAITING,
+        ClaimState.HELD,
+        ClaimState.WAITING,
+    )
     table.arbiter.leave(guest)
-    assert (plan.state, atomic.state) == (State.WAITING, State.HELD)
+    assert (plan.state, atomic.state) == (ClaimState.WAITING, ClaimState.HELD)
     table.arbiter.leave(atomic)
-    assert plan.state is State.HELD
+    assert plan.state is ClaimState.HELD
 
 
 # --- claims that would have it again at once --------------------------------------------------------------------
@@ -278,7 +286,7 @@ def test_a_claim_nested_in_one_that_stays_is_not_asked_to_yield() -> None:
     plan = table.claim("base", urgency=1, can_yield=False)
     step = table.claim("base", within=(plan,))
     taker = table.claim("base", urgency=2)
-    assert (plan.state, step.state, taker.state) == (State.HELD, State.HELD, State.WAITING)
+    assert (plan.state, step.state, taker.state) == (ClaimState.HELD, ClaimState.HELD, ClaimState.WAITING)
 
 
 def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for_more() -> None:
@@ -287,11 +295,11 @@ def test_a_nested_claim_does_not_take_back_what_it_yielded_to_one_that_waits_for
     braking = table.claim("arm", urgency=1, brakes=True)
     step = table.claim("map", within=(plan,))
     urgent = table.claim("arm", "map", urgency=5)
-    assert (braking.state, step.state) == (State.YIELDING, State.WAITING)
+    assert (braking.state, step.state) == (ClaimState.YIELDING, ClaimState.WAITING)
     table.arbiter.gave_way(braking)
-    assert (plan.state, urgent.state, step.state) == (State.HELD, State.HELD, State.WAITING)
+    assert (plan.state, urgent.state, step.state) == (ClaimState.HELD, ClaimState.HELD, ClaimState.WAITING)
     table.arbiter.leave(urgent)
-    assert (braking.state, step.state) == (State.HELD, State.HELD)
+    assert (braking.state, step.state) == (ClaimState.HELD, ClaimState.HELD)
 
 
 def test_nothing_is_preempted_for_a_claim_that_waits_behind_others() -> None:
@@ -300,4 +308,8 @@ def test_nothing_is_preempted_for_a_claim_that_waits_behind_others() -> None:
     step = table.claim("base", within=(plan,))
     first = table.claim("map", urgency=1)
     second = table.claim("base", "map", urgency=1)
-    assert (step.state, first.state, second.state) == (State.HELD, State.WAITING, State.WAITING)
+    assert (step.state, first.state, second.state) == (
+        ClaimState.HELD,
+        ClaimState.WAITING,
+        ClaimState.WAITING,
+    )

@@ -7,7 +7,7 @@ from typing import TypeVar
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jacaros.artifacts.env.arbiter import POLICIES, Arbiter, Claim, State
+from jacaros.artifacts.env.arbiter import POLICIES, Arbiter, Claim, ClaimState
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.runtime.clock import VirtualClock, run
 
@@ -67,7 +67,7 @@ class Party:
             self.arbiter.leave(claim)
 
     def refused(self, claim: Claim, reason: Structure | Atom) -> None:
-        assert claim.state is State.OUT
+        assert claim.state is ClaimState.OUT
         self.told.append("refused")
 
 
@@ -81,8 +81,8 @@ class Schedule:
 
     def step(self) -> None:
         """Make a claim, give way, or end one."""
-        alive = [c for c in self.claims if c.state is not State.OUT]
-        yielding = [c for c in alive if c.state is State.YIELDING]
+        alive = [c for c in self.claims if c.state is not ClaimState.OUT]
+        yielding = [c for c in alive if c.state is ClaimState.YIELDING]
         step = self.choices.one_of(("make", "make", "make", "give way", "end"))
         if step == "make" or not alive:
             self._make(alive)
@@ -94,7 +94,7 @@ class Schedule:
     def _make(self, alive: list[Claim]) -> None:
         choices = self.choices
         uses = tuple(choices.some_of(NAMES, choices.one_of((1, 1, 1, 2, 3))))
-        held = [c for c in alive if c.state is State.HELD]
+        held = [c for c in alive if c.state is ClaimState.HELD]
         within: tuple[Claim, ...] = ()
         if held and choices.rarely(3):
             outer = choices.one_of(held)
@@ -124,7 +124,7 @@ class Schedule:
                 together = [c for c in mine if c not in one.within and one not in c.within]
                 assert _go_together(together), (name, mine)
         for claim in self.claims:
-            if claim.state is State.WAITING and all(o.state is State.HELD for o in claim.within):
+            if claim.state is ClaimState.WAITING and all(o.state is ClaimState.HELD for o in claim.within):
                 assert self._must_wait(claim, holders), f"{claim} was forgotten"
 
     def _must_wait(self, claim: Claim, holders: list[Claim]) -> bool:
@@ -134,9 +134,9 @@ class Schedule:
         before = [
             each
             for each in ahead[: ahead.index(claim)]
-            if all(o.state is State.HELD for o in each.within) and not self._is_blocked(each)
+            if all(o.state is ClaimState.HELD for o in each.within) and not self._is_blocked(each)
         ]
-        outermost = not claim.within or any(h.state is State.YIELDING for h in holders)
+        outermost = not claim.within or any(h.state is ClaimState.YIELDING for h in holders)
         return any(
             not self._fits(name, claim, [h for h in holders if h not in claim.within])
             or (outermost and any(name in c.uses for c in before))
@@ -145,7 +145,7 @@ class Schedule:
 
     def _is_blocked(self, claim: Claim) -> bool:
         """Return whether an atomic plan of its agent has or waits for a claim."""
-        atomic = any(c.blocks for c in self.claims if c.state is not State.OUT)
+        atomic = any(c.blocks for c in self.claims if c.state is not ClaimState.OUT)
         return atomic and bool(claim.plan_of) and not claim.blocks
 
     def _fits(self, name: str, claim: Claim, holders: list[Claim]) -> bool:

@@ -10,11 +10,11 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from jacaros.robots.ros.action import SERVER_LOST_AFTER, ActionPolicy, Execute, ServedGoals
+from jacaros.robots.ros.action import SERVER_LOST_AFTER, ActionPolicy, ExecuteCallback, ServedGoals
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.backend import Backend, GraphContents
 from jacaros.robots.ros.drivers.memory.graph import (
-    Kind,
+    EntityKind,
     MemoryGraph,
     MemoryNode,
     MemoryPublisher,
@@ -23,9 +23,9 @@ from jacaros.robots.ros.drivers.memory.graph import (
 from jacaros.robots.ros.errors import CallFailed, CallTimedOut, CapabilityMissing, ServiceUnavailable
 from jacaros.robots.ros.names import request_type
 from jacaros.robots.ros.node import Capability, Parts
-from jacaros.robots.ros.parameter import Declaration, DeclaredParameters, ParameterValue
+from jacaros.robots.ros.parameter import DeclaredParameter, DeclaredParameters, ParameterValue
 from jacaros.robots.ros.services import Handler, ServiceClient, ServiceServer, server_gone
-from jacaros.robots.ros.waiting import Deadline, Waiting, settle, within
+from jacaros.robots.ros.waiting import Deadline, WaitLog, settle, within
 
 __all__ = ["BACKEND", "MemoryBackend", "MemoryGraph"]
 
@@ -98,7 +98,9 @@ class MemoryClient(ServiceClient[MemoryNode]):
             raise CallTimedOut(f"service {self.name} did not answer within {timeout:g} s") from None
 
 
-async def awaited(node: MemoryNode, kind: Kind, name: str, waiting: Waiting, timeout: float | None) -> Any:
+async def awaited(
+    node: MemoryNode, kind: EntityKind, name: str, waiting: WaitLog, timeout: float | None
+) -> Any:
     """Return a service or node as soon as it is in the graph.
 
     Args:
@@ -124,7 +126,7 @@ class MemoryActionServer:
     """Action server of `MemoryBackend`."""
 
     def __init__(
-        self, node: MemoryNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, node: MemoryNode, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
     ) -> None:
         node.schema.offered(type_name)
         self.name = name
@@ -247,9 +249,9 @@ class MemoryParameters:
     def __init__(self, asker: MemoryNode, node: str) -> None:
         self.node = node
         self._asker = asker
-        self._waiting = Waiting(asker.clock, asker.log, f"parameters of node {node}")
+        self._waiting = WaitLog(asker.clock, asker.log, f"parameters of node {node}")
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter of our own node."""
         self._require_own()
         return self._asker.declared.declare(name, declaration)

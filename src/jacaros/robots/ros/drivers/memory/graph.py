@@ -18,7 +18,7 @@ from typing import Any, Literal
 from jacaros.robots.ros.backend import Backend, Endpoint, GraphContents, TopicInfo
 from jacaros.robots.ros.errors import RosError
 from jacaros.robots.ros.lifetime import Lifetime
-from jacaros.robots.ros.node import M, NodeSettings, TopicPublisher, TopicSubscription, Wanted
+from jacaros.robots.ros.node import M, NodeSettings, SubscriptionOptions, TopicPublisher, TopicSubscription
 from jacaros.robots.ros.parameter import DeclaredParameters, ParameterValue
 from jacaros.robots.ros.parameter_services import ParameterListeners
 from jacaros.robots.ros.qos import QoS, incompatibility
@@ -92,7 +92,7 @@ class Topic:
         )
 
 
-Kind = Literal["node", "service", "action"]
+EntityKind = Literal["node", "service", "action"]
 """What can be in a graph besides topics."""
 
 
@@ -104,8 +104,8 @@ class MemoryGraph:
         self.parameter_listeners = ParameterListeners()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._topics: dict[str, Topic] = {}
-        self._members: dict[Kind, dict[str, Any]] = {"node": {}, "service": {}, "action": {}}
-        self._watchers: dict[tuple[Kind, str], list[Callable[[bool], None]]] = defaultdict(list)
+        self._members: dict[EntityKind, dict[str, Any]] = {"node": {}, "service": {}, "action": {}}
+        self._watchers: dict[tuple[EntityKind, str], list[Callable[[bool], None]]] = defaultdict(list)
         self._held: list[tuple[Callable[..., None], tuple[Any, ...]]] = []
 
     def join(self, node: "MemoryNode") -> None:
@@ -113,36 +113,36 @@ class MemoryGraph:
         self._loop = node.loop
         self.offer("node", node.node_name, node)
 
-    def offer(self, kind: Kind, name: str, member: Any) -> None:
+    def offer(self, kind: EntityKind, name: str, member: Any) -> None:
         """Make *member* reachable; a newer one of the same name replaces it, as on ROS 1."""
         self._members[kind][name] = member
         if self.up:
             self._report(kind, name, True)
 
-    def withdraw(self, kind: Kind, name: str, member: Any) -> None:
+    def withdraw(self, kind: EntityKind, name: str, member: Any) -> None:
         """Remove *member*."""
         if self._members[kind].get(name) is member:
             del self._members[kind][name]
             self._report(kind, name, False)
 
-    def find(self, kind: Kind, name: str) -> Any:
+    def find(self, kind: EntityKind, name: str) -> Any:
         """Return the node, service or action server *name*, if it can be reached; otherwise None."""
         return self._members[kind].get(name) if self.up else None
 
-    def watch(self, kind: Kind, name: str, told: Callable[[bool], None]) -> Callable[[], None]:
+    def watch(self, kind: EntityKind, name: str, told: Callable[[bool], None]) -> Callable[[], None]:
         """Call *told* with whether a member can be reached, when it comes or goes. Return a function that ends this."""
         watchers = self._watchers[kind, name]
         watchers.append(told)
         return lambda: watchers.remove(told) if told in watchers else None
 
-    def arrival(self, kind: Kind, name: str) -> asyncio.Future[None]:
+    def arrival(self, kind: EntityKind, name: str) -> asyncio.Future[None]:
         """Return a future that is done when a member has appeared."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         end = self.watch(kind, name, lambda present: settle(future, None, None) if present else None)
         future.add_done_callback(lambda _: end())
         return future
 
-    def _report(self, kind: Kind, name: str, present: bool) -> None:
+    def _report(self, kind: EntityKind, name: str, present: bool) -> None:
         for told in list(self._watchers[kind, name]):
             told(present)
 
@@ -336,7 +336,7 @@ class MemoryPublisher(TopicPublisher[MemoryNode]):
 class MemorySubscription(TopicSubscription[MemoryNode]):
     """Subscription of `MemoryBackend`."""
 
-    def __init__(self, node: MemoryNode, wanted: Wanted) -> None:
+    def __init__(self, node: MemoryNode, wanted: SubscriptionOptions) -> None:
         super().__init__(node, wanted)
         deadline = wanted.qos.deadline
         self._deadline = None if deadline is None else _Deadline(node, deadline, self.report_deadline)

@@ -85,7 +85,7 @@ LOG_TOPICS = frozenset({"/rosout", "/rosout_agg"})
 LOG_SERVICES = ("/get_loggers", "/set_logger_level")
 _ROS2_TYPES = {f"{package}/{full.rsplit('/', 1)[1]}": full for full, package in ROS1_PACKAGES.items()}
 
-State = list[list[tuple[str, list[str]]]]
+SystemState = list[list[tuple[str, list[str]]]]
 """The master's answer: publications, subscriptions and services, each with their nodes."""
 
 
@@ -99,7 +99,7 @@ async def graph_contents(node: Ros1Node, timeout: float) -> GraphContents:
 
 
 def _look(master: Master) -> GraphContents:
-    state: State = master.ask("getSystemState")
+    state: SystemState = master.ask("getSystemState")
     types: dict[str, str] = dict(master.ask("getTopicTypes"))
     named = _actions(types)
     hidden = LOG_TOPICS | {f"{action}/{part}" for action in named for part in ACTION_TOPICS}
@@ -117,7 +117,7 @@ def _look(master: Master) -> GraphContents:
         )
 
 
-def _topics(state: State, types: Mapping[str, str], hidden: Iterable[str]) -> dict[str, TopicInfo]:
+def _topics(state: SystemState, types: Mapping[str, str], hidden: Iterable[str]) -> dict[str, TopicInfo]:
     publishers, subscribers = dict(state[0]), dict(state[1])
     return {
         name: TopicInfo(

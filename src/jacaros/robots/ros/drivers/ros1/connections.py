@@ -27,11 +27,11 @@ from rospy.impl.tcpros_base import TCPROSTransport  # type: ignore[import-not-fo
 from jacaros.robots.ros.drivers.ros1.streams import Inlet, Outbox
 from jacaros.robots.ros.handoff import post
 
-Take = Callable[[list[Any], "dict[str, str]"], None]
+TakeMessages = Callable[[list[Any], "dict[str, str]"], None]
 """Takes messages that arrived together, on the loop, and the header of their publisher."""
 
 
-class MessageHandlers(dict[str, Take]):
+class MessageHandlers(dict[str, TakeMessages]):
     """The handlers of topics, called on the loop of the node.
 
     Attributes:
@@ -74,7 +74,7 @@ class InletTransport(TCPROSTransport):  # type: ignore[misc]
                 inlet.close()
         raise TransportTerminated(f"the connection to {self.endpoint_id} has ended")
 
-    def _take(self, subscriber: Any, take: Take, messages: list[bytes], size: int) -> None:
+    def _take(self, subscriber: Any, take: TakeMessages, messages: list[bytes], size: int) -> None:
         self.stat_bytes += size
         self.stat_num_msg += len(messages)
         if self.done or not (read := self._deserialized(subscriber, messages)):

@@ -18,9 +18,9 @@ from jacaros.robots.ros.errors import (
     ServiceUnavailable,
 )
 from jacaros.robots.ros.handoff import LoopEnded, ask, in_thread, post
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value
 from jacaros.robots.ros.services import Handler, ServiceClient, ServiceServer, call_when_offered
-from jacaros.robots.ros.waiting import Waiting, settle, within
+from jacaros.robots.ros.waiting import WaitLog, settle, within
 
 
 class Ros1Service(ServiceServer[Ros1Node]):
@@ -113,7 +113,7 @@ class Ros1Parameters:
         self._prefix = "/" if self.node == "/" else f"{self.node}/"
         self._master = Master(node.master_uri, node.node_name)
 
-    def declare(self, name: str, declaration: Declaration) -> NoReturn:
+    def declare(self, name: str, declaration: DeclaredParameter) -> NoReturn:
         """Refuse: ROS 1 has no declarations."""
         raise CapabilityMissing(
             f"parameter {name} cannot be declared: on ROS 1 the master stores the parameters and accepts any name and "
@@ -201,7 +201,7 @@ class Ros1Parameters:
             answer = in_thread(backend.loop, lambda: self._master.ask(method, *arguments), method)
             return await within(backend.clock, answer, rest)
 
-        waiting = Waiting(backend.clock, backend.log, f"ROS master at {self._master.uri}")
+        waiting = WaitLog(backend.clock, backend.log, f"ROS master at {self._master.uri}")
         try:
             return await call_when_offered(waiting, attempt, timeout, lambda: False)
         except ServiceUnavailable:

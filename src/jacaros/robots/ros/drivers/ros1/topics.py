@@ -11,7 +11,7 @@ from jacaros.robots.ros.drivers.ros1.node import Ros1Node, wait_until_sent
 from jacaros.robots.ros.errors import MessageMismatch
 from jacaros.robots.ros.handoff import Handoff, post
 from jacaros.robots.ros.names import message_type
-from jacaros.robots.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, Wanted
+from jacaros.robots.ros.node import SharedSubscription, SubscriptionOptions, TopicMultiplexer, TopicPublisher
 from jacaros.robots.ros.qos import QoS
 
 
@@ -137,7 +137,7 @@ class Ros1Multiplexer(TopicMultiplexer["Ros1Subscription"]):
 class Ros1Subscription(SharedSubscription[Ros1Node]):
     """Subscription of `Ros1Backend`."""
 
-    def __init__(self, node: Ros1Node, wanted: Wanted) -> None:
+    def __init__(self, node: Ros1Node, wanted: SubscriptionOptions) -> None:
         self.queue: Handoff[Any] = Handoff(node.loop, wanted.qos.depth, self.deliver)
         super().__init__(node, wanted, node.multiplexers, Ros1Multiplexer)
         if self._multiplexer is not None:

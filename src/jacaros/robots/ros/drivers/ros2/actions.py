@@ -17,7 +17,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks  # type: ignore[impor
 from rclpy.qos import QoSProfile  # type: ignore[import-not-found]
 from unique_identifier_msgs.msg import UUID  # type: ignore[import-not-found]
 
-from jacaros.robots.ros.action import ActionPolicy, Execute, Outcome, ServedGoals, text_of
+from jacaros.robots.ros.action import ActionPolicy, ExecuteCallback, GoalOutcome, ServedGoals, text_of
 from jacaros.robots.ros.action_client import ActionClient
 from jacaros.robots.ros.drivers.ros2.graph import action_servers, mismatch, profile
 from jacaros.robots.ros.drivers.ros2.node import STOPPING_ROBOTS, Ros2Node
@@ -85,7 +85,7 @@ class Ros2ActionServer:
     """Action server of the ``ros2`` backend."""
 
     def __init__(
-        self, node: Ros2Node, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, node: Ros2Node, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
     ) -> None:
         self.name = name
         self._node = node
@@ -138,7 +138,7 @@ class Ros2ActionServer:
         if not self._closed and not self._node.ended:
             self._feedback.publish(self._impl.FeedbackMessage(goal_id=identity, feedback=message))
 
-    def _finish(self, goal: _ServedGoal, outcome: Outcome) -> None:
+    def _finish(self, goal: _ServedGoal, outcome: GoalOutcome) -> None:
         """Send a goal's outcome to the clients that requested it, and store it for later requests."""
         if self._node.ended:
             return
@@ -410,7 +410,7 @@ class Ros2GoalWire:
             text = f"the server of action {self.name} does not know goal {identity}: it was restarted"
             self.sender.fail(identity, ServerLost(text))
         else:
-            self.sender.ended(identity, Outcome(status, answer.result, text_of(answer.result)))
+            self.sender.ended(identity, GoalOutcome(status, answer.result, text_of(answer.result)))
 
     def _take_feedback(self, message: Any) -> None:
         identity = goal_id(message.goal_id)

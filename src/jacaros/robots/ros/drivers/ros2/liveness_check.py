@@ -33,7 +33,7 @@ Find = Callable[[Any], frozenset[bytes]]
 """Returns identities from a node of rclpy, such as those of a topic's publishers."""
 
 
-Report = Callable[[frozenset[bytes]], None]
+ReportLost = Callable[[frozenset[bytes]], None]
 """Takes the missing ones of the identities that a caller has asked about."""
 
 
@@ -41,7 +41,7 @@ Report = Callable[[frozenset[bytes]], None]
 class _Question:
     find: Find
     suspects: frozenset[bytes]
-    report: Report
+    report: ReportLost
     missing: frozenset[bytes] = frozenset()
 
 
@@ -73,7 +73,7 @@ class LivenessCheck:
         """Whether it has begun so recently that its results are valid for a new caller."""
         return time.monotonic() < self._began + FRESH
 
-    def ask(self, find: Find, suspects: frozenset[bytes], report: Report) -> None:
+    def ask(self, find: Find, suspects: frozenset[bytes], report: ReportLost) -> None:
         """Find out which of the *suspects* are alive.
 
         Args:

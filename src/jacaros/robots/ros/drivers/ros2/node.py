@@ -24,7 +24,7 @@ import rclpy.signals  # type: ignore[import-not-found]
 from rclpy.exceptions import ParameterException  # type: ignore[import-not-found]
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.ros2.liveness_check import Find, LivenessCheck, Report
+from jacaros.robots.ros.drivers.ros2.liveness_check import Find, LivenessCheck, ReportLost
 from jacaros.robots.ros.drivers.ros2.receiving import Receiver
 from jacaros.robots.ros.drivers.ros2.types import RosidlSchema, parameter
 from jacaros.robots.ros.errors import ParameterRefused
@@ -129,7 +129,7 @@ class Ros2Node(Backend):
 
         look()
 
-    def check_liveness(self, find: Find, suspects: frozenset[bytes], report: Report) -> None:
+    def check_liveness(self, find: Find, suspects: frozenset[bytes], report: ReportLost) -> None:
         """Find out which of the *suspects* are alive; see `LivenessCheck.ask`."""
         if self.ended:
             return

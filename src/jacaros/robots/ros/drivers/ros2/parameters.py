@@ -22,7 +22,7 @@ from jacaros.robots.ros.drivers.ros2.node import Ros2Node
 from jacaros.robots.ros.drivers.ros2.types import ARRAYS, parameter
 from jacaros.robots.ros.errors import ParameterRefused, ParameterUnknown
 from jacaros.robots.ros.handoff import LoopEnded, ask
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value, fault_of
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value, fault_of
 from jacaros.robots.ros.parameter_services import ParameterEvents
 
 _LARGEST = 2**63 - 1
@@ -42,7 +42,7 @@ class OwnParameters:
         self._loops_thread = threading.get_ident()
         node.rcl.add_on_set_parameters_callback(self._judge)
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Declare a parameter."""
         value = default = parameter(name, declaration.default)
         given = self._node.given_parameters.take(name)
@@ -147,7 +147,7 @@ class OwnParameters:
             return "the node is leaving"
 
 
-def _descriptor(default: Any, declaration: Declaration) -> Any:
+def _descriptor(default: Any, declaration: DeclaredParameter) -> Any:
     told = ParameterDescriptor(description=declaration.description, read_only=declaration.read_only)
     low, high = declaration.minimum, declaration.maximum
     if low is None and high is None:

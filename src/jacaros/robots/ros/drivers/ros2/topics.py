@@ -18,7 +18,7 @@ from jacaros.robots.ros.drivers.ros2.receiving import RCLError
 from jacaros.robots.ros.errors import RosError
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.robots.ros.handoff import Handoff, post
-from jacaros.robots.ros.node import TopicPublisher, TopicSubscription, Wanted
+from jacaros.robots.ros.node import SubscriptionOptions, TopicPublisher, TopicSubscription
 from jacaros.robots.ros.qos import QoS, available, incompatibility
 
 NO_TIME = Duration()
@@ -112,7 +112,7 @@ class Ros2Publisher(TopicPublisher[Ros2Node]):
 class Ros2Subscription(TopicSubscription[Ros2Node]):
     """Subscription of the ``ros2`` backend."""
 
-    def __init__(self, node: Ros2Node, wanted: Wanted) -> None:
+    def __init__(self, node: Ros2Node, wanted: SubscriptionOptions) -> None:
         super().__init__(node, wanted)
         self._queue: Handoff[Any] = Handoff(node.loop, self.qos.depth, self.deliver)
         self._silent = True

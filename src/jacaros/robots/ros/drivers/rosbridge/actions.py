@@ -15,9 +15,9 @@ from typing import Any
 from jacaros.robots.ros.action import (
     TEXT_FIELDS,
     ActionPolicy,
-    Execute,
+    ExecuteCallback,
+    GoalOutcome,
     GoalStatus,
-    Outcome,
     ServedGoals,
     text_of,
 )
@@ -27,7 +27,7 @@ from jacaros.robots.ros.drivers.rosbridge.node import BridgeNode, OperationHandl
 from jacaros.robots.ros.drivers.rosbridge.topics import BridgeSubscription
 from jacaros.robots.ros.errors import CallFailed, ServerLost, ServerUnavailable
 from jacaros.robots.ros.names import feedback_type, goal_type, result_type
-from jacaros.robots.ros.node import Sample, Wanted
+from jacaros.robots.ros.node import Sample, SubscriptionOptions
 from jacaros.robots.ros.protocols.ros2_actions import CANCELING, ENDS, NUMBERS, STATUS, UNDER_WAY
 from jacaros.robots.ros.protocols.rosbridge_wire import LOOK_AGAIN
 from jacaros.robots.ros.qos import QoS
@@ -74,7 +74,9 @@ class Ros2Goals:
     def join(self) -> None:
         """Follow the status of goals; on the first connection."""
         if self._status is None:
-            wanted = Wanted(f"{self._sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY)
+            wanted = SubscriptionOptions(
+                f"{self._sender.name}{STATUS}", STATUS_TYPE, self._status_changed, STATUS_QUALITY
+            )
             self._status = self._node.keep(BridgeSubscription(self._node, wanted))
 
     @property
@@ -174,7 +176,7 @@ class Ros2Goals:
         status = ENDS.get(number or 4, GoalStatus.ABORTED)
         result = self._decoded(result_type(self._sender.type_name), values or {})
         if result is not None:
-            self._sender.ended(goal_id, Outcome(status, result, text_of(result)))
+            self._sender.ended(goal_id, GoalOutcome(status, result, text_of(result)))
         else:
             self._sender.fail(goal_id, CallFailed(f"action {self._sender.name}: the result cannot be read"))
 
@@ -260,7 +262,7 @@ class Ros2GoalService:
     """An action server on a ROS 2 robot."""
 
     def __init__(
-        self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, node: BridgeNode, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
     ) -> None:
         self.name = name
         self._node = node
@@ -306,7 +308,7 @@ class Ros2GoalService:
         values = self._node.translator.encode(feedback_type(self._type_name), message)
         self._node.send({"op": "action_feedback", "id": goal_id, "action": self.name, "values": values})
 
-    def _end(self, goal_id: str, outcome: Outcome) -> None:
+    def _end(self, goal_id: str, outcome: GoalOutcome) -> None:
         self._node.send(
             {
                 "op": "action_result",
@@ -318,11 +320,11 @@ class Ros2GoalService:
             }
         )
 
-    def _aborted(self, text: str) -> Outcome:
+    def _aborted(self, text: str) -> GoalOutcome:
         kind = result_type(self._type_name)
         fields = self._node.factory.fields(kind)
         told = {name: text for name in TEXT_FIELDS if name in fields and fields[name].base == "string"}
-        return Outcome(GoalStatus.ABORTED, self._node.factory.make(kind, told), text)
+        return GoalOutcome(GoalStatus.ABORTED, self._node.factory.make(kind, told), text)
 
 
 LOST_LINK = (
@@ -372,7 +374,7 @@ class BridgeActionServer:
     """Action server of `RosbridgeBackend`."""
 
     def __init__(
-        self, node: BridgeNode, name: str, type_name: str, execute: Execute, policy: ActionPolicy
+        self, node: BridgeNode, name: str, type_name: str, execute: ExecuteCallback, policy: ActionPolicy
     ) -> None:
         node.schema.load(type_name)
         node.keep(self)

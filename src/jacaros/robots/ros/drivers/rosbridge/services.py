@@ -15,7 +15,7 @@ from jacaros.robots.ros.errors import (
     ServiceError,
 )
 from jacaros.robots.ros.names import request_type, response_type
-from jacaros.robots.ros.parameter import Declaration, ParameterValue, checked_value
+from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value
 from jacaros.robots.ros.parameter_services import NodeParameters, ParameterEvents
 from jacaros.robots.ros.services import Handler, ServerWatch, ServiceClient, ServiceServer
 from jacaros.robots.ros.waiting import settle, within
@@ -124,7 +124,7 @@ class BridgeParameters(NodeParameters):
         super().__init__(backend.clock, node, self._make_bridge_client, events)
         self._backend = backend
 
-    def declare(self, name: str, declaration: Declaration) -> ParameterValue:
+    def declare(self, name: str, declaration: DeclaredParameter) -> ParameterValue:
         """Raise `CapabilityMissing`: over a bridge there is no node of our own with parameters."""
         raise self._missing(f"parameter {name} cannot be declared")
 

@@ -6,7 +6,13 @@ from functools import partial
 from typing import Any
 
 from jacaros.robots.ros.drivers.rosbridge.node import BridgeNode
-from jacaros.robots.ros.node import SharedSubscription, TopicMultiplexer, TopicPublisher, TopicTrouble, Wanted
+from jacaros.robots.ros.node import (
+    SharedSubscription,
+    SubscriptionOptions,
+    TopicMultiplexer,
+    TopicPublisher,
+    TopicTrouble,
+)
 from jacaros.robots.ros.protocols.rosbridge_wire import LOOK_STEADILY
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.clock import Timer
@@ -167,7 +173,7 @@ class BridgeSubscription(SharedSubscription[BridgeNode]):
     Messages are decoded when they are delivered, so messages dropped from a full queue cost nothing.
     """
 
-    def __init__(self, node: BridgeNode, wanted: Wanted) -> None:
+    def __init__(self, node: BridgeNode, wanted: SubscriptionOptions) -> None:
         super().__init__(node, wanted, node.multiplexers, BridgeMultiplexer)
         if _is_of_action(wanted.type_name):  # the result must not arrive before its feedback
             self._waiting = deque(self._waiting, WAITING)
