@@ -20,7 +20,7 @@ from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records.recording import Recording
 from jacaros.robots.mapping.file import load_mapping
-from jacaros.robots.ros.drivers.rosbridge.link import Link
+from jacaros.robots.ros.drivers.rosbridge.link import RosbridgeLink
 from jacaros.robots.ros.parameter import checked_value
 from jacaros.robots.ros.protocols.rosbridge_messages import Translator
 from jacaros.robots.ros.typestore import DefinitionSchema
@@ -381,7 +381,7 @@ _TRANSLATOR = Translator(DefinitionSchema())
 def _read_frame(_: Path, data: bytes) -> str:
     told: list[str] = []
     taken: list[dict[str, Any]] = []
-    link = Link("ws://robot.example", lambda: None, lambda: None, taken.append, told.append)
+    link = RosbridgeLink("ws://robot.example", lambda: None, lambda: None, taken.append, told.append)
     link.received(data, data[:1] not in (b"{", b"["))
     for message in taken:
         try:

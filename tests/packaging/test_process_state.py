@@ -20,7 +20,7 @@ from weakref import WeakKeyDictionary, WeakSet, WeakValueDictionary
 
 import jacaros
 from jacaros import Mas, PythonAgent
-from jacaros.agents.terms.values import Held
+from jacaros.agents.terms.values import InternedRef
 
 PACKAGES = (
     "agents",
@@ -89,7 +89,7 @@ def test_only_what_runs_now_is_a_context_variable() -> None:
 
 
 def test_only_tables_of_objects_in_use_use_weak_references() -> None:
-    kinds = (WeakKeyDictionary, WeakSet, WeakValueDictionary, Held)
+    kinds = (WeakKeyDictionary, WeakSet, WeakValueDictionary, InternedRef)
     assert others_than(WEAK, lambda value: isinstance(value, kinds)) == []
 
 

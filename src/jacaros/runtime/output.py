@@ -59,7 +59,7 @@ def _similar(error: UnicodeError) -> tuple[str | bytes, int]:
 codecs.register_error(PLAIN, _similar)
 
 
-class Stream(Protocol):
+class TextStream(Protocol):
     """The required methods of a text stream; a binary file is accepted, too."""
 
     def write(self, text: Any, /) -> Any:
@@ -87,7 +87,7 @@ class Output:
 
     def __init__(
         self,
-        stream: Stream | Callable[[], Stream | None] | None,
+        stream: TextStream | Callable[[], TextStream | None] | None,
         name: str,
         warn: Callable[[str], None] | None = None,
         patience: float = PATIENCE,
@@ -100,7 +100,7 @@ class Output:
         self.when_gone: Callable[[], object] | None = None
         # Reentrant: a signal handler may log in the middle of a write.
         self._changed = threading.Condition(threading.RLock())
-        self._stream: Stream | None = None
+        self._stream: TextStream | None = None
         self._sink: _Sink | None = None
         self._queue: deque[bytes] = deque()
         self._waiting = 0
@@ -437,7 +437,7 @@ class _Sink(NamedTuple):
         return written or 0
 
 
-def _sink_of(stream: Stream | None) -> _Sink | None:
+def _sink_of(stream: TextStream | None) -> _Sink | None:
     """Return the sink of a stream of the process; None for a stream made by other code, such as a test."""
     if type(stream) is io.FileIO:
         return _Sink(stream, "utf-8", PLAIN)

@@ -285,7 +285,7 @@ _ANY: Final = nodes.Variable("_")
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class FailureReport:
     """One reason why a test failed.
 
     Attributes:
@@ -299,14 +299,14 @@ class Problem:
     span: Span | None = None
 
     @staticmethod
-    def of(assertion: Assertion) -> "Problem":
+    def of(assertion: Assertion) -> "FailureReport":
         """Return the problem for a failed assertion."""
         details = []
         if assertion.expected:
             details.append(f"expected  {assertion.expected}")
         if assertion.actual:
             details.append(f"{'but' if assertion.expected else 'because':9} {assertion.actual}")
-        return Problem(f"{assertion.name} failed", tuple(details), assertion.span)
+        return FailureReport(f"{assertion.name} failed", tuple(details), assertion.span)
 
     def lines(self) -> list[str]:
         """Return the problem as text: place and message, source line, details."""
@@ -330,7 +330,7 @@ class Outcome:
     """
 
     test: AgentTest
-    problems: list[Problem] = field(default_factory=list)
+    problems: list[FailureReport] = field(default_factory=list)
     assertions: int = 0
     output: list[str] = field(default_factory=list)
     seconds: float = 0.0

@@ -29,7 +29,7 @@ from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import NO_WORLD
 from jacaros.runtime.mas.system import System
 from jacaros.testing.assertions import Assertion, Fakes, Probe, actions
-from jacaros.testing.suites import AgentTest, Outcome, Problem, Suite, with_assertions
+from jacaros.testing.suites import AgentTest, FailureReport, Outcome, Suite, with_assertions
 
 LINGER_SECONDS = 1.0
 LINGER_CYCLES = 10_000
@@ -72,7 +72,7 @@ def run_suite(
         try:
             yield Trial(suite, test, options).run()
         except ProjectError as wrong:
-            problem = Problem("invalid mapping file", tuple(str(wrong).splitlines()), test.span)
+            problem = FailureReport("invalid mapping file", tuple(str(wrong).splitlines()), test.span)
             yield Outcome(test, [problem])
 
 
@@ -134,8 +134,8 @@ class Trial:
         except InternalError:
             raise
         except JacarosError as wrong:
-            self._end_run(Problem("cannot start the system", tuple(str(wrong).splitlines())))
-        self._end_run(Problem("the program ended the run (.stopMAS) before the test ended"))
+            self._end_run(FailureReport("cannot start the system", tuple(str(wrong).splitlines())))
+        self._end_run(FailureReport("the program ended the run (.stopMAS) before the test ended"))
         return self._outcome
 
     async def _main(self) -> None:
@@ -151,7 +151,7 @@ class Trial:
         host = self._mas.directory.find(test.agent)
         if host is None or not isinstance(host.mind, Mind):
             message = f"the test was not started: agent {test.agent} no longer exists"
-            self._fail(Problem(message, (), test.span))
+            self._fail(FailureReport(message, (), test.span))
             return
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
@@ -177,11 +177,11 @@ class Trial:
         self._outcome.seconds = time.perf_counter() - self._began
         self._outcome.simulated = self._clock.now() - self._began_run
 
-    def _fail(self, problem: Problem) -> None:
+    def _fail(self, problem: FailureReport) -> None:
         self._outcome.problems.append(problem)
         self._finish()
 
-    def _end_run(self, problem: Problem) -> None:
+    def _end_run(self, problem: FailureReport) -> None:
         """Handle an early end of the run."""
         if self._done:
             return
@@ -265,7 +265,7 @@ class Trial:
         """Record an assertion of an agent."""
         self._outcome.assertions += 1
         if not assertion.passed:
-            self._outcome.problems.append(Problem.of(assertion))
+            self._outcome.problems.append(FailureReport.of(assertion))
 
     def _lost(self, agent: str, message: str, details: Sequence[str], span: Span | None) -> None:
         """Record the failure of an intention that no plan handled."""
@@ -275,7 +275,7 @@ class Trial:
             outcome.output.pop()
         first, _, rest = message.partition(": ")
         further = (rest, *details) if rest else tuple(details)
-        outcome.problems.append(Problem(f"agent {agent}: {first}", further, span))
+        outcome.problems.append(FailureReport(f"agent {agent}: {first}", further, span))
 
     def _printed_by(self, agent: str) -> Sequence[str]:
         prefix = f"[{agent}] "
@@ -292,19 +292,19 @@ class Trial:
             self._outcome.output.append(text)
 
 
-def _failure(test: AgentTest, reason: FailureReason | None) -> Problem:
+def _failure(test: AgentTest, reason: FailureReason | None) -> FailureReport:
     """Return why the goal of a test failed."""
     if reason is None:
-        return Problem("the goal of the test failed", (), test.span)
+        return FailureReport("the goal of the test failed", (), test.span)
     place = reason.place.span() or test.span
     message = filter(None, (reason.message(), *details(reason)))
-    return Problem(f"the goal of the test failed: {reason.error()}", tuple(message), place)
+    return FailureReport(f"the goal of the test failed: {reason.error()}", tuple(message), place)
 
 
-def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Problem:
+def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> FailureReport:
     """Return why a test does not end."""
     if not intentions:
-        return Problem(f"{message}: its intention was dropped", (), test.span)
+        return FailureReport(f"{message}: its intention was dropped", (), test.span)
     intention = intentions[-1]
     state = intention.state
     frame = intention.frames[-1]
@@ -313,8 +313,8 @@ def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> Pr
     if state == "waiting":
         reason = intention.waiting.reason
         what = f"it waits for {text(reason[1])}" if is_action(reason) else "it waits here"
-        return Problem(message, (what,), place)
-    return Problem(message, (f"it is {state}",) if state != "running" else (), place or test.span)
+        return FailureReport(message, (what,), place)
+    return FailureReport(message, (f"it is {state}",) if state != "running" else (), place or test.span)
 
 
 @contextmanager

@@ -7,7 +7,7 @@ import pytest
 
 from jacaros.look.page.live import delivery as delivering
 from jacaros.look.page.live.commands import Commands
-from jacaros.look.page.live.delivery import LONGEST, QUEUED, Delivery, LiveRecord, Past, json_text
+from jacaros.look.page.live.delivery import LONGEST, QUEUED, Backlog, Delivery, LiveRecord, json_text
 from jacaros.look.page.live.live_view import LiveView
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records.records import EventLine, Frame, WorldLine
@@ -114,7 +114,7 @@ def test_a_slow_page_does_not_restart_all_the_time(monkeypatch: pytest.MonkeyPat
 
 
 def test_records_are_bounded_and_the_state_is_kept() -> None:
-    past = Past(events=10, frames=3)
+    past = Backlog(events=10, frames=3)
     past.take(LiveRecord(0, WorldLine(world={"name": "lab"})))
     past.take(event(1, "source", file="bob.asl", text="a."))
     past.take(event(2, "belief", agent="bob", op="+", belief="kept"))

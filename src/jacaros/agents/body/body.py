@@ -40,7 +40,7 @@ from jacaros.artifacts.env.ports import ENDED, OnOutcome, UnderWay, Workspace
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.artifacts.presence.presence import (
     ANYWHERE,
-    Activity,
+    ActivityCounter,
     Direction,
     Filter,
     UnknownOperation,
@@ -259,7 +259,7 @@ Finish = Callable[[Completion], None]
 """Called once with the outcome of an action."""
 
 
-class Deadline:
+class ActionTimeout:
     """Cancels an action when its time is over.
 
     Args:
@@ -316,19 +316,19 @@ _Bound = tuple[tuple[Term, Term], ...]
 """Values for output variables of an action."""
 
 
-Action = Callable[[AgentPresence, Call, Finish], UnderWay | None]
+StartAction = Callable[[AgentPresence, Call, Finish], UnderWay | None]
 """Runs a call; returns a handle if it is still running afterwards.
 
 Raises OperationFailed if that is impossible.
 """
 
-_declared: dict[tuple[str, int], Action] = {}
-ACTIONS: Final[Mapping[tuple[str, int], Action]] = MappingProxyType(_declared)
+_declared: dict[tuple[str, int], StartAction] = {}
+ACTIONS: Final[Mapping[tuple[str, int], StartAction]] = MappingProxyType(_declared)
 """The actions by name and number of arguments."""
 
 
-def _action(name: str, *arities: int) -> Callable[[Action], Action]:
-    def register(action: Action) -> Action:
+def _action(name: str, *arities: int) -> Callable[[StartAction], StartAction]:
+    def register(action: StartAction) -> StartAction:
         _declared.update({(name, arity): action for arity in arities})
         return action
 
@@ -546,7 +546,7 @@ class AgentBody(AgentPresence):
         environment: Environment,
         writer: PerceptWriter,
         show: Callable[[str], None],
-        activity: Activity,
+        activity: ActivityCounter,
     ) -> None:
         super().__init__(agent, mind, environment, writer, keys())
         self._mind = mind
@@ -661,11 +661,11 @@ class AgentBody(AgentPresence):
             return ENDED
         return self._execute(call, artifact)
 
-    def _by_itself(self, action: Action, call: Call) -> UnderWay:
+    def _by_itself(self, action: StartAction, call: Call) -> UnderWay:
         finish = partial(self._finish, call.act.id)
         if call.direction.timeout is None:
             return action(self, call, finish) or ENDED
-        deadline = Deadline(call, self.environment.clock, finish, self.references)
+        deadline = ActionTimeout(call, self.environment.clock, finish, self.references)
         try:
             return deadline.watch(action(self, call, deadline.ended) or ENDED)
         except OperationFailed:

@@ -23,7 +23,7 @@ from jacaros.runtime.files.texts import aside
 # The focused artifacts of an agent, whose properties and signals it perceives.
 
 
-Watcher = Callable[[ArtifactId, bool], None]
+FocusWatcher = Callable[[ArtifactId, bool], None]
 """Called with an artifact that is focused (True) or no longer focused (False)."""
 
 
@@ -76,7 +76,7 @@ class FocusedArtifacts(Focused):
         self._untaken = mind.has_untaken
         self._observers: dict[str | None, FocusObserver] = {}
         self._bodies: dict[str, ArtifactId] = {}
-        self._watchers: dict[str, Watcher] = {}
+        self._watchers: dict[str, FocusWatcher] = {}
 
     def inhabit(self, workspace: Workspace, body: ArtifactId) -> None:
         """Register the artifact that stands for the agent in a workspace: focused artifacts are a property of it."""
@@ -90,7 +90,7 @@ class FocusedArtifacts(Focused):
         """Return whether an artifact stands for the agent itself."""
         return self._bodies.get(artifact.workspace) is artifact
 
-    def watch(self, workspace: Workspace, watcher: Watcher) -> Callable[[], None]:
+    def watch(self, workspace: Workspace, watcher: FocusWatcher) -> Callable[[], None]:
         """Call *watcher* with every artifact of a workspace that is focused (True) or no longer focused (False).
         Return a function that removes it."""
         self._watchers[workspace.path] = watcher

@@ -250,7 +250,7 @@ class SyntaxPanic(Exception):
 
 
 @dataclass
-class Names:
+class ProgramNames:
     """State shared by all files of one program: counters for unique names, and registered functions.
 
     Attributes:

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import Names, SyntaxPanic
+from jacaros.agents.language.cursor import ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lowering import fresh_names, lower
 from jacaros.agents.language.nodes import is_ground, rebuilt
@@ -106,7 +106,7 @@ class PatternCall:
 
 
 def _template(text: str) -> tuple[nodes.Plan, ...]:
-    parser = PlanParser(SourceFile("a goal pattern", text), Names(count(1), count(1), count(1)), [])
+    parser = PlanParser(SourceFile("a goal pattern", text), ProgramNames(count(1), count(1), count(1)), [])
     plans = []
     while parser.token.kind != "end":
         plans.append(parser.plan())
@@ -350,7 +350,7 @@ def is_library(path: str) -> bool:
 # Run the directives of a program: includes, namespaces, functions and goal patterns.
 
 
-Read = Callable[[str, str], tuple[str, str]]
+ReadSource = Callable[[str, str], tuple[str, str]]
 """``read(path, including_name) -> (name, text)``: finds an included file; raises FileNotFoundError,
 whose text says where it was searched."""
 
@@ -364,7 +364,7 @@ _MOST_INCLUDES: Final = 10_000
 class DirectiveProcessor:
     """The directives of one program with all its files."""
 
-    def __init__(self, read: Read | None, names: Names, diagnostics: list[Diagnostic]) -> None:
+    def __init__(self, read: ReadSource | None, names: ProgramNames, diagnostics: list[Diagnostic]) -> None:
         self._read = read
         self._names = names
         self._diagnostics = diagnostics

@@ -13,24 +13,24 @@ from itertools import count
 from typing import TypeVar
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import Names, SyntaxPanic
+from jacaros.agents.language.cursor import ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import TEXT, AslError, Diagnostic, SourceFile, problem
-from jacaros.agents.language.directives import DirectiveProcessor, Read
+from jacaros.agents.language.directives import DirectiveProcessor, ReadSource
 from jacaros.agents.language.nodes import Declaration, shape
 from jacaros.agents.language.plan_parser import PlanParser
 from jacaros.agents.language.term_parser import Namespaces
 from jacaros.agents.terms.functions import FunctionNames
 
-Result = TypeVar("Result")
+T = TypeVar("T")
 
-_run_time_names = Names(count(1_000_000), count(1_000_000), count(1_000_000))
+_run_time_names = ProgramNames(count(1_000_000), count(1_000_000), count(1_000_000))
 """Counters for terms parsed at run time, distinct from those of programs."""
 
 
 def load_program(
     name: str,
     text: str,
-    read: Read | None = None,
+    read: ReadSource | None = None,
     functions: Mapping[str, tuple[int, int | None]] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
@@ -54,7 +54,7 @@ def load_program(
 
 def read_program(
     file: SourceFile,
-    read: Read | None = None,
+    read: ReadSource | None = None,
     functions: Mapping[str, tuple[int, int | None]] | None = None,
     actions: Mapping[str, Declaration] | None = None,
 ) -> tuple[nodes.Program, list[Diagnostic]]:
@@ -62,7 +62,9 @@ def read_program(
     diagnostics: list[Diagnostic] = []
     # Keep the caller's mapping even if it is empty: it may fill up as names are looked up.
     known = {} if functions is None else functions
-    names = Names(count(1), count(1), count(1), known=known, actions={} if actions is None else actions)
+    names = ProgramNames(
+        count(1), count(1), count(1), known=known, actions={} if actions is None else actions
+    )
     section = DirectiveProcessor(read, names, diagnostics).read_file(file)
     _check_labels(section.plans, diagnostics)
     return section.program(), _ordered(diagnostics)
@@ -171,14 +173,14 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
 
 def _parse(
     text: str,
-    read: Callable[[PlanParser], Result],
+    read: Callable[[PlanParser], T],
     name: str = TEXT,
     functions: Mapping[str, int] | None = None,
-) -> Result:
+) -> T:
     """Parse the whole of *text* with *read*."""
     diagnostics: list[Diagnostic] = []
     parser = PlanParser(SourceFile(name, text), _names_with(functions), diagnostics)
-    result: Result | None = None
+    result: T | None = None
     try:
         result = read(parser)
         parser.accept(".")
@@ -195,7 +197,7 @@ def _parse(
 
 def _names_with(
     functions: Mapping[str, int] | None, actions: Mapping[str, Declaration] | None = None
-) -> Names:
+) -> ProgramNames:
     known = functions.known if isinstance(functions, FunctionNames) else {}
     return replace(_run_time_names, functions=dict(functions or {}), known=known, actions=actions or {})
 

@@ -43,7 +43,7 @@ Lookup = Callable[[str], Term]
 """Return the value of the variable of that name."""
 
 
-class Names(dict[str, Term]):
+class VariableNames(dict[str, Term]):
     """Variables by name, created on first use."""
 
     def __missing__(self, name: str) -> Var:
@@ -53,7 +53,7 @@ class Names(dict[str, Term]):
 
 def fresh_names() -> Lookup:
     """Return a lookup that creates a new variable for every name."""
-    return Names().__getitem__
+    return VariableNames().__getitem__
 
 
 def lower(node: nodes.Node, lookup: Lookup) -> Term:

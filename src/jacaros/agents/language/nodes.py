@@ -533,10 +533,10 @@ def parts_of(formula: Term) -> Iterator[Term]:
             yield term
 
 
-Kind = TypeVar("Kind", bound=Node)
+N = TypeVar("N", bound=Node)
 
 
-def nodes_in(kind: type[Kind], node: object) -> Iterator[Kind]:
+def nodes_in(kind: type[N], node: object) -> Iterator[N]:
     """Yield all nodes of a kind in a piece of syntax, in order."""
     return (part for part in walk(node) if isinstance(part, kind))
 
@@ -579,6 +579,6 @@ class ByKind:
         for node in walk(*roots):
             self._nodes[type(node)].append(node)
 
-    def of(self, *kinds: type[Kind]) -> list[Kind]:
+    def of(self, *kinds: type[N]) -> list[N]:
         """Return the nodes of these kinds, in order for each kind."""
         return [node for kind in kinds for node in self._nodes[kind]]

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import CLOSERS, Names, SyntaxPanic
+from jacaros.agents.language.cursor import CLOSERS, ProgramNames, SyntaxPanic
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lexer import Token
 from jacaros.agents.language.nodes import UNDECLARED, parts_of
@@ -50,7 +50,7 @@ class ProgramParser(PlanParser):
     def __init__(
         self,
         file: SourceFile,
-        names: Names,
+        names: ProgramNames,
         diagnostics: list[Diagnostic],
         directives: Directives,
         namespaces: Namespaces | None = None,
@@ -302,7 +302,7 @@ def _check_context(parser: ProgramParser, formula: nodes.Term | None) -> None:
             parser.report("action-in-context", message, part.span, "move it into the body")
 
 
-def _acts(name: str, names: Names) -> bool:
+def _acts(name: str, names: ProgramNames) -> bool:
     """Return whether an internal action of the language acts or waits. Those of projects only cause a warning."""
     if name in CONTROL:
         return True

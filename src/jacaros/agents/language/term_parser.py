@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import Cursor, Names
+from jacaros.agents.language.cursor import Cursor, ProgramNames
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.agents.language.lexer import Token, tokenize
 from jacaros.agents.terms.functions import ARITIES
@@ -78,7 +78,7 @@ class TermParser(Cursor, ABC):
     arguments or operands of relations stay in the default namespace.
     """
 
-    def __init__(self, file: SourceFile, names: Names, diagnostics: list[Diagnostic]) -> None:
+    def __init__(self, file: SourceFile, names: ProgramNames, diagnostics: list[Diagnostic]) -> None:
         super().__init__(file, tokenize(file, diagnostics.append), diagnostics)
         self.names = names
         self.namespaces = Namespaces()

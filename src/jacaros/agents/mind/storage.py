@@ -1,7 +1,7 @@
 """A mind as a value: written as a pickle that makes only what a mind holds, and read back.
 
 A pickle can call any function of Python. Here it can name a few makers of immutable values (`_MAKERS`) and nothing else.
-Everything with a state of its own is made empty by `Reader` and filled afterwards, so nothing is nested deeply. Plans,
+Everything with a state of its own is made empty by `MindReader` and filled afterwards, so nothing is nested deeply. Plans,
 rules and beliefs of the program are written as their places in it, with a digest of their text; a step as its plan and its
 position there; plans added at run time as their syntax.
 """
@@ -66,7 +66,7 @@ from jacaros.runtime.trace import Cause
 Value = Any
 """Any object in a mind."""
 Form = tuple[Any, ...]
-"""How `Reader` makes an object: the name of one of its functions, and the arguments."""
+"""How `MindReader` makes an object: the name of one of its functions, and the arguments."""
 _WHOLE = (
     Annotated,
     MapValue,
@@ -238,7 +238,7 @@ def _attributes(value: Value) -> Iterator[tuple[str, Value]]:
     yield from getattr(value, "__dict__", {}).items()
 
 
-class Reader(pickle.Unpickler):
+class MindReader(pickle.Unpickler):
     """Reads what a `Writer` has written for a mind.
 
     Args:
@@ -422,7 +422,7 @@ def restore(mind: Mind, data: dict[str, Any], *, same_host: bool = False) -> Non
     mind.engine.begin(mind)
     pickled = b64decode(data["mind"])
     _refuse_changes(pickled)
-    held = Reader(mind, pickled).read()
+    held = MindReader(mind, pickled).read()
     _learn(mind, held)
     arrived = mind.incoming.percepts
     for name in _FIELDS:
@@ -512,7 +512,7 @@ def copy_mind(original: Mind, clone: Mind) -> None:
     ]
     part["intentions"] = [each for each in original.intentions if _can_be_copied(original, each)]
     writer = Writer(original, shared=True)
-    held = Reader(clone, writer.write(part), writer.objects).read()
+    held = MindReader(clone, writer.write(part), writer.objects).read()
     _learn(clone, held)
     clone.events.extend(held["events"])
     clone.intentions.extend(held["intentions"])

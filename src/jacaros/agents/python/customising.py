@@ -94,7 +94,7 @@ def _is_own(value: object, module: ModuleType) -> bool:
     return isinstance(value, type) and issubclass(value, Agent) and value.__module__ == module.__name__
 
 
-Result = TypeVar("Result")
+T = TypeVar("T")
 
 
 class CustomMind(Mind):
@@ -160,10 +160,10 @@ def begin_as(mind: Mind, face: Agent) -> None:
 def ask(
     owner: Mind,
     method: Callable[..., object],
-    check: Callable[[object], Result],
-    default: Result,
+    check: Callable[[object], T],
+    default: T,
     *arguments: object,
-) -> Result:
+) -> T:
     """Call a method of the project's class; use the default if it raises or returns an invalid value."""
     try:
         return check(method(*arguments))

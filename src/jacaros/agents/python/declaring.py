@@ -355,7 +355,7 @@ def _place_of_fault(function: Callable[..., object], error: BaseException) -> st
     return f"{place}:{line}"
 
 
-Function = TypeVar("Function", bound=Callable[..., object])
+F = TypeVar("F", bound=Callable[..., object])
 
 _MARK = "__jacaros_declared__"
 
@@ -381,14 +381,14 @@ ACTION, FUNCTION = "internal action", "arithmetic function"
 
 
 @overload
-def internal_action(name: Function, /) -> Function: ...
+def internal_action(name: F, /) -> F: ...
 
 
 @overload
-def internal_action(name: str | None = None, /, *, pure: bool = False) -> Callable[[Function], Function]: ...
+def internal_action(name: str | None = None, /, *, pure: bool = False) -> Callable[[F], F]: ...
 
 
-def internal_action(name: str | Function | None = None, /, *, pure: bool = False) -> object:
+def internal_action(name: str | F | None = None, /, *, pure: bool = False) -> object:
     """Make a function an internal action of the project's agents.
 
     The first part of the name must lead to the module: for ``my.norm(X, Y, L)`` agents look for ``my.py``, or a package
@@ -419,14 +419,14 @@ def internal_action(name: str | Function | None = None, /, *, pure: bool = False
 
 
 @overload
-def arithmetic_function(name: Function, /) -> Function: ...
+def arithmetic_function(name: F, /) -> F: ...
 
 
 @overload
-def arithmetic_function(name: str | None = None, /) -> Callable[[Function], Function]: ...
+def arithmetic_function(name: str | None = None, /) -> Callable[[F], F]: ...
 
 
-def arithmetic_function(name: str | Function | None = None, /) -> object:
+def arithmetic_function(name: str | F | None = None, /) -> object:
     """Make a function an arithmetic function of the project's programs: ``X = my.sq(3) + 1``.
 
     It is called with Python values once all arguments are known, and returns a number. An exception fails the step with
@@ -443,9 +443,7 @@ def arithmetic_function(name: str | Function | None = None, /) -> object:
     return _declare(FUNCTION, name)
 
 
-def _declare(
-    kind: str, name: str | Function | None, pure: bool = False
-) -> Function | Callable[[Function], Function]:
+def _declare(kind: str, name: str | F | None, pure: bool = False) -> F | Callable[[F], F]:
     if callable(name):
         return _mark(name, Declared(kind, name, None))
     if name is not None and (not isinstance(name, str) or "." not in name[1:] or name.startswith(".")):
@@ -453,7 +451,7 @@ def _declare(
     return lambda function: _mark(function, Declared(kind, function, name, pure))
 
 
-def _mark(function: Function, declared: Declared) -> Function:
+def _mark(function: F, declared: Declared) -> F:
     setattr(function, _MARK, (*declarations(function), declared))
     return function
 
@@ -464,7 +462,7 @@ def declarations(function: object) -> tuple[Declared, ...]:
     return found
 
 
-Limits = tuple[int, int | None]
+ArityRange = tuple[int, int | None]
 
 
 class Additions:
@@ -481,7 +479,7 @@ class Additions:
     def __init__(self) -> None:
         self.actions: dict[str, InternalAction] = {}
         self.functions: dict[str, Callable[..., Term]] = {}
-        self.arities: dict[str, Limits] = {}
+        self.arities: dict[str, ArityRange] = {}
         self.plain: set[str] = set()
         self.unseen: dict[str, Path] = {}
         self._places: dict[str, str] = {}

@@ -17,7 +17,7 @@ from jacaros.runtime.clock import Clock
 from jacaros.runtime.errors import JacarosError
 
 T = TypeVar("T")
-Given = ParamSpec("Given")
+P = ParamSpec("P")
 
 
 class Mail(Protocol):
@@ -65,13 +65,11 @@ class Host(Architecture, Protocol):
         """Let other agents run."""
 
 
-def _of(
-    part: str, method: Callable[Concatenate[Any, Given], T]
-) -> Callable[Concatenate["PythonAgent", Given], T]:
+def _of(part: str, method: Callable[Concatenate[Any, P], T]) -> Callable[Concatenate["PythonAgent", P], T]:
     """Return a method that forwards to the one of the agent's session or host."""
 
     @wraps(method)
-    def call(agent: "PythonAgent", /, *arguments: Given.args, **options: Given.kwargs) -> T:
+    def call(agent: "PythonAgent", /, *arguments: P.args, **options: P.kwargs) -> T:
         result: T = getattr(getattr(agent, part), method.__name__)(*arguments, **options)
         return result
 

@@ -43,6 +43,7 @@ from weakref import ref
 
 Term = Any
 """Any value of the table above."""
+Annotations = tuple[Term, ...]
 
 NUMBERS: frozenset[Any] = frozenset({float, int})
 """Classes of numbers. One of each is never equal to one of the other."""
@@ -106,20 +107,20 @@ class Functor:
         return functor, (self.name, self.arity, self.negated, self.namespace, self.kind)
 
 
-Named = TypeVar("Named")
+T = TypeVar("T")
 _Key = tuple[str, int, bool, str | None, int]
 
 
-class Held(ref[Any]):
+class InternedRef(ref[Any]):
     """A weak reference to an object that is in a table of names once: the table forgets one that is no longer used."""
 
     __slots__ = ("key", "table")
 
     key: Any
-    table: "dict[Any, Held]"
+    table: "dict[Any, InternedRef]"
 
 
-_functors: dict[_Key, Held] = {}
+_functors: dict[_Key, InternedRef] = {}
 
 
 def functor(
@@ -132,18 +133,20 @@ def functor(
     return enter(_functors, key, Functor(*key)) if found is None else found
 
 
-def enter(table: dict[Any, Held], key: Any, made: Named) -> Named:
+def enter(table: dict[Any, InternedRef], key: Any, made: T) -> T:
     """Put a new object into a table of names; return the object with the key, as another thread may have been faster."""
-    new = Held(made, _release)
+    new = InternedRef(made, _release)
     new.key, new.table = key, table
     while True:
-        found: Named | None = table.setdefault(key, new)()
+        found: T | None = table.setdefault(key, new)()
         if found is not None:
             return found
         _remove_dead_weakref(table, key)
 
 
-def _release(held: Held, remove: Callable[[dict[Any, Held], Any], None] = _remove_dead_weakref) -> None:
+def _release(
+    held: InternedRef, remove: Callable[[dict[Any, InternedRef], Any], None] = _remove_dead_weakref
+) -> None:
     """Remove an object that is gone, unless there is another one of its name by now.
 
     The default outlives the module when the interpreter ends.

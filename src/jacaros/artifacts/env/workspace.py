@@ -435,7 +435,7 @@ def _beginnings(path: str) -> list[str]:
     return ["/".join(parts[:length]) for length in range(2, len(parts) + 1)]
 
 
-Watcher = Callable[[ArtifactId, bool], None]
+ArtifactWatcher = Callable[[ArtifactId, bool], None]
 """Called with an artifact that is added (True) or removed (False)."""
 
 
@@ -457,9 +457,9 @@ class Workspace(ports.Workspace):
         self._personal: dict[str, ArtifactId] = {}
         self._making: dict[str, Steps] = {}
         self._indexes: dict[tuple[str, int], OperationIndex] = {}
-        self._watchers: dict[object, Watcher] = {}
-        self._watchers_of_all: dict[object, Watcher] = {}
-        self._telling: tuple[Iterator[Watcher], ArtifactId, bool] | None = None
+        self._watchers: dict[object, ArtifactWatcher] = {}
+        self._watchers_of_all: dict[object, ArtifactWatcher] = {}
+        self._telling: tuple[Iterator[ArtifactWatcher], ArtifactId, bool] | None = None
 
     # ---- artifacts come and go
 
@@ -616,7 +616,7 @@ class Workspace(ports.Workspace):
             raise UnknownArtifact(message, Structure("artifact_not_available", (str.__str__(name),)))
         return found
 
-    def watch(self, watcher: Watcher, personal: bool = False) -> Callable[[], None]:
+    def watch(self, watcher: ArtifactWatcher, personal: bool = False) -> Callable[[], None]:
         """Call *watcher* with every artifact that is added (True) or removed (False). Return a function that ends this.
 
         Args:
@@ -794,7 +794,7 @@ class Workspace(ports.Workspace):
             self._setting.listener.artifact(artifact_id, present)
         self._tell((*self._watchers.values(), *self._watchers_of_all.values()), artifact_id, present)
 
-    def _tell(self, watchers: tuple[Watcher, ...], artifact_id: ArtifactId, present: bool) -> None:
+    def _tell(self, watchers: tuple[ArtifactWatcher, ...], artifact_id: ArtifactId, present: bool) -> None:
         # A watcher may dispose the new artifact: notify the others of its creation first.
         self._tell_rest()
         self._telling = iter(watchers), artifact_id, present

@@ -658,7 +658,7 @@ identifies it, and the reason of a failure as text.
 """
 
 
-class Activity(Protocol):
+class ActivityCounter(Protocol):
     """Counts what runs, so that a run can detect idleness."""
 
     def begin(self) -> None:

@@ -8,7 +8,7 @@ from typing import Final
 
 from jacaros.look.metrics.counting import MEASURES, Counts, Group, ProgramMetrics
 
-Cell = str | int
+TableCell = str | int
 
 _TOTAL: Final = "total"
 _CODE: Final = (Group.AGENTS, Group.ARTIFACTS)
@@ -30,9 +30,9 @@ class Table:
 
     title: str
     header: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    rows: tuple[tuple[TableCell, ...], ...]
 
-    def with_column(self, name: str, cells: Sequence[Cell]) -> "Table":
+    def with_column(self, name: str, cells: Sequence[TableCell]) -> "Table":
         """Return the table with another column at the right.
 
         Raises:

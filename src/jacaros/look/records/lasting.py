@@ -5,7 +5,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from jacaros.look.records.records import Data
 
-Item = TypeVar("Item")
+T = TypeVar("T")
 
 
 class _Rule(NamedTuple):
@@ -55,13 +55,13 @@ _RULES: dict[str, _Rule] = {
 _OF_AGENT = tuple(kind for kind, rule in _RULES.items() if rule.about[:1] == ("agent",))
 
 
-class Lasting(Generic[Item]):
+class Lasting(Generic[T]):
     """The last record about each subject, of those that it was given in their order."""
 
     def __init__(self) -> None:
-        self._kept: dict[tuple[Any, ...], list[Item]] = {}
+        self._kept: dict[tuple[Any, ...], list[T]] = {}
 
-    def take(self, kind: str, data: Data, item: Item) -> None:
+    def take(self, kind: str, data: Data, item: T) -> None:
         """Take a record, which stands for itself as *item*."""
         rule = _RULES.get(kind)
         if rule is None:
@@ -74,6 +74,6 @@ class Lasting(Generic[Item]):
             for each in [each for each in self._kept if each[1:2] == key[1:2] and each[0] in _OF_AGENT]:
                 del self._kept[each]
 
-    def __iter__(self) -> Iterator[Item]:
+    def __iter__(self) -> Iterator[T]:
         """Iterate over the records, those about one subject together."""
         return (item for items in self._kept.values() for item in items)

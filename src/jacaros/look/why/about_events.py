@@ -7,8 +7,8 @@ from pathlib import PurePath
 from jacaros.look.records import records
 from jacaros.look.why.chains import chain, is_written, place_of, plan_name, plan_text, shown, source_line
 from jacaros.look.why.explanation import Explanation, Fact, seconds
-from jacaros.look.why.past import Past, Timed, of_agent
-from jacaros.look.why.patterns import Pattern, Question, name_of, unsigned
+from jacaros.look.why.past import Past, TimedRecords, of_agent
+from jacaros.look.why.patterns import Question, QuestionPattern, name_of, unsigned
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import suggestion
 
@@ -21,7 +21,7 @@ CHOSEN, REFUSED, UNTRIED = "chosen", "did not apply", "not tried"
 
 def explain_event(past: Past, asked: Question) -> Explanation:
     """Explain the last event that matches the subject, such as ``+alarm(_)`` or ``!go(dock)``."""
-    pattern = Pattern(asked.about)
+    pattern = QuestionPattern(asked.about)
     found = [each for each in of_agent(past.deliberations, asked.agent) if pattern.fits(each[1].trigger)]
     if not found:
         return _never(past, asked, pattern)
@@ -69,7 +69,7 @@ def _is_for(trigger: str, event: str) -> bool:
     if name_of(trigger) != name_of(event):
         return False
     try:
-        return Pattern(trigger).fits(event)
+        return QuestionPattern(trigger).fits(event)
     except UsageError:
         return False
 
@@ -115,7 +115,7 @@ def goal_text(t: float, goal: records.GoalRecord) -> str:
     return f"{goal.goal} {goal.state} at {seconds(t)}{f': {goal.why}' if goal.why else ''}"
 
 
-def _never(past: Past, asked: Question, pattern: Pattern) -> Explanation:
+def _never(past: Past, asked: Question, pattern: QuestionPattern) -> Explanation:
     agent = asked.agent
     if not pattern.kind:
         changes = (
@@ -139,7 +139,7 @@ def _rule(past: Past, name: str) -> str | None:
     return next((rule for rules in past.rules.values() for rule in rules if name_of(rule) == name), None)
 
 
-def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
+def _hints(past: Past, pattern: QuestionPattern, agent: str) -> Iterator[Fact]:
     """Suggest what an event that never happened may mean, and which plans would handle it."""
     if not pattern.kind and _rule(past, pattern.name) is not None:
         yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; rules cause no events")
@@ -153,7 +153,7 @@ def _hints(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
         yield Fact("note", f"events with this name: {', '.join(f'`{each}`' for each in seen[:MOST])}")
 
 
-def _near_plans(past: Past, pattern: Pattern, agent: str) -> Iterator[Fact]:
+def _near_plans(past: Past, pattern: QuestionPattern, agent: str) -> Iterator[Fact]:
     """Return the plans with the name of an event that do not handle it."""
     for name, plan in past.plans(agent):
         if name_of(plan.trigger) == pattern.name:
@@ -279,7 +279,7 @@ def _has_trigger(plan: records.PlanRecord, about: str) -> bool:
 
 def explain_belief(past: Past, asked: Question) -> Explanation:
     """Explain the last change of a belief, such as ``battery(_)``."""
-    pattern, agent = Pattern(asked.about), asked.agent
+    pattern, agent = QuestionPattern(asked.about), asked.agent
     changes = [each for each in of_agent(past.beliefs, agent) if pattern.fits_literal(each[1].belief)]
     if not changes:
         verb = f"{agent} never believed" if agent else "no agent ever believed"
@@ -304,7 +304,7 @@ def _changing_step(past: Past, t: float, change: records.BeliefRecord) -> Iterat
         yield Fact("note", "it is an initial belief, or was added from outside of the plans")
 
 
-def _before(changes: Timed[records.BeliefRecord]) -> Iterator[Fact]:
+def _before(changes: TimedRecords[records.BeliefRecord]) -> Iterator[Fact]:
     for t, data in reversed(changes[:-1][-MOST_CHANGES:]):
         yield Fact("belief", f"before: {data.op}{shown(data.belief)} at {seconds(t)}", t, data.agent)
     left = len(changes) - 1 - MOST_CHANGES
@@ -312,7 +312,7 @@ def _before(changes: Timed[records.BeliefRecord]) -> Iterator[Fact]:
         yield Fact("note", f"{left} more changes before")
 
 
-def _meant(past: Past, pattern: Pattern) -> Iterator[Fact]:
+def _meant(past: Past, pattern: QuestionPattern) -> Iterator[Fact]:
     rule = _rule(past, pattern.name)
     if rule is not None:
         yield Fact("note", f"it is the conclusion of a rule: {rule}")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from jacaros.look.records import records
 from jacaros.look.why.chains import chain, place_of, plan_name, shown
 from jacaros.look.why.explanation import Explanation, Fact, seconds
-from jacaros.look.why.past import Link, Past, Timed
+from jacaros.look.why.past import ChainLink, Past, TimedRecords
 from jacaros.look.why.patterns import Question, literal_at
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
@@ -101,23 +101,23 @@ def explain_operation(past: Past, asked: Question) -> Explanation:
     return Explanation(asked.written, answer, None, known)
 
 
-def _commands(past: Past, robot: str) -> list[Link]:
+def _commands(past: Past, robot: str) -> list[ChainLink]:
     found = [
         each for each in past.links.values() if each.cause.sort == "command" and _is_of(past, each, robot)
     ]
     return sorted(found, key=lambda each: (each.t, each.cause.id))
 
 
-def _is_of(past: Past, link: Link, robot: str) -> bool:
+def _is_of(past: Past, link: ChainLink, robot: str) -> bool:
     """Return whether a command is for a robot, by its topic or by the artifact that drives the robot."""
     if not robot or robot in re.split(r"\W+", link.cause.topic or link.cause.what):
         return True
     return any(past.robots_of.get(each.cause.artifact or "") == robot for each in past.chain(link.cause.id))
 
 
-def _stop_of(commands: list[Link]) -> Link | None:
+def _stop_of(commands: list[ChainLink]) -> ChainLink | None:
     """Return the first stop command after the last motion command; None if the last command is a motion."""
-    stop: Link | None = None
+    stop: ChainLink | None = None
     for each in reversed(commands):
         what = each.cause.what.removeprefix(each.cause.topic or "")
         # All of its numbers are zero; one without numbers may stop it, too.
@@ -165,7 +165,7 @@ def _goals_interrupted(past: Past, t: float, link: int, agent: str, only_own: bo
     """
     acts = (each.cause for each in past.chain(link) if each.cause.sort == "act")
     own = {(each.agent, each.intention) for each in acts}
-    ended: dict[object, Timed[records.GoalRecord]] = {}
+    ended: dict[object, TimedRecords[records.GoalRecord]] = {}
     for at, data in past.goals:
         intention = data.agent, data.intention
         over = data.state in ("dropped", "suspended", "failed") and agent in ("", data.agent)
@@ -174,7 +174,7 @@ def _goals_interrupted(past: Past, t: float, link: int, agent: str, only_own: bo
     return [_interrupted(goals) for goals in ended.values()]
 
 
-def _interrupted(goals: Timed[records.GoalRecord]) -> Fact:
+def _interrupted(goals: TimedRecords[records.GoalRecord]) -> Fact:
     at, data = goals[0]
     count = len(goals) - 1
     more = f" with {count} goal{'s' if count > 1 else ''} above it" if count else ""
@@ -182,7 +182,7 @@ def _interrupted(goals: Timed[records.GoalRecord]) -> Fact:
     return Fact("goal", f"{shown(data.goal)}{more} {data.state} at {seconds(at)}{why}", at, data.agent)
 
 
-def _events_before(past: Past, t: float, link: int, agent: str) -> Timed[records.DeliberationRecord]:
+def _events_before(past: Past, t: float, link: int, agent: str) -> TimedRecords[records.DeliberationRecord]:
     """Return the belief events that agents handled just before a stop; those of the same message, if there are any."""
     events = [
         (at, data)

@@ -7,7 +7,7 @@ from jacaros.look.records import records
 from jacaros.look.why.about_events import goal_text
 from jacaros.look.why.chains import chain, place_of, shown, source_line
 from jacaros.look.why.explanation import Explanation, Fact, seconds
-from jacaros.look.why.past import Past, Timed, of_agent
+from jacaros.look.why.past import Past, TimedRecords, of_agent
 from jacaros.look.why.patterns import Question
 
 MOST_GOALS = 5
@@ -29,11 +29,11 @@ def explain_waiting(past: Past, asked: Question) -> Explanation:
     return Explanation(question, answer, past.end, facts)
 
 
-def _open(past: Past, agent: str) -> Timed[records.IntentionRecord]:
+def _open(past: Past, agent: str) -> TimedRecords[records.IntentionRecord]:
     return of_agent([*past.intentions.values()], agent)
 
 
-def _intentions(past: Past, found: Timed[records.IntentionRecord]) -> Iterator[Fact]:
+def _intentions(past: Past, found: TimedRecords[records.IntentionRecord]) -> Iterator[Fact]:
     for t, data in found:
         stack = data.stack or ()
         top = stack[-1] if stack else None
@@ -77,7 +77,7 @@ def explain_idleness(past: Past, asked: Question) -> Explanation:
 def _why_idle(
     past: Past,
     agent: str,
-    found: Timed[records.IntentionRecord],
+    found: TimedRecords[records.IntentionRecord],
     last: tuple[float, records.DeliberationRecord] | None,
 ) -> str:
     now = seconds(past.end)

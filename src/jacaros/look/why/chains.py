@@ -6,7 +6,7 @@ from typing import Any
 from jacaros.look.records import records
 from jacaros.look.records.words import named
 from jacaros.look.why.explanation import Fact
-from jacaros.look.why.past import Link, Past
+from jacaros.look.why.past import ChainLink, Past
 
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 
@@ -54,7 +54,7 @@ def _loop(places: list[Any]) -> tuple[int, int]:
     return 1, 1
 
 
-def _fact(past: Past, link: Link) -> Fact:
+def _fact(past: Past, link: ChainLink) -> Fact:
     """Return a link as a line of an answer."""
     t, cause, record = link
     agent = cause.agent or ""

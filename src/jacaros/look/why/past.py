@@ -10,12 +10,12 @@ from jacaros.look.records import records
 from jacaros.look.records.records import Record, decoded
 from jacaros.robots.world.data.ground_truth import FIELDS
 
-Found = TypeVar("Found", bound=Any)
-Timed = list[tuple[float, Found]]
+T = TypeVar("T", bound=Any)
+TimedRecords = list[tuple[float, T]]
 """Records with their times, the oldest first."""
 
 
-class Link(NamedTuple):
+class ChainLink(NamedTuple):
     """A link of a causal chain: its time, its record of a cause, and for an event or a message its own record."""
 
     t: float
@@ -75,10 +75,10 @@ class Past:
     """
 
     end: float = 0.0
-    links: dict[Any, Link] = field(default_factory=dict)
-    deliberations: Timed[records.DeliberationRecord] = field(default_factory=list)
-    beliefs: Timed[records.BeliefRecord] = field(default_factory=list)
-    goals: Timed[records.GoalRecord] = field(default_factory=list)
+    links: dict[Any, ChainLink] = field(default_factory=dict)
+    deliberations: TimedRecords[records.DeliberationRecord] = field(default_factory=list)
+    beliefs: TimedRecords[records.BeliefRecord] = field(default_factory=list)
+    goals: TimedRecords[records.GoalRecord] = field(default_factory=list)
     programs: dict[str, dict[Any, records.PlanRecord]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
     intentions: dict[tuple[str, Any], tuple[float, records.IntentionRecord]] = field(default_factory=dict)
@@ -115,18 +115,20 @@ class Past:
                 known = self.links.get(data.id)
                 at = t if data.at is None else data.at
                 # The record of a deliberation or an operation has more details than its link.
-                self.links[data.id] = Link(at, data) if known is None else known._replace(t=at)
+                self.links[data.id] = ChainLink(at, data) if known is None else known._replace(t=at)
             case records.DeliberationRecord():
                 self.deliberations.append((t, data))
                 cause = records.CauseRecord(
                     data.id, "event", data.trigger, data.parent or 0, agent=data.agent
                 )
-                self.links[data.id] = Link(self.links[data.id].t if data.id in self.links else t, cause, data)
+                self.links[data.id] = ChainLink(
+                    self.links[data.id].t if data.id in self.links else t, cause, data
+                )
             case records.OperationRecord():
                 self._take_operation(t, data)
             case records.MessageRecord(id=int(number)) if number not in self.links:
                 cause = records.CauseRecord(number, "message", data.content, data.cause or 0)
-                self.links[number] = Link(t, cause, data)
+                self.links[number] = ChainLink(t, cause, data)
             case _:
                 self._take_state(t, data)
 
@@ -174,7 +176,7 @@ class Past:
                 agent=data.agent,
                 artifact=data.artifact,
             )
-            self.links[data.id] = Link(t, cause)
+            self.links[data.id] = ChainLink(t, cause)
 
     def plan(self, agent: str | None, plan: Any) -> records.PlanRecord | None:
         """Return a plan of an agent; None if it is unknown."""
@@ -187,7 +189,7 @@ class Past:
                 for each in plans.values():
                     yield name, each
 
-    def chain(self, number: Any) -> Iterator[Link]:
+    def chain(self, number: Any) -> Iterator[ChainLink]:
         """Iterate over the links from one back to the beginning of its chain."""
         seen = set()
         while number in self.links and number not in seen:
@@ -196,7 +198,7 @@ class Past:
             number = self.links[number].cause.parent
 
 
-def of_agent(timed: Timed[Found], agent: str) -> Timed[Found]:
+def of_agent(timed: TimedRecords[T], agent: str) -> TimedRecords[T]:
     """Return the records of one agent; all if *agent* is empty."""
     return [each for each in timed if agent in ("", each[1].agent)]
 

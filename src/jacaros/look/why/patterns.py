@@ -35,7 +35,7 @@ class Question:
     robot: str = ""
 
 
-class Pattern:
+class QuestionPattern:
     """An event, goal or belief in a question.
 
     Attributes:

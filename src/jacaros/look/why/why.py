@@ -34,7 +34,7 @@ from jacaros.look.why.about_waiting import explain_idleness, explain_waiting
 from jacaros.look.why.chains import is_written
 from jacaros.look.why.explanation import Explanation
 from jacaros.look.why.past import Past
-from jacaros.look.why.patterns import Pattern, Question, literal_at, name_of
+from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
 
@@ -180,7 +180,7 @@ def _named(past: Past, asked: Question) -> Question:
     Raises:
         UsageError: it is unknown.
     """
-    pattern, name = Pattern(asked.about), asked.about
+    pattern, name = QuestionPattern(asked.about), asked.about
     if any(pattern.fits_literal(data.belief) for _, data in past.beliefs):
         return replace(asked, kind="belief")
     if any(name_of(data.goal) == name for _, data in past.goals):
@@ -212,7 +212,7 @@ def read_question(written: str, known: Iterable[str] = ()) -> Question:
     if found is not None:
         of_plan = "plan" in asked[: found.start()].split()
         event = found[0] + literal_at(asked, found.end())
-        Pattern(event)  # raises if it is not a literal
+        QuestionPattern(event)  # raises if it is not a literal
         return Question(written, "plan" if of_plan else "event", event)
     words = asked.split()
     if words[:1] == ["plan"] and len(words) > 1:
@@ -282,7 +282,7 @@ class Announcer:
         self, so_far: Callable[[], Sequence[Record]], events: Sequence[str], tell: Callable[[str], None]
     ) -> None:
         self._so_far, self._tell = so_far, tell
-        self._wanted = {event: Pattern(event) for event in events}
+        self._wanted = {event: QuestionPattern(event) for event in events}
         self._unmet = dict.fromkeys(events)
 
     def hear(self, t: float, event: str, data: Mapping[str, Any]) -> None:

@@ -29,7 +29,7 @@ from jacaros.robots.artifacts.odometry import (
     Drift,
     Odometer,
     Odometry,
-    Placed,
+    PlaceOdometry,
     driving_frame,
     pose_values,
 )
@@ -458,7 +458,7 @@ class WheeledArtifact(RosArtifact):
         self._drove = False
         self.motions.watch(self, self._stand, self._halt)
 
-    def _placed(self) -> Placed | None:
+    def _placed(self) -> PlaceOdometry | None:
         """Return the conversion of odometry to the frame of the option; None without it."""
         if "frame" not in self.options:
             return None

@@ -71,7 +71,7 @@ def not_finite(sample: Sample) -> tuple[str, float] | None:
     return next(((name, number) for name, number in fields if not math.isfinite(number)), None)
 
 
-Placed = Callable[[Odometry], Odometry | None]
+PlaceOdometry = Callable[[Odometry], Odometry | None]
 """Converts odometry to another frame; returns None while the transform is unknown."""
 
 
@@ -102,7 +102,7 @@ class Odometer:
         topic: str,
         on_reading: Callable[[Odometry], None],
         frame: str = "",
-        placed: Placed | None = None,
+        placed: PlaceOdometry | None = None,
     ) -> None:
         self.newest: Odometry | None = None
         self.count = 0
@@ -207,7 +207,7 @@ OLDEST_TRANSFORM = 2.0
 """Seconds by which a transform may be older than odometry; localisation publishes one with every scan."""
 
 
-def driving_frame(ros: Backend, name: str) -> Placed:
+def driving_frame(ros: Backend, name: str) -> PlaceOdometry:
     """Return the conversion of odometry to another frame (REP 105), by the newest transform; None while it is unknown.
 
     Odometry drifts, so a point of its frame moves over time; localisation publishes on tf the pose of that frame in

@@ -9,19 +9,19 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 
 from jacaros.robots.ros.errors import NameInvalid
 from jacaros.robots.ros.names import action_type, message_type, service_type
-from jacaros.runtime.files.entries import Entry, values
+from jacaros.runtime.files.entries import FieldSpec, values
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.files.yaml import Node, Problem
+from jacaros.runtime.files.yaml import Problem, YamlNode
 
 P = TypeVar("P")
 
 
-def entry(read: Callable[[Node], object], key: str = "") -> Entry:
+def entry(read: Callable[[YamlNode], object], key: str = "") -> FieldSpec:
     """Return the entry of a key (by default the name of the field) whose value *read* converts."""
-    return Entry("", "", key, lambda node, _: read(node))
+    return FieldSpec("", "", key, lambda node, _: read(node))
 
 
-def with_entries(part: P, entries: dict[str, Node]) -> P:
+def with_entries(part: P, entries: dict[str, YamlNode]) -> P:
     """Return a part with the values of the entries that are declared at its fields."""
     return replace(part, **values(entries, part))  # type: ignore[type-var]
 
@@ -52,12 +52,12 @@ class Written:
 NOTHING = Written("", START)
 
 
-def place_of(node: Node) -> FilePosition:
+def place_of(node: YamlNode) -> FilePosition:
     """Return the position of a value."""
     return FilePosition(node.line, node.column)
 
 
-def written(node: Node) -> Written:
+def written(node: YamlNode) -> Written:
     """Read a text with its position."""
     return Written(node.text(), place_of(node))
 
@@ -131,7 +131,7 @@ def read_path(text: str) -> FieldPath:
     return FieldPath(text, tuple(steps), of_message)
 
 
-def path_of(node: Node, help: str = "") -> FieldPath:
+def path_of(node: YamlNode, help: str = "") -> FieldPath:
     """Read a path; the whole message after a mistake."""
     if not isinstance(node.value, str):
         text = f"{node.what} must be a path, found {shown(node.value)}"
@@ -153,7 +153,7 @@ def shown(value: Any) -> str:
     return "nothing" if value is None else repr(value)
 
 
-def each_of(node: Node) -> list[Node]:
+def each_of(node: YamlNode) -> list[YamlNode]:
     """Return the items of a list; a single one needs no brackets."""
     return list(node.sequence()) if isinstance(node.value, list) else [node]
 
@@ -291,7 +291,7 @@ AS_IT_IS = Conversion()
 """No conversion."""
 
 
-def _shares(node: Node) -> tuple[float, ...]:
+def _shares(node: YamlNode) -> tuple[float, ...]:
     if isinstance(node.value, list):
         found = tuple(item.number(0.0, 1.0) for item in node.sequence())
         if not found:
@@ -301,7 +301,7 @@ def _shares(node: Node) -> tuple[float, ...]:
     return tuple(place / (count - 1) for place in range(count)) if count > 1 else (0.0,)
 
 
-def _otherwise(node: Node) -> float | FieldPath:
+def _otherwise(node: YamlNode) -> float | FieldPath:
     if isinstance(node.value, str):
         return path_of(node)
     return node.number()
@@ -324,7 +324,7 @@ class FieldPart:
     shares: Annotated[tuple[float, ...] | None, entry(_shares, "sample")] = None
     otherwise: Annotated[float | FieldPath | None, entry(_otherwise)] = None
     dead_band: Annotated[float | None, entry(lambda node: node.number(0.0))] = None
-    name: Annotated[str, entry(Node.text)] = ""
+    name: Annotated[str, entry(YamlNode.text)] = ""
 
     @property
     def count(self) -> int:
@@ -354,12 +354,12 @@ def unlike(taken: tuple[str, ...], names: list[str]) -> list[str]:
     return found
 
 
-def read_fields(node: Node) -> tuple[FieldPart, ...]:
+def read_fields(node: YamlNode) -> tuple[FieldPart, ...]:
     """Read a list of fields."""
     return tuple(map(read_field, each_of(node)))
 
 
-def read_field(node: Node) -> FieldPart:
+def read_field(node: YamlNode) -> FieldPart:
     """Read one field."""
     place = place_of(node)
     if not isinstance(node.value, dict):
@@ -375,7 +375,7 @@ def read_field(node: Node) -> FieldPart:
     return with_entries(part, entries)
 
 
-def _name(path: FieldPath, entries: dict[str, Node] | None = None) -> str:
+def _name(path: FieldPath, entries: dict[str, YamlNode] | None = None) -> str:
     """Return a word for a value, for the manual."""
     kind = entries["as"].value if entries is not None and "as" in entries else ""
     if kind in (*ANGLES, "count", "object"):
@@ -384,7 +384,7 @@ def _name(path: FieldPath, entries: dict[str, Node] | None = None) -> str:
     return names[-1] if names else "value"
 
 
-def read_conversion(entries: dict[str, Node]) -> Conversion:
+def read_conversion(entries: dict[str, YamlNode]) -> Conversion:
     """Read the keys that fields of properties and values of operations share."""
     kind = entries["as"].choice(*KINDS) if "as" in entries else ""
     digits, unit = entries.get("round"), entries.get("unit")
@@ -402,11 +402,11 @@ def read_conversion(entries: dict[str, Node]) -> Conversion:
     )
 
 
-def _digits(node: Node) -> int:
+def _digits(node: YamlNode) -> int:
     return 0 if node.value == DOWN else node.whole(0, 0)
 
 
-def _names(node: Node) -> tuple[tuple[object, str], ...]:
+def _names(node: YamlNode) -> tuple[tuple[object, str], ...]:
     found = []
     for key, value in node.entries():
         if not isinstance(value.value, str):
@@ -417,7 +417,7 @@ def _names(node: Node) -> tuple[tuple[object, str], ...]:
     return tuple(found)
 
 
-def _line(entries: dict[str, Node], kind: str) -> LinearConversion | None:
+def _line(entries: dict[str, YamlNode], kind: str) -> LinearConversion | None:
     steps = [
         _units(entries, kind),
         LinearConversion(_factor(entries["scale"])) if "scale" in entries else None,
@@ -427,7 +427,7 @@ def _line(entries: dict[str, Node], kind: str) -> LinearConversion | None:
     return reduce(LinearConversion.then, there) if there else None
 
 
-def _factor(node: Node) -> float:
+def _factor(node: YamlNode) -> float:
     factor = node.number(default=1.0)
     if factor == 0.0:
         node.wrong("`scale` is 0, which removes the value", "write another number")
@@ -435,7 +435,7 @@ def _factor(node: Node) -> float:
     return factor
 
 
-def _units(entries: dict[str, Node], kind: str) -> LinearConversion | None:
+def _units(entries: dict[str, YamlNode], kind: str) -> LinearConversion | None:
     there, here = entries.get("unit"), entries.get("message_unit")
     if there is None:
         if here is not None:
@@ -461,7 +461,7 @@ def _of_kind(kind: str) -> str:
     return f"units of {kind} are {', '.join(units_of(kind))}"
 
 
-def _unit(node: Node) -> str | None:
+def _unit(node: YamlNode) -> str | None:
     if isinstance(node.value, str) and node.value in UNITS:
         return str(node.value)
     meant, listed = suggestion(str(node.value), UNITS), ", ".join(UNITS)
@@ -470,7 +470,7 @@ def _unit(node: Node) -> str | None:
     return None
 
 
-def constant(node: Node, expected: str = "a number, a text or a list", help: str = "") -> object:
+def constant(node: YamlNode, expected: str = "a number, a text or a list", help: str = "") -> object:
     """Read a constant: a number, truth value, text, or a list of them."""
     value = node.value
     if isinstance(value, list):
@@ -505,7 +505,7 @@ _KINDS: dict[str, tuple[Callable[[str], str], str, str]] = {
 """Kinds of types: how one is read, what it is the type of, and an example."""
 
 
-def belief_name(node: Node) -> str:
+def belief_name(node: YamlNode) -> str:
     """Read the name of a property, signal or operation."""
     if not isinstance(node.value, str) or not _BELIEF.fullmatch(node.value):
         if isinstance(node.value, bool):
@@ -523,7 +523,7 @@ def belief_name(node: Node) -> str:
     return str(node.value)
 
 
-def ros_name(node: Node) -> Written:
+def ros_name(node: YamlNode) -> Written:
     """Read the name of a topic, service, action or node."""
     value = node.value
     if not isinstance(value, str) or not _ROS.fullmatch(value):
@@ -534,7 +534,7 @@ def ros_name(node: Node) -> Written:
     return Written(str(value), place_of(node))
 
 
-def read_namespace(node: Node) -> str:
+def read_namespace(node: YamlNode) -> str:
     """Read a namespace; empty if none exists."""
     value = node.value
     if value in (None, "", "/"):
@@ -545,12 +545,12 @@ def read_namespace(node: Node) -> str:
     return str(value).strip("/")
 
 
-def type_of(kind: str) -> Entry:
+def type_of(kind: str) -> FieldSpec:
     """Return the entry of a type; *kind* is ``msg``, ``srv`` or ``action``."""
     return entry(lambda node: type_written(node, kind), "type")
 
 
-def type_written(node: Node, kind: str) -> Written | None:
+def type_written(node: YamlNode, kind: str) -> Written | None:
     """Read a type in full form. None after a mistake."""
     full = _full_type(node.value, kind)
     if full is None:

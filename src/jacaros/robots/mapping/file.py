@@ -32,9 +32,9 @@ from jacaros.robots.mapping.properties import (
     read_property,
     read_signal,
 )
-from jacaros.runtime.files.entries import Entry, declared_entries, values
+from jacaros.runtime.files.entries import FieldSpec, declared_entries, values
 from jacaros.runtime.files.texts import is_file, suggestion
-from jacaros.runtime.files.yaml import Node, Problem, YamlFileError, read_document, read_text, top_keys
+from jacaros.runtime.files.yaml import Problem, YamlFileError, YamlNode, read_document, read_text, top_keys
 
 SHIPPED = Path(__file__).parent.parent / "mappings"
 """Folder of the mappings that come with the package."""
@@ -42,26 +42,26 @@ SHIPPED = Path(__file__).parent.parent / "mappings"
 _NAME = re.compile(r"[^\s#/]+")
 
 
-def _operations(node: Node) -> tuple[OperationPart, ...]:
+def _operations(node: YamlNode) -> tuple[OperationPart, ...]:
     """Read operations; a list has several of one name."""
     found: list[OperationPart] = []
     for name, value in node.entries():
         if isinstance(value.value, list) and any(isinstance(item, dict) for item in value.value):
             for item in value.sequence():
-                named = Node(name.value, item.line, item.column, item.problems, name.what)
+                named = YamlNode(name.value, item.line, item.column, item.problems, name.what)
                 found.append(read_operation(named, item))
         else:
             found.append(read_operation(name, value))
     return tuple(found)
 
 
-def _tf_prefix(node: Node) -> str:
+def _tf_prefix(node: YamlNode) -> str:
     if node.value is not None:
         node.text()
     return str(node.value).strip("/") if node.value else ""
 
 
-def _connected(node: Node) -> bool | float:
+def _connected(node: YamlNode) -> bool | float:
     if isinstance(node.value, bool):
         return node.value
     value = node.value
@@ -72,7 +72,7 @@ def _connected(node: Node) -> bool | float:
     return True
 
 
-def _named(read: Callable[[Node, Node], object]) -> Entry:
+def _named(read: Callable[[YamlNode, YamlNode], object]) -> FieldSpec:
     """Return the entry of a mapping from names to parts, each read by *read*."""
     return entry(lambda node: tuple(read(*pair) for pair in node.entries()))
 
@@ -92,11 +92,11 @@ class ArtifactPart:
 
     name: str
     place: FilePosition
-    description: Annotated[str, entry(Node.text)] = ""
+    description: Annotated[str, entry(YamlNode.text)] = ""
     namespace: Annotated[str, entry(read_namespace)] = ""
     tf_prefix: Annotated[str | None, entry(_tf_prefix)] = None
     connected: Annotated[bool | float, entry(_connected)] = False
-    interfaces: Annotated[tuple[Path, ...], Entry("")] = ()
+    interfaces: Annotated[tuple[Path, ...], FieldSpec("")] = ()
     properties: Annotated[tuple[TopicPart, ...], _named(read_property)] = ()
     signals: Annotated[tuple[TopicPart, ...], _named(read_signal)] = ()
     frames: Annotated[tuple[FramePart, ...], _named(read_frame)] = ()
@@ -218,7 +218,7 @@ def read_mapping(text: str, name: str = "mapping.yaml") -> MappingFile:
     return MappingFile(name, text, artifacts)
 
 
-def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
+def _read(document: YamlNode, path: Path, problems: list[Problem]) -> dict[str, ArtifactPart]:
     if document.value is None:
         if not problems:
             document.wrong("the file is empty", "begin with properties: or operations:")
@@ -242,7 +242,7 @@ def _read(document: Node, path: Path, problems: list[Problem]) -> dict[str, Arti
     return found
 
 
-def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
+def _interfaces(node: YamlNode, folder: Path) -> tuple[Path, ...]:
     """Return the folders with definitions of types; relative paths start at the file's folder."""
     found = []
     for item in each_of(node):
@@ -256,7 +256,7 @@ def _interfaces(node: Node, folder: Path) -> tuple[Path, ...]:
 
 
 def _artifact(
-    name: str, place: FilePosition, node: Node, folder: Path, shared: tuple[Path, ...] = ()
+    name: str, place: FilePosition, node: YamlNode, folder: Path, shared: tuple[Path, ...] = ()
 ) -> ArtifactPart:
     part = ArtifactPart(name, place, interfaces=shared)
     found = values(

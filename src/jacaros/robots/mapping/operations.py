@@ -36,7 +36,7 @@ from jacaros.robots.mapping.fields import (
 from jacaros.robots.mapping.properties import TopicPart, is_misplaced, positive, read_feedback, read_qos
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.files.texts import close_matches, did_you_mean
-from jacaros.runtime.files.yaml import Node, Problem
+from jacaros.runtime.files.yaml import Problem, YamlNode
 
 
 class ValueSource(StrEnum):
@@ -173,7 +173,9 @@ ALL_OF_IT = -1
 """Number of the part of an element that means the whole element."""
 
 
-def read_values(node: Node, parameters: tuple[str, ...], within_list: bool = False) -> tuple[ValuePart, ...]:
+def read_values(
+    node: YamlNode, parameters: tuple[str, ...], within_list: bool = False
+) -> tuple[ValuePart, ...]:
     """Read the fields of a message by their paths."""
     found = []
     for key, value in node.entries():
@@ -186,7 +188,7 @@ def read_values(node: Node, parameters: tuple[str, ...], within_list: bool = Fal
 
 
 def read_value(
-    node: Node, target: FieldPath, parameters: tuple[str, ...], within_list: bool = False
+    node: YamlNode, target: FieldPath, parameters: tuple[str, ...], within_list: bool = False
 ) -> ValuePart:
     """Read one value for *target*."""
     place = place_of(node)
@@ -212,7 +214,7 @@ def read_value(
     return ValuePart(target, place, source, value, parameter, conversion)
 
 
-def _list(node: Node, target: FieldPath, parameters: tuple[str, ...]) -> ValuePart:
+def _list(node: YamlNode, target: FieldPath, parameters: tuple[str, ...]) -> ValuePart:
     """Read a list of messages, one for each element of a parameter."""
     entries = node.mapping(*_LIST, required=_LIST)
     parameter = 0
@@ -224,7 +226,9 @@ def _list(node: Node, target: FieldPath, parameters: tuple[str, ...]) -> ValuePa
     return ValuePart(target, place_of(node), ValueSource.ELEMENTS, None, parameter, elements=elements)
 
 
-def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple[ValueSource, object, int]:
+def _source(
+    node: YamlNode, parameters: tuple[str, ...], within_list: bool
+) -> tuple[ValueSource, object, int]:
     value = node.value
     if isinstance(value, str) and value.startswith("$"):
         return ValueSource.PARAMETER, None, _parameter(node, str(value)[1:], parameters, within_list)
@@ -234,7 +238,7 @@ def _source(node: Node, parameters: tuple[str, ...], within_list: bool) -> tuple
     return ValueSource.CONSTANT, constant(node, "a number, a text, $parameter or now", help), 0
 
 
-def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: bool) -> int:
+def _parameter(node: YamlNode, name: str, parameters: tuple[str, ...], within_list: bool) -> int:
     """Return the number of a parameter. The parts of an element are $1, $2 and so on, the whole element is $0."""
     if within_list:
         if name.isdecimal():
@@ -252,15 +256,15 @@ def _parameter(node: Node, name: str, parameters: tuple[str, ...], within_list: 
 
 # The keys of each kind of operation, in the order of messages: the fields of the part that a value is read into.
 
-ReadPart = Callable[[Node, OperationPart], dict[str, Any]]
+ReadPart = Callable[[YamlNode, OperationPart], dict[str, Any]]
 
 
-def _into(name: str, read: Callable[[Node], object]) -> ReadPart:
+def _into(name: str, read: Callable[[YamlNode], object]) -> ReadPart:
     """Return the reader of a key into one field."""
     return lambda node, part: {name: read(node)}
 
 
-def _message(node: Node, part: OperationPart) -> dict[str, Any]:
+def _message(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     """Read the content of a message: fields, or a list of them for several versions of its type."""
     if not isinstance(node.value, list):
         return {"values": read_values(node, part.parameters)}
@@ -268,7 +272,7 @@ def _message(node: Node, part: OperationPart) -> dict[str, Any]:
     return {"values": first, "other_values": tuple(others)}
 
 
-def _duration(node: Node, part: OperationPart) -> dict[str, Any]:
+def _duration(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     spell = read_value(node, WHOLE, part.parameters)
     if spell.source is ValueSource.CONSTANT and not _is_positive(spell.value):
         node.wrong("`duration` must be a number of seconds above zero", "write duration: 2")
@@ -279,11 +283,11 @@ def _is_positive(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and value > 0
 
 
-def _answer(node: Node, part: OperationPart) -> dict[str, Any]:
+def _answer(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     return {"any_success": True} if node.value == "none" else {"success": _success(node)}
 
 
-def _output(node: Node, part: OperationPart) -> dict[str, Any]:
+def _output(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     listed = each_of(node)
     if len(listed) != 1:
         node.wrong("a parameter has one value, so it has one output", "write outputs: [value]")
@@ -294,11 +298,11 @@ def _output(node: Node, part: OperationPart) -> dict[str, Any]:
     return {}
 
 
-def _value(node: Node, part: OperationPart) -> dict[str, Any]:
+def _value(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     return {"values": (read_value(node, WHOLE, part.parameters),)}
 
 
-def _of_node(node: Node, part: OperationPart) -> dict[str, Any]:
+def _of_node(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     """Read the parameter of a node; without ``outputs`` its value is the output of an operation that gives it."""
     found: dict[str, Any] = {"target": written(node)}
     if part.kind is OperationKind.GET:
@@ -306,7 +310,7 @@ def _of_node(node: Node, part: OperationPart) -> dict[str, Any]:
     return found
 
 
-def _properties(node: Node, part: OperationPart) -> dict[str, Any]:
+def _properties(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     items = each_of(node)
     if part.kind is OperationKind.READ and len(items) != 1:
         node.wrong("`read` reads one property", "write an operation for each")
@@ -317,7 +321,7 @@ def _typed(kind: str) -> ReadPart:
     return _into("type_name", lambda node: type_written(node, kind))
 
 
-def _outputs(node: Node) -> tuple[FieldPart, ...]:
+def _outputs(node: YamlNode) -> tuple[FieldPart, ...]:
     fields = read_fields(node)
     for field in fields:
         if field.path.of_message or "i" in field.path.steps or field.dead_band is not None:
@@ -327,7 +331,7 @@ def _outputs(node: Node) -> tuple[FieldPart, ...]:
     return fields
 
 
-def _success(node: Node) -> Success:
+def _success(node: YamlNode) -> Success:
     if not isinstance(node.value, dict):
         return Success(path_of(node, "write the field that is true, or {path: code, is: 0}"), place_of(node))
     entries = node.mapping("path", "is", required=("path", "is"))
@@ -338,7 +342,7 @@ def _success(node: Node) -> Success:
     )
 
 
-def _code(node: Node) -> FieldPart:
+def _code(node: YamlNode) -> FieldPart:
     if isinstance(node.value, list):
         text = "`code` must be one field"
         node.wrong(text, "write code: error_code, or code: {path: error_code, as: name}")
@@ -349,7 +353,7 @@ def _code(node: Node) -> FieldPart:
 _SUSPEND = ("go_on", "cancel")
 
 
-def _suspend(node: Node, part: OperationPart) -> dict[str, Any]:
+def _suspend(node: YamlNode, part: OperationPart) -> dict[str, Any]:
     if node.value == "pause":
         node.wrong(
             "an action can only be cancelled, not paused",
@@ -369,7 +373,7 @@ def _suspend(node: Node, part: OperationPart) -> dict[str, Any]:
     return {"suspend": "pause", **{key: written(each) for key, each in entries.items()}}
 
 
-def _uses(node: Node) -> tuple[str, ...]:
+def _uses(node: YamlNode) -> tuple[str, ...]:
     found: list[str] = []
     for item in each_of(node):
         name = item.value
@@ -385,7 +389,7 @@ def _uses(node: Node) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _parameters(node: Node) -> tuple[str, ...]:
+def _parameters(node: YamlNode) -> tuple[str, ...]:
     names: list[str] = []
     for item in node.sequence():
         name = item.value
@@ -452,13 +456,13 @@ KEYS: dict[str, dict[str, ReadPart]] = {
 """The keys of each kind of operation, with their readers; the first names it."""
 _COMMON: dict[str, ReadPart] = {
     "parameters": _into("parameters", _parameters),
-    "description": _into("description", Node.text),
+    "description": _into("description", YamlNode.text),
     "uses": _into("uses", _uses),
 }
 _ALL_KEYS = tuple(dict.fromkeys((*_COMMON, *(key for kind in KEYS for key in list(KEYS[kind])[1:]))))
 
 
-def read_operation(name: Node, node: Node) -> OperationPart:
+def read_operation(name: YamlNode, node: YamlNode) -> OperationPart:
     """Read one operation."""
     part = OperationPart(belief_name(name), place_of(name), OperationKind.REFRESH)
     if is_misplaced(name, node, _ALL_KEYS, "an operation"):
@@ -483,7 +487,7 @@ def read_operation(name: Node, node: Node) -> OperationPart:
     return part
 
 
-def _check_keys(part: OperationPart, entries: dict[str, Node]) -> None:
+def _check_keys(part: OperationPart, entries: dict[str, YamlNode]) -> None:
     """Report keys without those that they need."""
     if part.kind in (OperationKind.REFRESH, OperationKind.READ) and "parameters" in entries:
         entries["parameters"].wrong(f"`{part.kind}` takes no parameters", "leave `parameters` out")

@@ -44,10 +44,10 @@ from jacaros.robots.mapping.fields import (
 from jacaros.robots.ros.errors import ParameterRefused
 from jacaros.robots.ros.parameter import DeclaredParameter, ParameterValue, checked_value, fault_of
 from jacaros.robots.ros.qos import DEFAULT_QOS, LATCHED, SENSOR_DATA, QoS
-from jacaros.runtime.files.yaml import Node, Problem
+from jacaros.runtime.files.yaml import Problem, YamlNode
 
 
-def positive(node: Node) -> float:
+def positive(node: YamlNode) -> float:
     """Read a number above zero."""
     value = node.number(default=1.0)
     if value <= 0.0:
@@ -65,7 +65,7 @@ _PARTS = {word: f"write qos: {{{key}: {word}}}" for key, words in _CHOICES.items
 """What to write for a part of a quality of service that is given alone."""
 
 
-def read_qos(node: Node) -> QoS:
+def read_qos(node: YamlNode) -> QoS:
     """Read a quality of service; the default one after a mistake."""
     if not isinstance(node.value, dict):
         if node.value not in PROFILES:
@@ -83,12 +83,12 @@ def read_qos(node: Node) -> QoS:
     return replace(DEFAULT_QOS, **given)
 
 
-def read_annotations(node: Node) -> tuple[FieldPart, ...]:
+def read_annotations(node: YamlNode) -> tuple[FieldPart, ...]:
     """Read annotations by name; the name of the annotation is that of the field."""
     return tuple(replace(read_field(value), name=belief_name(name)) for name, value in node.entries())
 
 
-def _coordinates(node: Node) -> tuple[FieldPath, ...]:
+def _coordinates(node: YamlNode) -> tuple[FieldPath, ...]:
     at = tuple(path_of(item) for item in node.sequence())
     if len(at) != 2:
         node.wrong("`at` must be the paths of two coordinates", "write [position.x, position.y]")
@@ -114,7 +114,7 @@ class ViewPart:
     origin: Annotated[Written | None, entry(written, "from")] = None
 
 
-def _view(node: Node) -> ViewPart:
+def _view(node: YamlNode) -> ViewPart:
     entries = node.mapping("metres", "distance", "at", "from", required=("metres",))
     if isinstance(node.value, dict):
         if "distance" in entries and ("at" in entries or "from" in entries):
@@ -155,11 +155,11 @@ class TopicPart:
     key: Annotated[FieldPart | None, entry(read_field)] = None
     annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
     qos: Annotated[QoS | None, entry(read_qos)] = None
-    description: Annotated[str, entry(Node.text)] = ""
+    description: Annotated[str, entry(YamlNode.text)] = ""
     policy: ReadingPolicy = ALWAYS
     initial: tuple[object, ...] | None = None
     view: Annotated[ViewPart | None, entry(_view, "range_of_view")] = None
-    when_changed: Annotated[bool, entry(Node.truth)] = False
+    when_changed: Annotated[bool, entry(YamlNode.truth)] = False
     signal: bool = False
 
 
@@ -170,7 +170,7 @@ SIGNAL = (*_MESSAGE, "rate", "when_changed")
 FEEDBACK = ("fields", "annotations", "description", "rate", "dead_band", "latest_only")
 
 
-def read_property(name: Node, node: Node) -> TopicPart:
+def read_property(name: YamlNode, node: YamlNode) -> TopicPart:
     """Read one property from a topic."""
     part, entries = _from_topic(name, node, PROPERTY, "a property")
     if not entries:
@@ -182,7 +182,7 @@ def read_property(name: Node, node: Node) -> TopicPart:
     return replace(part, policy=policy, initial=initial)
 
 
-def read_signal(name: Node, node: Node) -> TopicPart:
+def read_signal(name: YamlNode, node: YamlNode) -> TopicPart:
     """Read one signal."""
     part, entries = _from_topic(name, node, SIGNAL, "a signal")
     if "annotations" in entries:
@@ -192,8 +192,8 @@ def read_signal(name: Node, node: Node) -> TopicPart:
 
 
 def _from_topic(
-    name: Node, node: Node, keys: tuple[str, ...], what: str
-) -> tuple[TopicPart, dict[str, Node]]:
+    name: YamlNode, node: YamlNode, keys: tuple[str, ...], what: str
+) -> tuple[TopicPart, dict[str, YamlNode]]:
     """Read what properties and signals share. Return the entries, too; none of a short form."""
     place = place_of(name)
     if is_misplaced(name, node, keys, what):
@@ -204,7 +204,7 @@ def _from_topic(
     return _of_message(TopicPart(belief_name(name), place), entries), entries
 
 
-def read_feedback(name: Node, node: Node) -> TopicPart:
+def read_feedback(name: YamlNode, node: YamlNode) -> TopicPart:
     """Read a property from the feedback of an action."""
     part = TopicPart(belief_name(name), place_of(name))
     if node.value is None or isinstance(node.value, str | list):
@@ -214,7 +214,7 @@ def read_feedback(name: Node, node: Node) -> TopicPart:
     return replace(part, policy=read_policy(entries, part.fields))
 
 
-def _of_message(part: TopicPart, entries: dict[str, Node]) -> TopicPart:
+def _of_message(part: TopicPart, entries: dict[str, YamlNode]) -> TopicPart:
     each = entries.get("each")
     if "key" in entries and each is None:
         entries["key"].wrong("`key` needs `each`", "write the array with the elements: each: detections")
@@ -231,7 +231,7 @@ def _of_message(part: TopicPart, entries: dict[str, Node]) -> TopicPart:
     return part
 
 
-def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bool:
+def is_misplaced(name: YamlNode, node: YamlNode, keys: tuple[str, ...], what: str) -> bool:
     """Report a key of a property (*what*) used where the name of a property is expected. Return whether it was."""
     if name.value not in keys or isinstance(node.value, dict):
         return False
@@ -242,7 +242,7 @@ def is_misplaced(name: Node, node: Node, keys: tuple[str, ...], what: str) -> bo
     return True
 
 
-def _initial(node: Node, part: TopicPart) -> tuple[object, ...]:
+def _initial(node: YamlNode, part: TopicPart) -> tuple[object, ...]:
     if part.each is not None:
         node.wrong("a property for each element has no initial values", "leave `initial` out")
     values = tuple(map(constant, each_of(node)))
@@ -253,7 +253,7 @@ def _initial(node: Node, part: TopicPart) -> tuple[object, ...]:
 
 
 def read_policy(
-    entries: dict[str, Node], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
+    entries: dict[str, YamlNode], fields: tuple[FieldPart, ...] | None, latest_only: bool = True
 ) -> ReadingPolicy:
     """Read when to update."""
     mode = entries["mode"].choice("verbose", "on_demand") if "mode" in entries else "verbose"
@@ -269,7 +269,7 @@ def read_policy(
     )
 
 
-def _bands(node: Node | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
+def _bands(node: YamlNode | None, fields: tuple[FieldPart, ...] | None) -> float | tuple[float, ...]:
     """Read one number for all values, or one for each value."""
     own = any(field.dead_band is not None for field in fields or ())
     if node is None:
@@ -313,11 +313,11 @@ class FramePart:
 
     name: str
     place: FilePosition
-    target: Annotated[str, entry(Node.text)] = ""
-    source: Annotated[str, entry(Node.text)] = ""
+    target: Annotated[str, entry(YamlNode.text)] = ""
+    source: Annotated[str, entry(YamlNode.text)] = ""
     fields: Annotated[tuple[FieldPart, ...], entry(read_fields)] = ()
     annotations: Annotated[tuple[FieldPart, ...], entry(read_annotations)] = ()
-    description: Annotated[str, entry(Node.text)] = ""
+    description: Annotated[str, entry(YamlNode.text)] = ""
     rate: float = 10.0
     oldest: float | None = None
     policy: ReadingPolicy = ALWAYS
@@ -326,7 +326,7 @@ class FramePart:
 FRAME = ("target", "source", "fields", "annotations", "description", *_POLICY)
 
 
-def read_frame(name: Node, node: Node) -> FramePart:
+def read_frame(name: YamlNode, node: YamlNode) -> FramePart:
     """Read a property from tf."""
     entries = node.mapping(*FRAME, required=("target", "source"))
     place = place_of(name)
@@ -358,7 +358,7 @@ def _of_transform(field: FieldPart) -> Iterator[Problem]:
 # Parameters: of other nodes, and of our own.
 
 
-def _field(node: Node) -> FieldPart | None:
+def _field(node: YamlNode) -> FieldPart | None:
     fields = read_fields(node)
     if len(fields) != 1 or fields[0].path.steps:
         node.wrong("a parameter has one value and no fields", "write fields: {path: ., unit: degrees}")
@@ -384,11 +384,11 @@ class ParameterPart:
 
     name: str
     place: FilePosition
-    parameter: Annotated[str, entry(Node.text)]
+    parameter: Annotated[str, entry(YamlNode.text)]
     node: Annotated[str, entry(lambda node: ros_name(node).text)] = ""
     field: Annotated[FieldPart | None, entry(_field, "fields")] = None
     rate: Annotated[float, entry(positive)] = 1.0
-    description: Annotated[str, entry(Node.text)] = ""
+    description: Annotated[str, entry(YamlNode.text)] = ""
     declaration: DeclaredParameter | None = None
     policy: ReadingPolicy = ALWAYS
 
@@ -398,7 +398,7 @@ OTHER = ("node", *_SHOWN, "rate")
 OWN = ("default", *_SHOWN, "minimum", "maximum", "read_only")
 
 
-def read_parameter(name: Node, node: Node) -> ParameterPart:
+def read_parameter(name: YamlNode, node: YamlNode) -> ParameterPart:
     """Read a property from a parameter, of another node or of our own."""
     part = ParameterPart(belief_name(name), place_of(name), str(name.value))
     if not isinstance(node.value, dict):
@@ -420,7 +420,7 @@ def read_parameter(name: Node, node: Node) -> ParameterPart:
     return replace(part, declaration=declaration, policy=replace(policy, finite=True))
 
 
-def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> None:
+def _require_shown(node: YamlNode, field: FieldPart, default: ParameterValue) -> None:
     """Check the default of a parameter of our own: as it keeps its type, its conversion works for every value."""
     values = (default or [""]) if isinstance(default, list) else [default]
     wrong = [each for each in values if isinstance(each, bool) or not isinstance(each, int | float)]
@@ -430,7 +430,7 @@ def _require_shown(node: Node, field: FieldPart, default: ParameterValue) -> Non
         node.wrong(f"parameter `{name}`: expected a number, found {found}", help)
 
 
-def _declaration(node: Node, entries: dict[str, Node]) -> DeclaredParameter:
+def _declaration(node: YamlNode, entries: dict[str, YamlNode]) -> DeclaredParameter:
     """Read the declaration of a parameter of our own; *node* is its default."""
     default = _value(node)
     limits = {key: entries[key].number() for key in ("minimum", "maximum") if key in entries}
@@ -451,7 +451,7 @@ def _declaration(node: Node, entries: dict[str, Node]) -> DeclaredParameter:
     return declaration
 
 
-def _value(node: Node) -> ParameterValue:
+def _value(node: YamlNode) -> ParameterValue:
     if node.value is None:
         node.wrong("the parameter has no default", "write a number, true or false, a text, or a list of them")
         return 0
@@ -481,10 +481,10 @@ class DerivedPart:
     place: FilePosition
     spec: Spec | None = None
     sources: tuple[Written, ...] = ()
-    description: Annotated[str, entry(Node.text)] = ""
+    description: Annotated[str, entry(YamlNode.text)] = ""
 
 
-def read_derived(name: Node, node: Node) -> DerivedPart:
+def read_derived(name: YamlNode, node: YamlNode) -> DerivedPart:
     """Read one derived property."""
     part = DerivedPart(belief_name(name), place_of(name))
     if not isinstance(node.value, dict):
@@ -521,7 +521,7 @@ def read_derived(name: Node, node: Node) -> DerivedPart:
     return with_entries(replace(part, spec=None if wrong else spec, sources=sources), entries)
 
 
-def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
+def _operator(name: YamlNode, node: YamlNode, entries: dict[str, YamlNode]) -> str | None:
     """Return the operator of an entry; None after reporting a mistake."""
     named = [key for key in entries if key in OPERATORS]
     if len(named) == 1:
@@ -539,13 +539,13 @@ def _operator(name: Node, node: Node, entries: dict[str, Node]) -> str | None:
     return None
 
 
-def _report(fault: DeclarationProblem, entries: dict[str, Node], node: Node) -> None:
+def _report(fault: DeclarationProblem, entries: dict[str, YamlNode], node: YamlNode) -> None:
     if fault.option in entries and fault.message.endswith(f"has no option `{fault.option}`"):
         _at_key(node, fault.option).wrong(fault.message, fault.help)
     else:
         entries.get(fault.option, node).wrong(fault.message, fault.help)
 
 
-def _at_key(node: Node, key: str) -> Node:
+def _at_key(node: YamlNode, key: str) -> YamlNode:
     """Return the position of a key of a mapping."""
     return next((name for name, _ in node.entries() if str(name.value) == key), node)

@@ -53,7 +53,7 @@ COMMANDS = {
 """Module and summary of each command; after a colon, its name in the module if that is not ``command``."""
 
 
-class Commands(click.Group):
+class CommandGroup(click.Group):
     """The commands by name; the module of a command is imported when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -81,12 +81,12 @@ class Commands(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing them."""
-        with formatter.section("Commands"):
+        with formatter.section("CommandGroup"):
             formatter.write_dl([(name, summary) for name, (_, summary) in COMMANDS.items()])
 
 
 @click.command(
-    cls=Commands,
+    cls=CommandGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
         "jacaros hello.asl                           run a program",

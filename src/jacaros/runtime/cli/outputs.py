@@ -26,7 +26,7 @@ _BEGINNINGS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Outputs:
+class RequestedOutputs:
     """The outputs requested on the command line, by the names of the options.
 
     Attributes:
@@ -48,7 +48,7 @@ class Outputs:
     record_limit: int = RECORD_LIMIT
 
     @classmethod
-    def taken_from(cls, options: dict[str, Any]) -> "Outputs":
+    def taken_from(cls, options: dict[str, Any]) -> "RequestedOutputs":
         """Take the outputs out of the options of a command."""
         return cls(**{each.name: options.pop(each.name) for each in fields(cls)})
 

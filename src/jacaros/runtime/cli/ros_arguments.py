@@ -15,7 +15,7 @@ from jacaros.runtime.cli.usage import usage_error
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import file_text
 
-Option = tuple[str, ...]
+OptionWords = tuple[str, ...]
 """The words of one of our options: its name, and its value; none for an argument without effect."""
 
 _SIGN = ":="
@@ -31,7 +31,7 @@ _ROS2_VALUES = {
     "--enclave": "",
 }
 """ROS 2 arguments that take a value, and our option for each; an empty name marks arguments without effect here."""
-_ROS2_FLAGS: Mapping[str, Option] = {
+_ROS2_FLAGS: Mapping[str, OptionWords] = {
     "--enable-rosout-logs": ("--rosout",),
     "--disable-rosout-logs": ("--no-rosout",),
     "--enable-stdout-logs": (),
@@ -75,7 +75,7 @@ def as_options(arguments: Sequence[str], warn: Callable[[str], None]) -> list[st
     return [*own, *itertools.chain.from_iterable(added)]
 
 
-def _without_parameters(options: list[Option], warn: Callable[[str], None]) -> list[Option]:
+def _without_parameters(options: list[OptionWords], warn: Callable[[str], None]) -> list[OptionWords]:
     """Drop parameters: a world declares none, and keeps its own time."""
     values: dict[str, list[str]] = {"--namespace": [""], "--node-name": ["world"]}
     for option, *value in options:
@@ -117,7 +117,7 @@ def _ros1_arguments(arguments: Sequence[str]) -> Iterator[int]:
             yield place
 
 
-def _of_ros1(written: str) -> Option:
+def _of_ros1(written: str) -> OptionWords:
     name, _, value = written.partition(_SIGN)
     if name in _NAMES:
         return _NAMES[name], value
@@ -128,7 +128,7 @@ def _of_ros1(written: str) -> Option:
     return ("--param", written[1:]) if name.startswith("_") else ("--remap", written)
 
 
-def _of_ros2(written: Iterable[str]) -> Iterator[Option]:
+def _of_ros2(written: Iterable[str]) -> Iterator[OptionWords]:
     """Yield our options for the arguments after ``--ros-args``."""
     rest = iter(written)
     for each in rest:

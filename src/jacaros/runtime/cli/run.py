@@ -32,7 +32,7 @@ from jacaros.runtime.cli.options import (
     variables,
     view_options,
 )
-from jacaros.runtime.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, Outputs, has_display, write_output
+from jacaros.runtime.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, RequestedOutputs, has_display, write_output
 from jacaros.runtime.cli.usage import examples, listed, not_found, usage_error
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.mas.agents.host import AgentHost
@@ -144,13 +144,13 @@ def command(
     The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
     """
     check_file(file)
-    outputs = Outputs.taken_from(given)
+    outputs = RequestedOutputs.taken_from(given)
     outputs.check()
     if explained:
-        from jacaros.look.why.patterns import Pattern  # here: few runs are explained
+        from jacaros.look.why.patterns import QuestionPattern  # here: few runs are explained
 
         for each in explained:
-            Pattern(each)  # refuses what is not an event, a goal or a belief
+            QuestionPattern(each)  # refuses what is not an event, a goal or a belief
     options = RunOptions(
         remap=read_remaps(remap) if remap else {},
         orphans=orphan_policy(orphans),
@@ -198,7 +198,7 @@ def _launch(
     project: Deployment,
     options: RunOptions,
     console: StandardConsole,
-    outputs: Outputs,
+    outputs: RequestedOutputs,
     explained: Sequence[str] = (),
 ) -> int:
     def begin(mas: System) -> None:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from jacaros.look.page.recorder import Recorder
 from jacaros.look.page.watch import Watch, Watcher, watch_of
 from jacaros.robots.world.process import GroundTruthFile
-from jacaros.runtime.cli.outputs import LOOPBACK, Outputs, has_display
+from jacaros.runtime.cli.outputs import LOOPBACK, RequestedOutputs, has_display
 from jacaros.runtime.cli.usage import usage_error
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.system import System
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Watching(ExitStack):
         incomplete: whether the replay page could not be written.
     """
 
-    def __init__(self, console: Console, outputs: Outputs) -> None:
+    def __init__(self, console: RunConsole, outputs: RequestedOutputs) -> None:
         super().__init__()
         self._console, self._outputs = console, outputs
         self._recorder: Recorder | None = None

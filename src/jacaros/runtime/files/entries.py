@@ -9,15 +9,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, TypeVar
 
-from jacaros.runtime.files.yaml import Node
+from jacaros.runtime.files.yaml import YamlNode
 
 _T = TypeVar("_T")
-Reader = Callable[[Node, Any], Any]
+ReadValue = Callable[[YamlNode, Any], Any]
 """Returns the value of a node, given the default."""
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class FieldSpec:
     """How the value of a field is written in a file.
 
     Attributes:
@@ -30,10 +30,10 @@ class Entry:
     words: str
     help: str = ""
     key: str = ""
-    read: Reader | None = None
+    read: ReadValue | None = None
 
 
-def declared_entries(described: Any) -> dict[str, tuple[str, Entry, bool]]:
+def declared_entries(described: Any) -> dict[str, tuple[str, FieldSpec, bool]]:
     """Return the entries of a dataclass by key: the name of the field, the entry, and whether it is required."""
     return {
         entry.key or field.name: (field.name, entry, field.default is MISSING)
@@ -42,7 +42,7 @@ def declared_entries(described: Any) -> dict[str, tuple[str, Entry, bool]]:
     }
 
 
-def values(given: Mapping[str, Node], usual: Any, **readers: Reader) -> dict[str, Any]:
+def values(given: Mapping[str, YamlNode], usual: Any, **readers: ReadValue) -> dict[str, Any]:
     """Return the values of the nodes *given* by key for fields of a dataclass.
 
     Args:
@@ -57,16 +57,16 @@ def values(given: Mapping[str, Node], usual: Any, **readers: Reader) -> dict[str
     }
 
 
-def read(node: Node, usual: _T, **readers: Reader) -> _T:
+def read(node: YamlNode, usual: _T, **readers: ReadValue) -> _T:
     """Return *usual* with the values of the mapping at a node, and report all mistakes; see `values`."""
     known = declared_entries(usual)
     given = node.mapping(*known, required=tuple(key for key, (_, _, required) in known.items() if required))
     return replace(usual, **values(given, usual, **readers))  # type: ignore[type-var]
 
 
-def section(help: str) -> Entry:
+def section(help: str) -> FieldSpec:
     """Return the entry of a mapping that is read into the fields of its default."""
-    return Entry("mapping", help, "", read)
+    return FieldSpec("mapping", help, "", read)
 
 
 def number(
@@ -76,35 +76,35 @@ def number(
     help: str = "",
     key: str = "",
     change: Callable[[float], float] = float,
-) -> Entry:
+) -> FieldSpec:
     """Return the entry of a finite number within limits (both included); *change* converts it to the field's unit."""
     words = (
         f"{least:g} to {most:g}" if most < 1e9 else f"at least {least:g}" if least > -math.inf else "number"
     )
-    return Entry(f"{words} {unit}".strip(), help, key, lambda node, _: change(node.number(least, most)))
+    return FieldSpec(f"{words} {unit}".strip(), help, key, lambda node, _: change(node.number(least, most)))
 
 
-def whole(least: int, help: str) -> Entry:
+def whole(least: int, help: str) -> FieldSpec:
     """Return the entry of an integer, *least* or more."""
-    return Entry(f"integer, at least {least}", help, "", lambda node, _: node.whole(least, least))
+    return FieldSpec(f"integer, at least {least}", help, "", lambda node, _: node.whole(least, least))
 
 
-def choice(*choices: str, help: str) -> Entry:
+def choice(*choices: str, help: str) -> FieldSpec:
     """Return the entry of one of several words."""
     words = ", ".join(f"`{each}`" for each in choices)
-    return Entry(words, help, "", lambda node, _: node.choice(*choices))
+    return FieldSpec(words, help, "", lambda node, _: node.choice(*choices))
 
 
-def either(help: str, key: str, off: str, on: str) -> Entry:
+def either(help: str, key: str, off: str, on: str) -> FieldSpec:
     """Return the entry of a word for False, or one for True."""
-    return Entry(f"`{off}`, `{on}`", help, key, lambda node, _: node.choice(off, on) == on)
+    return FieldSpec(f"`{off}`, `{on}`", help, key, lambda node, _: node.choice(off, on) == on)
 
 
-def flag(help: str) -> Entry:
+def flag(help: str) -> FieldSpec:
     """Return the entry of ``false`` or ``true``."""
-    return Entry("`false`, `true`", help, "", lambda node, _: node.truth())
+    return FieldSpec("`false`, `true`", help, "", lambda node, _: node.truth())
 
 
-def text(help: str) -> Entry:
+def text(help: str) -> FieldSpec:
     """Return the entry of a string."""
-    return Entry("text", help, "", lambda node, _: node.text())
+    return FieldSpec("text", help, "", lambda node, _: node.text())

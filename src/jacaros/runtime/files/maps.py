@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from jacaros.runtime.files.texts import LARGEST, close_matches, file_bytes
-from jacaros.runtime.files.yaml import Node
+from jacaros.runtime.files.yaml import YamlNode
 
 WHITE_LEVEL = 255
 _NUMBER = re.compile(rb"(?:\s|#[^\r\n]*+)*+(\d{1,9})")
@@ -186,7 +186,7 @@ class MapHeader:
         places: x and y by name, in metres.
     """
 
-    nodes: Mapping[str, Node]
+    nodes: Mapping[str, YamlNode]
     image: str
     resolution: float
     origin: tuple[float, float, float]
@@ -199,7 +199,7 @@ class MapHeader:
         return b"".join(meant[row * width : (row + 1) * width] for row in reversed(range(image.height)))
 
 
-def read_header(document: Node) -> MapHeader:
+def read_header(document: YamlNode) -> MapHeader:
     """Read the header of a map; mistakes are noted at the nodes of the *document*."""
     # Map servers ignore unknown keys; an unknown key that resembles a known one is a mistake.
     given = document.value if isinstance(document.value, dict) else {}
@@ -216,13 +216,13 @@ def read_header(document: Node) -> MapHeader:
     )
 
 
-def _origin(node: Node | None) -> tuple[float, float, float]:
+def _origin(node: YamlNode | None) -> tuple[float, float, float]:
     usual, help = (0.0, 0.0, 0.0), "write [x, y, yaw] of the lower left corner"
     x, y, yaw = usual if node is None else node.numbers("three", help, usual)
     return x, y, yaw
 
 
-def _cells(nodes: Mapping[str, Node]) -> bytes:
+def _cells(nodes: Mapping[str, YamlNode]) -> bytes:
     inverted = "negate" in nodes and _truth(nodes["negate"])
     raw = "mode" in nodes and nodes["mode"].choice("trinary", "scale", "raw") == "raw"
     occupied = nodes["occupied_thresh"].number(0.0, 1.0, 0.65) if "occupied_thresh" in nodes else 0.65
@@ -240,6 +240,6 @@ def _cells(nodes: Mapping[str, Node]) -> bytes:
     return CELLS if raw else bytes(map(meaning, range(256)))
 
 
-def _truth(node: Node) -> bool:
+def _truth(node: YamlNode) -> bool:
     """Return ``0`` or ``1``, as map_server writes it, or ``false`` or ``true``."""
     return node.truth() if isinstance(node.value, bool) else node.number(0.0, 1.0) == 1.0

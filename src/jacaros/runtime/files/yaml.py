@@ -168,7 +168,7 @@ def shown(file: str, lines: list[str], problem: Problem, level: str = "") -> str
     return "\n".join(told)
 
 
-class Node:
+class YamlNode:
     """One value of a YAML document with its place; every reader returns a usable value, even after an error.
 
     Attributes:
@@ -188,7 +188,7 @@ class Node:
 
     def mapping(
         self, *known: str, required: tuple[str, ...] = (), anchors: bool = False
-    ) -> dict[str, "Node"]:
+    ) -> dict[str, "YamlNode"]:
         """Return the entries of a mapping that has only *known* keys and all *required* ones.
 
         With *anchors*, keys that begin with ``x-`` are free for the author, for example for values that aliases repeat.
@@ -209,10 +209,10 @@ class Node:
                 self.wrong(f"{self.what} lacks the key '{key}'", f"add '{key}: ...'")
         return {str(key): self._entry(key) for key in self.value if not known or key in known}
 
-    def _entry(self, key: object) -> "Node":
+    def _entry(self, key: object) -> "YamlNode":
         # The place of a missing value would be that of the next thing.
         place = self._place(key, at_value=self.value[key] is not None)
-        return Node(self.value[key], *place, self.problems, f"'{key}'")
+        return YamlNode(self.value[key], *place, self.problems, f"'{key}'")
 
     def _place(self, key: object, at_value: bool = False) -> tuple[int, int]:
         """Return line and column of a key or its value; those of the mapping for one that a YAML merge brought in."""
@@ -222,7 +222,7 @@ class Node:
         line, column = places.value(key) if at_value else places.key(key)
         return line + 1, column + 1
 
-    def entries(self) -> Iterator[tuple["Node", "Node"]]:
+    def entries(self) -> Iterator[tuple["YamlNode", "YamlNode"]]:
         """Yield names and values of a mapping whose keys the author chooses; nothing for a missing value."""
         if self.value is None:
             return
@@ -230,9 +230,9 @@ class Node:
             self.wrong(f"{self.what} must be a mapping of names to values", "write 'name: ...' lines")
             return
         for key in self.value:
-            yield Node(key, *self._place(key), self.problems, "a name"), self._entry(key)
+            yield YamlNode(key, *self._place(key), self.problems, "a name"), self._entry(key)
 
-    def sequence(self) -> Iterator["Node"]:
+    def sequence(self) -> Iterator["YamlNode"]:
         """Yield the items of a list; a missing value is an empty list."""
         if self.value is None:
             return
@@ -241,7 +241,7 @@ class Node:
             return
         for index, item in enumerate(self.value):
             line, column = self.value.lc.item(index)
-            yield Node(item, line + 1, column + 1, self.problems, f"item {index + 1} of {self.what}")
+            yield YamlNode(item, line + 1, column + 1, self.problems, f"item {index + 1} of {self.what}")
 
     def number(self, minimum: float = -math.inf, maximum: float = math.inf, default: float = 0.0) -> float:
         """Return a finite number within the limits (both included)."""
@@ -299,7 +299,7 @@ class Node:
         return default
 
 
-def read_document(text: str, problems: list[Problem], what: str) -> Node:
+def read_document(text: str, problems: list[Problem], what: str) -> YamlNode:
     """Parse *text*; errors that its values turn out to have are collected in *problems*.
 
     Text that is not YAML is an error as well, and the document is then empty.
@@ -312,7 +312,7 @@ def read_document(text: str, problems: list[Problem], what: str) -> Node:
     reader = YAML(typ="rt")
     reader.Constructor = _PlacingConstructor
     reader.allow_duplicate_keys = True  # all of them are reported below
-    return Node(_loaded(reader, text, problems), 1, 1, problems, what)
+    return YamlNode(_loaded(reader, text, problems), 1, 1, problems, what)
 
 
 def plain_values(text: str) -> tuple[Any, Problem | None]:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol, TextIO
 
-from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, Stream
+from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, TextStream
 
 _NOT_OF_USERS = (str(Path(__file__).parents[1]), sysconfig.get_path("stdlib"), "<")
 """Beginnings of the names of files that are not the user's code."""
@@ -17,7 +17,7 @@ _NOT_OF_USERS = (str(Path(__file__).parents[1]), sysconfig.get_path("stdlib"), "
 LEVELS = ("debug", "info", "warning", "error")
 
 
-class Console(Protocol):
+class RunConsole(Protocol):
     """The outputs of a run."""
 
     def print(self, agent: str, text: str) -> None:
@@ -42,8 +42,8 @@ class StandardConsole:
     def __init__(
         self,
         level: str = "info",
-        output: Stream | None = None,
-        errors: Stream | None = None,
+        output: TextStream | None = None,
+        errors: TextStream | None = None,
         patience: float = PATIENCE,
     ) -> None:
         self._errors = Output(errors or (lambda: self._standard("stderr")), "standard error", None, patience)
@@ -74,8 +74,8 @@ class StandardConsole:
                         setattr(sys, name, self._streams[name])
                 self._printed, self._streams = {}, {}
 
-    def _standard(self, name: str) -> Stream | None:
-        stream: Stream | None = self._streams[name] if name in self._streams else getattr(sys, name)
+    def _standard(self, name: str) -> TextStream | None:
+        stream: TextStream | None = self._streams[name] if name in self._streams else getattr(sys, name)
         return stream
 
     def print(self, agent: str, text: str) -> None:
@@ -114,7 +114,7 @@ class HeardConsole:
         print: prints a line of an agent's output on *console*.
     """
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: RunConsole) -> None:
         self._console = console
         self.print = console.print
         self._listeners: tuple[Callable[[str, str], None], ...] = ()

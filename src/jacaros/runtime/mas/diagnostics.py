@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from jacaros.robots.ros.errors import RosError
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.mas.agents.host import AgentHost
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 
 if TYPE_CHECKING:
     from jacaros.robots.ros.backend import Backend
@@ -174,7 +174,7 @@ class RosoutConsole:
         backend: returns our node; None before the graph has been joined.
     """
 
-    def __init__(self, console: Console, backend: "Callable[[], Backend | None]") -> None:
+    def __init__(self, console: RunConsole, backend: "Callable[[], Backend | None]") -> None:
         self._console = console
         self._backend = backend
         self._refused = False

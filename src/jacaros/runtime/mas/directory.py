@@ -191,7 +191,7 @@ def _parted(message: SpeechAct) -> SpeechAct:
 NAME = "df"
 _PROVIDER, _SUBSCRIBE = functor("provider", 2), functor("subscribe", 2)
 
-Watcher = Callable[[str, str, bool], None]
+ParticipantWatcher = Callable[[str, str, bool], None]
 """Called with an agent, a service, and whether the agent provides it from now on."""
 
 
@@ -206,7 +206,7 @@ class ServiceDirectory:
     def __init__(self, make: Callable[[], Mind], deliver: Callable[[SpeechAct], bool]) -> None:
         self._make = make
         self._deliver = deliver
-        self._watchers: list[Watcher] = []
+        self._watchers: list[ParticipantWatcher] = []
 
     @cached_property
     def agent(self) -> Mind:
@@ -238,7 +238,7 @@ class ServiceDirectory:
         for provider in self.providers(service):
             self._tell(name, provider, service)
 
-    def watch(self, watcher: Watcher) -> Callable[[], None]:
+    def watch(self, watcher: ParticipantWatcher) -> Callable[[], None]:
         """Call *watcher* whenever an agent begins (True) or ceases (False) to provide a service. Return a function that
         ends this.
 

@@ -18,7 +18,7 @@ from jacaros.runtime.clock import Clock
 from jacaros.runtime.files.python_modules import ModuleUnreadable, NotImported, ProjectModules
 from jacaros.runtime.files.texts import close_matches
 from jacaros.runtime.mas.agents.host import AgentHost
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.deployment import (
     AgentSpec,
     ArtifactSpec,
@@ -102,7 +102,7 @@ class RunEnvironment:
         modules: ProjectModules,
         clock: Clock,
         resources: Mapping[str, object],
-        console: Console,
+        console: RunConsole,
         activity: Activity,
         on_internal_error: Callable[[BaseException], None],
     ) -> None:

@@ -21,7 +21,7 @@ from jacaros.robots.ros import lifetime
 from jacaros.runtime.clock import Alarm, Clock, VirtualClock, WallClock, new_event_loop
 from jacaros.runtime.files.texts import is_file
 from jacaros.runtime.mas.agents.programs import PROJECTS, source_folders
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, ProjectError
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.system import System
@@ -86,7 +86,7 @@ def _lone_agent(path: Path) -> Deployment:
 def launch(
     project: str | Path | Deployment,
     options: RunOptions,
-    console: Console,
+    console: RunConsole,
     when_started: Callable[[System], None] | None = None,
     own_process: bool = True,
 ) -> int:
@@ -141,7 +141,7 @@ def launch(
             watchdog.stop()
 
 
-def chosen_clock(options: RunOptions, console: Console, other: Clock | None = None) -> Clock:
+def chosen_clock(options: RunOptions, console: RunConsole, other: Clock | None = None) -> Clock:
     """Return the clock that the options ask for: that of the ROS graph, or else *other*, or a new one."""
     if options.ros_clock:
         from jacaros.robots.ros.ros_clock import RosClock  # here: only for simulators on a real graph

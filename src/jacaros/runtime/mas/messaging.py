@@ -16,7 +16,7 @@ from jacaros.runtime.mas.scheduler import Activity, AgentTimer
 T = TypeVar("T")
 Send = Callable[[SpeechAct], bool]
 """Delivers a message. Returns False if the receiver is unknown."""
-Names = Callable[[], Sequence[str]]
+ListNames = Callable[[], Sequence[str]]
 """Returns the names of all participants."""
 
 
@@ -76,7 +76,7 @@ class Correspondent:
         when_read: called with each message that it reads, or None.
     """
 
-    def __init__(self, name: str, send: Send, names: Names) -> None:
+    def __init__(self, name: str, send: Send, names: ListNames) -> None:
         self.name = name
         self.when_read: Callable[[SpeechAct], object] | None = None
         self._send, self._names = send, names
@@ -162,7 +162,7 @@ class Messaging(Correspondent):
         self,
         name: str,
         send: Send,
-        names: Names,
+        names: ListNames,
         clock: Clock,
         activity: Activity,
         waiting: Callable[[], AbstractContextManager[None]],

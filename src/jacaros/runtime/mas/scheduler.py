@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from jacaros.agents.mind.state.act import Timer
+from jacaros.agents.mind.state.act import TimerHandle
 from jacaros.runtime.clock import Clock, real_time, run_context
 
 
@@ -344,7 +344,7 @@ class AgentTimer:
         self._activity = activity
         self._callback = callback
         activity.begin()
-        self._timer: Timer | None = clock.call_later(delay, self._ring)
+        self._timer: TimerHandle | None = clock.call_later(delay, self._ring)
 
     def cancel(self) -> None:
         """Cancel the timer. No effect after it has fired."""

@@ -18,7 +18,7 @@ from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.agents.lifecycle import AgentLifecycle
 from jacaros.runtime.mas.agents.programs import Programs, asks_why
 from jacaros.runtime.mas.agents.python_code import PythonCode
-from jacaros.runtime.mas.console import Console, HeardConsole
+from jacaros.runtime.mas.console import HeardConsole, RunConsole
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, has_own_artifacts
 from jacaros.runtime.mas.directory import NAME as DIRECTORY_NAME
 from jacaros.runtime.mas.directory import Directory, Mailboxes, ServiceDirectory
@@ -75,7 +75,7 @@ class System:
         self,
         deployment: Deployment,
         clock: Clock,
-        console: Console,
+        console: RunConsole,
         options: RunOptions | None = None,
         prepare: Callable[[Program, PythonCode], Program] | None = None,
         when_made: Callable[[AgentHost], None] | None = None,
@@ -89,7 +89,7 @@ class System:
             from jacaros.runtime.mas.diagnostics import RosoutConsole  # here: only for runs on a real graph
 
             console = RosoutConsole(console, lambda: self.ros.joined)
-        self.console: Console = HeardConsole(console)
+        self.console: RunConsole = HeardConsole(console)
         self.listen_to_log = self.console.listen
         self.directory: Directory = Directory()
         self.activity = Activity()

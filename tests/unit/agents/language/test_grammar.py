@@ -9,7 +9,7 @@ import pytest
 from ebnf import Recogniser, read, written
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.cursor import CLOSERS, Names
+from jacaros.agents.language.cursor import CLOSERS, ProgramNames
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.agents.language.lexer import Token, tokenize
 from jacaros.agents.language.program_parser import ProgramParser
@@ -55,7 +55,7 @@ class AnyDirective:
 def errors(tokens: list[str]) -> set[str]:
     """The codes of the parser's errors."""
     found: list[Diagnostic] = []
-    names = Names(count(), count(), count())
+    names = ProgramNames(count(), count(), count())
     ProgramParser(SourceFile("a.asl", " ".join(tokens)), names, found, AnyDirective()).file_clauses()
     return {each.code for each in found if each.severity == "error"}
 
@@ -160,7 +160,7 @@ def classes(token: Token) -> set[str]:
 def test_recorded_programs_belong_to_the_grammar(path: Path) -> None:
     found: list[Diagnostic] = []
     file = SourceFile(str(path), path.read_text(encoding="utf-8"))
-    ProgramParser(file, Names(count(), count(), count()), found, AnyDirective()).file_clauses()
+    ProgramParser(file, ProgramNames(count(), count(), count()), found, AnyDirective()).file_clauses()
     tokens = tokenize(file, found.append)
     codes = {each.code for each in found if each.severity == "error"}
     if not codes & (MEANING | INSIDE_TOKENS):

@@ -4,7 +4,7 @@ from recording_host import mind
 
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.pending import cancel, listen, notify_listeners
-from jacaros.agents.mind.state.pending import Listener
+from jacaros.agents.mind.state.pending import PendingEvent
 from jacaros.agents.mind.state.triggers import trigger
 from jacaros.agents.terms.values import BY_SELF, Var, functor
 
@@ -12,14 +12,14 @@ ADDED = trigger("+", "", functor("a", 1))
 OTHER = trigger("+", "", functor("b", 1))
 
 
-def wait(agent: Mind, kind: object, heard: list[Listener]) -> Listener:
+def wait(agent: Mind, kind: object, heard: list[PendingEvent]) -> PendingEvent:
     made = listen(agent, kind, Var(), lambda _: heard.append(made))  # type: ignore[arg-type]
     return made
 
 
 def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
     agent = mind("").agent
-    heard: list[Listener] = []
+    heard: list[PendingEvent] = []
     first, any_kind, other, last = (wait(agent, kind, heard) for kind in (ADDED, None, OTHER, ADDED))
     notify_listeners(agent, ((ADDED, 1.0), None, BY_SELF, None))
     assert heard == [first, any_kind, last]
@@ -30,7 +30,7 @@ def test_waits_for_one_kind_and_for_any_kind_keep_their_order() -> None:
 
 def test_ended_waits_leave_nothing_behind() -> None:
     agent = mind("").agent
-    heard: list[Listener] = []
+    heard: list[PendingEvent] = []
     first, second = wait(agent, ADDED, heard), wait(agent, ADDED, heard)
     cancel(agent, first)
     cancel(agent, first)

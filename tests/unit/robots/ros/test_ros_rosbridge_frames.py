@@ -24,7 +24,7 @@ pytest.importorskip("websockets")
 from websockets.frames import Frame
 from websockets.server import ServerProtocol
 
-from jacaros.robots.ros.drivers.rosbridge.link import BACKLOG, Link
+from jacaros.robots.ros.drivers.rosbridge.link import BACKLOG, RosbridgeLink
 from jacaros.robots.ros.protocols.rosbridge_wire import Wire
 from jacaros.runtime.clock import WallClock, run
 
@@ -61,9 +61,9 @@ class Server:
 
 def told_of(payload: bytes) -> list[str]:
     told: list[str] = []
-    Link("ws://robot.example:9090", lambda: None, lambda: None, lambda _: None, told.append).received(
-        payload, binary=True
-    )
+    RosbridgeLink(
+        "ws://robot.example:9090", lambda: None, lambda: None, lambda _: None, told.append
+    ).received(payload, binary=True)
     return told
 
 
@@ -229,9 +229,9 @@ class Robot:
 
 
 @asynccontextmanager
-async def linked(robot: Robot) -> AsyncIterator[tuple[Link, list[Any]]]:
+async def linked(robot: Robot) -> AsyncIterator[tuple[RosbridgeLink, list[Any]]]:
     up, got = asyncio.Event(), list[Any]()
-    link = Link(robot.url, up.set, lambda: None, got.append, print)
+    link = RosbridgeLink(robot.url, up.set, lambda: None, got.append, print)
     link.start()
     await up.wait()
     yield link, got
@@ -300,11 +300,11 @@ def test_a_question_blocks_until_its_answer_and_other_messages_wait_for_the_loop
 
 
 def test_what_is_sent_after_the_loop_has_ended_arrives_and_is_answered() -> None:
-    robot, links = Robot(), list[Link]()
+    robot, links = Robot(), list[RosbridgeLink]()
 
     async def main() -> None:
         up = asyncio.Event()
-        links.append(Link(robot.url, up.set, lambda: None, lambda _: None, print))
+        links.append(RosbridgeLink(robot.url, up.set, lambda: None, lambda _: None, print))
         links[0].start()
         await up.wait()
 

@@ -14,7 +14,7 @@ from jacaros.robots.ros.fields import FieldType
 from jacaros.robots.ros.qos import QoS
 from jacaros.runtime.cli.graph.standard_topics import robots
 from jacaros.runtime.cli.graph.suggestions import (
-    Entry,
+    MappingEntry,
     acting,
     calling,
     looking,
@@ -52,7 +52,7 @@ def info(type_name: str) -> TopicInfo:
     return TopicInfo("/t", (type_name,), (Endpoint("/n"),), (Endpoint("/m"),))
 
 
-def checked(types: StoredInterfaces, *entries: Entry) -> str:
+def checked(types: StoredInterfaces, *entries: MappingEntry) -> str:
     """Return the text of the entries, which must be valid."""
     lines = []
     for section in dict.fromkeys(entry.section for entry in entries):

@@ -7,7 +7,7 @@ from typing import Any
 from jacaros.agents.mind.mind import Mind
 from jacaros.robots.ros.open import open_backend
 from jacaros.runtime.clock import VirtualClock, run
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.diagnostics import OK, TOPIC, TYPE, WARN, AgentHealth
 from jacaros.runtime.mas.launch import load_deployment
 from jacaros.runtime.mas.options import RunOptions
@@ -33,7 +33,7 @@ def watched(
     path = folder / "bob.asl"
     path.write_text(program, encoding="utf-8")
     clock, messages = VirtualClock(), []
-    console: Console = Silent()
+    console: RunConsole = Silent()
 
     async def main() -> None:
         options = RunOptions(fast=True, diagnostics=True, seed=1)

@@ -49,12 +49,12 @@ if TYPE_CHECKING:
     from datetime import datetime
 
 
-Result = TypeVar("Result")
+T = TypeVar("T")
 
 ERROR, ERROR_MSG, REASON = functor("error", 1), functor("error_msg", 1), functor("reason", 1)
 
 
-def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], Result]) -> Result:
+def _on_goal(ctx: Context, goal: Term, act: Callable[[Term], T]) -> T:
     """Apply *act* to all matching goals; the variables of *goal* are bound as in the first one.
 
     Returns the result of *act*: true if the calling intention itself was cut.

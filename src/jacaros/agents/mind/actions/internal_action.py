@@ -26,8 +26,8 @@ from jacaros.agents.terms.text import text
 from jacaros.agents.terms.values import NUMBERS, String, Term, double, is_list, list_items
 
 Function = Callable[..., Any]
-Declared = TypeVar("Declared", bound=Function)
-Written = tuple[Term | None, ...]
+F = TypeVar("F", bound=Function)
+FixedArguments = tuple[Term | None, ...]
 """The arguments of a call as far as the program fixes them; None for those known only at run time."""
 
 
@@ -79,14 +79,14 @@ class InternalAction(Declaration):
     name: str
     function: Function = _undefined
     backtracks: bool = False
-    direct: Callable[[Written], Function | None] | None = None
+    direct: Callable[[FixedArguments], Function | None] | None = None
     values: Callable[..., Iterable[Term]] | None = None
     collects: bool = False
     by_name: bool = False
     pure: bool = False
     restricted: int | None = None
 
-    def __call__(self, function: Declared) -> Declared:
+    def __call__(self, function: F) -> F:
         """Register *function* under the name."""
         _declared[self.name] = replace(self, function=function)
         return function
@@ -98,8 +98,8 @@ class InternalAction(Declaration):
 
 internal_action = InternalAction
 
-Registry = dict[str, InternalAction]
-_declared: Registry = {}
+InternalActions = dict[str, InternalAction]
+_declared: InternalActions = {}
 STANDARD: Final[Mapping[str, InternalAction]] = MappingProxyType(_declared)
 """The internal actions of the language; an agent may have more."""
 

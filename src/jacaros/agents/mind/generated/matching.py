@@ -547,7 +547,7 @@ def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:
 def _lowered(fn: FunctionBuilder, node: nodes.Node) -> str:
     """A formula, plan, rule or body as a term, which is made as an interpreted step makes it: few programs need many."""
     values = ", ".join(f"{name!r}: {variable(fn, name)}" for name in names_in(node))
-    return f"lower({fn.constant(node)}, Names({{{values}}}).__getitem__)"
+    return f"lower({fn.constant(node)}, VariableNames({{{values}}}).__getitem__)"
 
 
 _COMPOUND: dict[type, Callable[..., str]] = {

@@ -27,7 +27,7 @@ from jacaros.agents.mind.state.triggers import Trigger
 from jacaros.agents.terms.values import Functor
 
 
-class Body(NamedTuple):
+class CompiledBody(NamedTuple):
     """The written body of a plan.
 
     Attributes:
@@ -54,7 +54,7 @@ class Body(NamedTuple):
             function.plan, function.info, function.steps = plan, info, self.steps
 
 
-class Written(NamedTuple):
+class CompiledUnit(NamedTuple):
     """A unit that has been written, and what its functions are for.
 
     Attributes:
@@ -66,7 +66,7 @@ class Written(NamedTuple):
 
     unit: CodeUnit
     name: str
-    bodies: Sequence[Body] = ()
+    bodies: Sequence[CompiledBody] = ()
     conditions: Sequence[tuple[Plan, str]] = ()
 
 
@@ -91,7 +91,7 @@ def write_search(
     after: Sequence[nodes.Rule],
     actions: Mapping[str, InternalAction],
     trampoline: bool,
-) -> Written:
+) -> CompiledUnit:
     """Write the generator function of a predicate for one pattern of use.
 
     Args:
@@ -121,7 +121,7 @@ def write_search(
             fn.line("t.room += 1")
         fn.line("return")
         fn.line("yield")
-    return Written(unit, name)
+    return CompiledUnit(unit, name)
 
 
 def _facts(fn: FunctionBuilder, symbol: Functor, given: dict[int, str]) -> None:
@@ -353,7 +353,7 @@ def _goal_condition(unit: CodeUnit, plan: Plan) -> str:
     return name
 
 
-def write_rule(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> Written:
+def write_rule(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> CompiledUnit:
     """Write the generator function of a rule: ``rule(agent, arguments, t)`` yields once per answer."""
     unit = CodeUnit(_file_of(rule), actions)
     name = unit.fresh_function("rule")
@@ -380,7 +380,7 @@ def write_rule(rule: nodes.Rule, actions: Mapping[str, InternalAction]) -> Writt
         fn.line("if len(t) > n0: undo(t, n0)")
         fn.line("return")
         fn.line("yield")
-    return Written(unit, name)
+    return CompiledUnit(unit, name)
 
 
 def _file_of(rule: nodes.Rule) -> str:
@@ -393,7 +393,7 @@ def write_select(
     actions: Mapping[str, InternalAction],
     outer: Plan | None = None,
     every: bool = False,
-) -> Written:
+) -> CompiledUnit:
     """Write the select function of an event kind; *outer* is the plan that sub-plans belong to.
 
     With *every* it is a generator of the frames of all applicable plans.
@@ -404,15 +404,15 @@ def write_select(
     conditions = [
         (plan, _goal_condition(unit, plan)) for plan in plans if plan.node.goal_condition is not None
     ]
-    bodies = [Body(plan, first, body.frame.size, body.infos) for plan, body, first in compiler.bodies]
-    return Written(unit, name, bodies, conditions)
+    bodies = [CompiledBody(plan, first, body.frame.size, body.infos) for plan, body, first in compiler.bodies]
+    return CompiledUnit(unit, name, bodies, conditions)
 
 
-def write_body(plan: Plan, actions: Mapping[str, InternalAction]) -> Written:
+def write_body(plan: Plan, actions: Mapping[str, InternalAction]) -> CompiledUnit:
     """Write the steps of a plan that stands for a body made at run time."""
     unit = CodeUnit("<body>", actions)
     compiler = BodyCompiler(unit, FrameLayout(plan), "step")
     body = plan.node.body
     assert isinstance(body, nodes.Body)
     first = compiler.body(body.steps, "None")
-    return Written(unit, first, [Body(plan, first, compiler.frame.size, compiler.infos)])
+    return CompiledUnit(unit, first, [CompiledBody(plan, first, compiler.frame.size, compiler.infos)])

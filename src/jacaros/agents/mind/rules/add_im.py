@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.lowering import Names, lower
+from jacaros.agents.language.lowering import VariableNames, lower
 from jacaros.agents.language.nodes import names_in
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.rules import failure_reason, forks, meta_events, needs
@@ -86,7 +86,7 @@ class Selection:
         self, plan: Plan, agent: Circumstance, goal: Goal, annotations: EventAnnotations
     ) -> Iterator[Frame]:
         """Yield a frame for each answer of the context. A plan whose context cannot be evaluated is not applicable."""
-        names = Names() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
+        names = VariableNames() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
         try:
             if not is_relevant(plan, goal, annotations, names, agent.trail):
                 return
@@ -102,7 +102,9 @@ class Selection:
             agent.context.report_plan(plan, fault)
 
 
-def is_relevant(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, trail: Trail) -> bool:
+def is_relevant(
+    plan: Plan, goal: Goal, annotations: EventAnnotations, names: VariableNames, trail: Trail
+) -> bool:
     """Rule RelPl: return whether the trigger of a plan unifies with an event; bind the variables of the plan."""
     literal = plan.node.trigger.literal
     if not isinstance(literal, nodes.Variable) and isinstance(literal.namespace, nodes.Variable):
@@ -127,9 +129,9 @@ def is_relevant(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Na
     return unify_annotations(items, tail, annotations_of_event(annotations), None, trail)
 
 
-def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
+def _names_of(outer: Plan, frame: Frame, plan: Plan) -> VariableNames:
     """Return the variables that a sub-plan shares with its outer plan."""
-    names = Names()
+    names = VariableNames()
     for name in names_in(plan.node):
         slot = outer.slots.get(name)
         if slot is not None:
@@ -137,7 +139,7 @@ def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Names:
     return names
 
 
-def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Names, serial: int) -> Frame:
+def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: VariableNames, serial: int) -> Frame:
     """Return the frame of an applicable plan, at its first step."""
     body = interpreted(plan)
     for name in body.known:

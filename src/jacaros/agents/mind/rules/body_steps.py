@@ -13,7 +13,14 @@ from typing import Any
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.loader import parse_trigger
-from jacaros.agents.language.lowering import Names, Reflection, fresh_names, lower, lower_plan, lower_trigger
+from jacaros.agents.language.lowering import (
+    Reflection,
+    VariableNames,
+    fresh_names,
+    lower,
+    lower_plan,
+    lower_trigger,
+)
 from jacaros.agents.language.nodes import names_in, nodes_in
 from jacaros.agents.mind.rules.forks import join_branch
 from jacaros.agents.mind.rules.query import answers, collecting
@@ -87,18 +94,18 @@ class Step:
         self.next = behind
         self.info.next = "None" if behind is None else behind.__name__
 
-    def values(self, frame: Frame) -> Names:
+    def values(self, frame: Frame) -> VariableNames:
         """The variables that the step mentions; those without a value are made when they are first asked for."""
-        return Names(variables_of(frame, self.names))
+        return VariableNames(variables_of(frame, self.names))
 
-    def keep(self, frame: Frame, names: Names) -> None:
+    def keep(self, frame: Frame, names: VariableNames) -> None:
         """Store the variables that the step has bound. Known variables keep their places: a loop around unbinds them."""
         slots = frame[PLAN].slots
         for name in self.names:
             if name in slots and name in names and frame[slots[name]] is None:
                 frame[slots[name]] = deref(names[name])
 
-    def go_on(self, frame: Frame, names: Names, posted: object = None) -> object:
+    def go_on(self, frame: Frame, names: VariableNames, posted: object = None) -> object:
         """The step has succeeded."""
         self.keep(frame, names)
         frame[STEP] = self.next
@@ -211,12 +218,12 @@ class GoalCondition:
 
     def __call__(self, agent: Any, frame: Frame) -> bool:
         """Ask the beliefs."""
-        found = holds(agent, self.node, Names(variables_of(frame, self.names)), agent.trail)
+        found = holds(agent, self.node, VariableNames(variables_of(frame, self.names)), agent.trail)
         undo(agent.trail, 0)
         return found
 
 
-def holds(agent: Any, condition: nodes.Node, names: Names, trail: Trail) -> bool:
+def holds(agent: Any, condition: nodes.Node, names: VariableNames, trail: Trail) -> bool:
     """Whether a condition has an answer; the bindings of the first one stay."""
     for _ in run(answers(agent, condition, names.__getitem__, trail), agent.options.rule_depth):
         return True
@@ -341,7 +348,9 @@ def _for(step: Step, node: nodes.For, agent: Any, frame: Frame) -> object:
     return step.first[0](agent, frame)  # type: ignore[misc]
 
 
-def _rounds(node: nodes.For, agent: Any, names: Names, wanted: list[str]) -> Iterator[tuple[Term, ...]]:
+def _rounds(
+    node: nodes.For, agent: Any, names: VariableNames, wanted: list[str]
+) -> Iterator[tuple[Term, ...]]:
     """Yield the values of the variables of a ``for`` in each round."""
     trail = Trail()
     trail.serial = agent.trail.serial

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Span
-from jacaros.agents.language.lowering import Names, format_term, lower
+from jacaros.agents.language.lowering import VariableNames, format_term, lower
 from jacaros.agents.language.nodes import names_in, operands
 from jacaros.agents.mind.rules.context import Impure, ReadOnly, reading
 from jacaros.agents.mind.state.belief_base import Table
@@ -393,7 +393,7 @@ class FailingContexts:
         """Return whether the trigger of a plan fits the goal; True if that cannot be determined."""
         trail = Trail()
         try:
-            return self._matches(plan, Names().__getitem__, trail)
+            return self._matches(plan, VariableNames().__getitem__, trail)
         except Exception:
             return True
         finally:
@@ -406,7 +406,7 @@ class FailingContexts:
             return ""
         try:
             with reading(self._agent, MOST_STEPS) as view:
-                names = Names()
+                names = VariableNames()
                 if not self._matches(plan, names.__getitem__, view.trail):
                     return ""
                 return _Search(self._agent, view, context, names).outcome()
@@ -422,7 +422,9 @@ class FailingContexts:
 class _Search:
     """One search of a context, conjunct by conjunct, from the left."""
 
-    def __init__(self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: Names) -> None:
+    def __init__(
+        self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: VariableNames
+    ) -> None:
         self._agent, self._view, self._names = agent, view, names
         self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
         self._deepest: _Stop | None = None

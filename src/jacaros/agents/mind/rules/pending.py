@@ -11,7 +11,7 @@ from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.state.belief_base import BeliefTables, Row
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import EVENT_GOAL, Event, event_literal
-from jacaros.agents.mind.state.pending import Alarm, Asked, Listener, Pending, Watch
+from jacaros.agents.mind.state.pending import Asked, Pending, PendingCondition, PendingEvent, PendingTimer
 from jacaros.agents.mind.state.triggers import Trigger
 from jacaros.agents.terms.substitution import ATOMIC, rename
 from jacaros.agents.terms.unifier import undo, unify
@@ -47,12 +47,12 @@ def now(agent: Circumstance) -> float:
 def cancel(agent: Circumstance, pending: Pending) -> None:
     """Cancel a call; no effect if it has been made."""
     waits, number = agent.waits, pending.number
-    if isinstance(pending, Alarm):
+    if isinstance(pending, PendingTimer):
         if waits.alarms.pop(number, None) is not None:
             pending.timer.cancel()
-    elif isinstance(pending, Listener):
+    elif isinstance(pending, PendingEvent):
         _take_out(waits.events, (pending.kind,), number)
-    elif isinstance(pending, Watch) and waits.conditions.pop(number, None) is not None:
+    elif isinstance(pending, PendingCondition) and waits.conditions.pop(number, None) is not None:
         waits.restless.pop(number, None)
         waits.due.pop(number, None)
         for place in pending.asked or ():
@@ -81,20 +81,22 @@ _ROUNDED = 0.001
 """By how many seconds a timer may ring early."""
 
 
-def set_alarm(agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any) -> Alarm:
+def set_alarm(
+    agent: Circumstance, delay: float, function: Callable[..., None], *arguments: Any
+) -> PendingTimer:
     """Call *function* with the agent and the arguments after *delay* seconds of the run's clock."""
-    alarm = Alarm(_numbered(agent), function, arguments, now(agent) + delay)
+    alarm = PendingTimer(_numbered(agent), function, arguments, now(agent) + delay)
     agent.waits.alarms[alarm.number] = alarm
     start_alarm(agent, alarm, delay)
     return alarm
 
 
-def start_alarm(agent: Circumstance, alarm: Alarm, delay: float) -> None:
+def start_alarm(agent: Circumstance, alarm: PendingTimer, delay: float) -> None:
     """Have the host ring after *delay* seconds."""
     alarm.timer = agent.architecture.set_timer(delay, partial(_ring, agent, alarm))
 
 
-def _ring(agent: Circumstance, alarm: Alarm) -> None:
+def _ring(agent: Circumstance, alarm: PendingTimer) -> None:
     del agent.waits.alarms[alarm.number]
     early = alarm.due - now(agent)
     if early > _ROUNDED:
@@ -111,9 +113,9 @@ def listen(
     pattern: Term,
     function: Callable[..., None],
     *arguments: Any,
-) -> Listener:
+) -> PendingEvent:
     """Call *function* with the agent and the arguments at the next event of a kind (None: of any) that matches."""
-    listener = Listener(_numbered(agent), function, arguments, kind, pattern)
+    listener = PendingEvent(_numbered(agent), function, arguments, kind, pattern)
     agent.waits.events.setdefault(kind, {})[listener.number] = listener
     return listener
 
@@ -136,14 +138,16 @@ def notify_listeners(agent: Circumstance, event: Event) -> None:
 # --- conditions --------------------------------------------------------------------------------------------
 
 
-def watch(agent: Circumstance, condition: Term, function: Callable[..., None], *arguments: Any) -> Watch:
+def watch(
+    agent: Circumstance, condition: Term, function: Callable[..., None], *arguments: Any
+) -> PendingCondition:
     """Call *function* once a condition holds, with its bindings, or cannot be evaluated.
 
     Its arguments are the agent, None or the exception if it cannot be evaluated, and *arguments*.
     """
     asked = asked_by(condition, agent.beliefs, agent.engine.actions)
     waits, number = agent.waits, _numbered(agent)
-    made = Watch(number, function, arguments, condition, asked)
+    made = PendingCondition(number, function, arguments, condition, asked)
     waits.conditions[number] = waits.due[number] = made
     if asked is None:
         waits.restless[number] = made

@@ -119,7 +119,7 @@ def _holds(agent: Circumstance, question: Term) -> bool:
     return holds
 
 
-Item = TypeVar("Item")
+T = TypeVar("T")
 
 _TRIGGERS = {
     "tell": ("+", ""),
@@ -302,7 +302,7 @@ class _OfKinds(dict[Trigger, int]):
         return self[kind]
 
 
-class CalmQueue(deque[Item], Generic[Item]):
+class CalmQueue(deque[T], Generic[T]):
     """A queue in which nothing is urgent: the first goes first.
 
     Args:
@@ -312,12 +312,12 @@ class CalmQueue(deque[Item], Generic[Item]):
 
     __slots__ = ("urgency",)
 
-    def __init__(self, urgency: Callable[[Item], int], items: Iterable[Item] = ()) -> None:
+    def __init__(self, urgency: Callable[[T], int], items: Iterable[T] = ()) -> None:
         super().__init__(sorted(items, key=urgency, reverse=True))
         self.urgency = urgency
 
 
-class UrgentQueue(CalmQueue[Item]):
+class UrgentQueue(CalmQueue[T]):
     """A queue ordered by urgency, and by arrival among equals."""
 
     __slots__ = ()
@@ -326,7 +326,7 @@ class UrgentQueue(CalmQueue[Item]):
         """Return the urgency of the first item, which is the greatest; 0 without any."""
         return self.urgency(self[0]) if self else 0
 
-    def append(self, item: Item) -> None:
+    def append(self, item: T) -> None:
         """Put an item after those that are as urgent or more."""
         urgency = self.urgency(item)
         # Nothing is below 0, so items that are not urgent need no comparison.
@@ -335,7 +335,7 @@ class UrgentQueue(CalmQueue[Item]):
         else:
             self.insert(bisect_right(self, -urgency, key=lambda other: -self.urgency(other)), item)
 
-    def extendleft(self, items: Iterable[Item]) -> None:
+    def extendleft(self, items: Iterable[T]) -> None:
         """Put items back before those that are as urgent."""
         for item in items:
             self.insert(bisect_left(self, -self.urgency(item), key=lambda other: -self.urgency(other)), item)

@@ -179,7 +179,7 @@ class MindObserver(Protocol):
 # reaches out through this port alone.
 
 
-class Timer(Protocol):
+class TimerHandle(Protocol):
     """A pending call."""
 
     def cancel(self) -> None:
@@ -284,12 +284,12 @@ class Architecture(Protocol):
     def ready(self) -> None:
         """Report that the agent has work to do: `Mind.run` must be called soon."""
 
-    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> TimerHandle:
         """Call *callback* after *delay* seconds of the run's clock."""
 
     def start_coroutine(
         self, coroutine: Coroutine[Any, Any, Any], ended: Callable[[object, BaseException | None], None]
-    ) -> Timer:
+    ) -> TimerHandle:
         """Run a coroutine of the project's Python code concurrently with the agent.
 
         *ended* is called with its result, or the exception that ended it; not after it was cancelled.

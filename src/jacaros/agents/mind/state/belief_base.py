@@ -331,11 +331,11 @@ def _may_match(entry: Entry, known: list[tuple[int, Term]]) -> bool:
     return True
 
 
-Key = TypeVar("Key")
-Value = TypeVar("Value")
+K = TypeVar("K")
+V = TypeVar("V")
 
 
-def discard(rows: dict[Key, Value], row: Key) -> None:
+def discard(rows: dict[K, V], row: K) -> None:
     """Take a key out of a dictionary that is read backwards: at its end no gaps are left, which would have to be passed
     over at every reading."""
     last, value = rows.popitem()

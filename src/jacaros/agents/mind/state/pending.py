@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jacaros.agents.mind.state.act import Timer
+from jacaros.agents.mind.state.act import TimerHandle
 from jacaros.agents.mind.state.intention import (
     FIRST_SLOT,
     GOAL,
@@ -115,7 +115,7 @@ class Pending:
 
 
 @dataclass(slots=True, eq=False)
-class Alarm(Pending):
+class PendingTimer(Pending):
     """A call that is due at a moment.
 
     Attributes:
@@ -124,11 +124,11 @@ class Alarm(Pending):
     """
 
     due: float
-    timer: Timer = field(init=False)
+    timer: TimerHandle = field(init=False)
 
 
 @dataclass(slots=True, eq=False)
-class Listener(Pending):
+class PendingEvent(Pending):
     """A call at the next event that matches.
 
     Attributes:
@@ -145,7 +145,7 @@ Asked = tuple[Functor, tuple[int, ...], tuple[Term, ...]]
 
 
 @dataclass(slots=True, eq=False)
-class Watch(Pending):
+class PendingCondition(Pending):
     """A call when a condition holds. None precedes the arguments, or the exception if it cannot be evaluated.
 
     Attributes:
@@ -214,7 +214,7 @@ class AnswerWait(Waiting):
 class CoroutineWait(Waiting):
     """Waits for a coroutine of the project. It is a live object: a mind that waits for one cannot be stored."""
 
-    task: Timer = field(init=False)
+    task: TimerHandle = field(init=False)
 
 
 @dataclass(slots=True, eq=False)
@@ -240,14 +240,14 @@ class Waits:
     """
 
     made: int = 0
-    alarms: dict[int, Alarm] = field(default_factory=dict)
-    events: dict[Trigger | None, dict[int, Listener]] = field(default_factory=dict)
-    conditions: dict[int, Watch] = field(default_factory=dict)
-    asked: dict[Functor, dict[tuple[int, ...], dict[tuple[Term, ...], dict[int, Watch]]]] = field(
+    alarms: dict[int, PendingTimer] = field(default_factory=dict)
+    events: dict[Trigger | None, dict[int, PendingEvent]] = field(default_factory=dict)
+    conditions: dict[int, PendingCondition] = field(default_factory=dict)
+    asked: dict[Functor, dict[tuple[int, ...], dict[tuple[Term, ...], dict[int, PendingCondition]]]] = field(
         default_factory=dict
     )
-    restless: dict[int, Watch] = field(default_factory=dict)
-    due: dict[int, Watch] = field(default_factory=dict)
+    restless: dict[int, PendingCondition] = field(default_factory=dict)
+    due: dict[int, PendingCondition] = field(default_factory=dict)
     acts: dict[int, Waiting] = field(default_factory=dict)
     questions: dict[str, AnswerWait] = field(default_factory=dict)
     abandoned: set[str | None] = field(default_factory=set)

@@ -10,7 +10,7 @@ from jacaros.agents.terms.values import (
     SOURCE_SELF,
     Annotated,
     Functor,
-    Held,
+    InternedRef,
     Term,
     Var,
     annotations_of,
@@ -50,7 +50,7 @@ class Trigger:
 Goal = tuple[Trigger, *tuple[Term, ...]]
 """A goal or an event: its kind, then its arguments."""
 
-_triggers: dict[tuple[str, str, Functor], Held] = {}
+_triggers: dict[tuple[str, str, Functor], InternedRef] = {}
 
 
 def trigger(operator: str, kind: str, functor: Functor) -> Trigger:

@@ -16,7 +16,7 @@ from msgspec.structs import asdict
 from jacaros.agents.body.values import Outputs, to_value
 from jacaros.agents.language.diagnostics import TEXT, AslError
 from jacaros.agents.language.loader import parse_literal
-from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.language.lowering import VariableNames, lower_value
 from jacaros.agents.terms.values import Var, bare
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
@@ -27,7 +27,7 @@ from jacaros.robots.world import World
 from jacaros.robots.world.data.world import PersonDescription
 from jacaros.runtime.clock import of_run
 from jacaros.runtime.errors import JacarosError
-from jacaros.runtime.mas.debugging.debugger import Debugger, Step
+from jacaros.runtime.mas.debugging.debugger import Debugger, StepKind
 from jacaros.runtime.mas.system import System
 
 LONGEST = 2_000
@@ -160,7 +160,7 @@ def debug_commands(debugger: Debugger) -> Mapping[str, Command]:
     def pause() -> None:
         debugger.pause()
 
-    def step(what: Step, agent: Text | None = None) -> None:
+    def step(what: StepKind, agent: Text | None = None) -> None:
         debugger.step(what, agent)
 
     def speed(factor: FiniteNumber) -> None:
@@ -275,7 +275,7 @@ def artifact_commands(system: System) -> Mapping[str, Command]:
 async def _operate(environment: Environment, artifact: str, written: str) -> str:
     """Call an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
     target = _find(environment, artifact)
-    names = Names()
+    names = VariableNames()
     outputs: Outputs = []
     term: Any = bare(lower_value(parse_literal(written), names.__getitem__))
     name, *arguments = term if term.__class__ is tuple else (term,)

@@ -157,7 +157,7 @@ def _piece(waiting: deque[LiveRecord]) -> list[LiveRecord]:
 _number = attrgetter("number")
 
 
-class Past:
+class Backlog:
     """A bounded number of records, and the state before them.
 
     Args:

@@ -7,7 +7,7 @@ from operator import attrgetter
 from typing import Any
 
 from jacaros.look.page.live.commands import Commands, Text
-from jacaros.look.page.live.delivery import EVENTS, FRAMES, Delivery, LiveRecord, Past
+from jacaros.look.page.live.delivery import EVENTS, FRAMES, Backlog, Delivery, LiveRecord
 from jacaros.look.page.page import lines_of, title_of
 from jacaros.look.page.scene import RobotView
 from jacaros.look.records import records
@@ -30,7 +30,7 @@ class LiveView:
 
     def __init__(self, title: str, commands: Commands, live: bool = True) -> None:
         self._title, self._commands, self._live = title, commands, live
-        self._past = Past(EVENTS, FRAMES) if live else Past(inf, inf)
+        self._past = Backlog(EVENTS, FRAMES) if live else Backlog(inf, inf)
         self._deliveries: list[Delivery] = []
         self._number = 0
         self._last: Frame | None = None

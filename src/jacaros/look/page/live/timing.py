@@ -70,7 +70,7 @@ SHARE = 0.05
 AHEAD = 1.0
 """Seconds that a page may be ahead of its share: single commands, and several at once, are executed immediately."""
 
-Result = TypeVar("Result")
+T = TypeVar("T")
 
 
 class Allowances:
@@ -116,9 +116,7 @@ class Allowance:
 
 
 @coroutine
-def metered(
-    work: Coroutine[Any, Any, Result], spend: Callable[[float], object]
-) -> Generator[Any, Any, Result]:
+def metered(work: Coroutine[Any, Any, T], spend: Callable[[float], object]) -> Generator[Any, Any, T]:
     """Run a coroutine, and pass the time that each of its turns on the loop takes to *spend*."""
     turn: Callable[[Any], Any] = work.send
     given: Any = None
@@ -127,7 +125,7 @@ def metered(
         try:
             waiting = turn(given)
         except StopIteration as end:
-            result: Result = end.value
+            result: T = end.value
             return result
         finally:
             spend(real_time() - begun)

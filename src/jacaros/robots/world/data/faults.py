@@ -8,7 +8,7 @@ from typing import Annotated, Final, NamedTuple
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.world.data.world import PersonDescription
-from jacaros.runtime.files.entries import Entry, choice, number, whole
+from jacaros.runtime.files.entries import FieldSpec, choice, number, whole
 
 
 class FaultKind(NamedTuple):
@@ -49,7 +49,7 @@ KINDS: Final[Mapping[str, FaultKind]] = {
 }
 
 
-def _seconds(help: str, key: str = "") -> Entry:
+def _seconds(help: str, key: str = "") -> FieldSpec:
     return number(0.0, math.inf, "s", help, key)
 
 
@@ -79,10 +79,10 @@ class Fault:
     at: Annotated[float | None, _seconds("beginning; without it, only on request")] = None
     lasts: Annotated[float | None, _seconds("duration; without it, until you end it", "for")] = None
     robot: str = ""
-    topic: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
-    action: Annotated[str, Entry("text", "absolute, or below the robot's namespace")] = ""
-    door: Annotated[str, Entry("text", "name of a door")] = ""
-    dock: Annotated[str, Entry("text", "name of a dock")] = ""
+    topic: Annotated[str, FieldSpec("text", "absolute, or below the robot's namespace")] = ""
+    action: Annotated[str, FieldSpec("text", "absolute, or below the robot's namespace")] = ""
+    door: Annotated[str, FieldSpec("text", "name of a door")] = ""
+    dock: Annotated[str, FieldSpec("text", "name of a dock")] = ""
     share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
     wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
     pose: Pose = ORIGIN

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Final
 
 from jacaros.robots.plane.pose import ORIGIN, Pose
 from jacaros.robots.plane.trigonometry import PI, TWO_PI, radians
-from jacaros.runtime.files.entries import Entry, either, flag, number, section, text, whole
+from jacaros.runtime.files.entries import FieldSpec, either, flag, number, section, text, whole
 
 
-def _angle(unit: str, help: str, key: str, least: float = 0.0, most: float = 1e9) -> Entry:
+def _angle(unit: str, help: str, key: str, least: float = 0.0, most: float = 1e9) -> FieldSpec:
     """Return the entry of an angle: degrees in the file, radians in Python."""
     return number(least, most, unit, help, key, radians)
 
@@ -113,7 +113,7 @@ class CleaningTool:
     """
 
     name: str
-    removes: Annotated[tuple[str, ...], Entry("list of texts", "kinds of dirt")]
+    removes: Annotated[tuple[str, ...], FieldSpec("list of texts", "kinds of dirt")]
     rate: Annotated[float, number(0.0, 1e6, "g/s", "dirt removed")] = 5.0
     reach: Annotated[float, number(0.01, 10.0, "m", "from the robot's centre")] = 0.3
 
@@ -222,17 +222,21 @@ class RobotDescription:
     """
 
     name: Annotated[str, text("unique name")] = "turtlebot"
-    namespace: Annotated[str, Entry("text", "prefix of its topics, services and actions")] = ""
-    pose: Annotated[Pose, Entry("`{x, y, yaw_degrees}`", "initial pose")] = ORIGIN
+    namespace: Annotated[str, FieldSpec("text", "prefix of its topics, services and actions")] = ""
+    pose: Annotated[Pose, FieldSpec("`{x, y, yaw_degrees}`", "initial pose")] = ORIGIN
     radius: Annotated[float, number(0.02, 2.0, "m", "of a round robot")] = 0.17
     limits: Annotated[RobotLimits, section("limits of the base")] = RobotLimits()
     battery: Annotated[BatterySettings, section("charge and discharge")] = BatterySettings()
     odometry: Annotated[OdometrySettings, section("origin and errors of odometry")] = OdometrySettings()
     laser: Annotated[LaserSettings, section("laser range finder")] = LaserSettings()
-    navigation: Annotated[NavigationSettings, Entry("mapping or flag", "navigation")] = NavigationSettings()
-    tools: Annotated[tuple[CleaningTool, ...], Entry("mapping", "cleaning tools by name")] = ()
-    gripper_reach: Annotated[float, Entry("mapping or flag", "gripper", "gripper")] = 0.0
-    footprint: Annotated[tuple[float, float] | None, Entry("`[length, width]` m", "of a rectangle")] = None
+    navigation: Annotated[NavigationSettings, FieldSpec("mapping or flag", "navigation")] = (
+        NavigationSettings()
+    )
+    tools: Annotated[tuple[CleaningTool, ...], FieldSpec("mapping", "cleaning tools by name")] = ()
+    gripper_reach: Annotated[float, FieldSpec("mapping or flag", "gripper", "gripper")] = 0.0
+    footprint: Annotated[tuple[float, float] | None, FieldSpec("`[length, width]` m", "of a rectangle")] = (
+        None
+    )
     interface: RobotInterface = EVERYTHING
 
 

@@ -11,12 +11,12 @@ from typing import Annotated, Any
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.plane.shapes import Rectangle, Segment
 from jacaros.robots.world.data.robot import RobotDescription
-from jacaros.runtime.files.entries import Entry, flag, number, text, whole
+from jacaros.runtime.files.entries import FieldSpec, flag, number, text, whole
 from jacaros.runtime.files.texts import help_line, printable
 from jacaros.runtime.files.yaml import YamlFileError
 
 DEFAULT_BOUNDS = Rectangle(-3.0, -3.0, 3.0, 3.0)
-_COLOR = Entry('`"#rrggbb"` or a name', "in drawings")
+_COLOR = FieldSpec('`"#rrggbb"` or a name', "in drawings")
 
 
 def _drawn(thing: Any, *names: str) -> dict[str, Any]:
@@ -72,8 +72,8 @@ class Dock:
 class Door:
     """A piece of wall that exists while the door is closed; ``open`` is the initial state."""
 
-    name: Annotated[str, Entry("text", "unique name, of letters, digits and _")]
-    segment: Annotated[Segment, Entry("`[[x, y], [x, y]]` m", "where it closes")]
+    name: Annotated[str, FieldSpec("text", "unique name, of letters, digits and _")]
+    segment: Annotated[Segment, FieldSpec("`[[x, y], [x, y]]` m", "where it closes")]
     open: Annotated[bool, flag("open at the start")] = False
 
 
@@ -97,7 +97,7 @@ class PersonDescription:
     """
 
     name: Annotated[str, text("unique name")]
-    path: Annotated[tuple[tuple[float, float], ...], Entry("list of `[x, y]` in m", "points of the walk")]
+    path: Annotated[tuple[tuple[float, float], ...], FieldSpec("list of `[x, y]` in m", "points of the walk")]
     speed: Annotated[float, number(0.01, 5.0, "m/s", "walking speed")] = 1.0
     pause: Annotated[float, number(0.0, 1e6, "s", "rest at each point")] = 0.0
     loop: Annotated[bool, flag("continues from the last point to the first")] = False
@@ -132,13 +132,13 @@ class WorldDescription:
     segments: tuple[Segment, ...] = ()
     boxes: tuple[Rectangle, ...] = ()
     furniture: tuple[Furniture, ...] = ()
-    rooms: Annotated[tuple[Room, ...], Entry("mapping", "parts of the floor by name")] = ()
-    docks: Annotated[tuple[Dock, ...], Entry("list", "charging stations")] = ()
-    doors: Annotated[tuple[Door, ...], Entry("list", "open or closed")] = ()
-    cliffs: Annotated[tuple[Rectangle, ...], Entry("list", "areas without floor")] = ()
-    objects: Annotated[tuple[ObjectDescription, ...], Entry("list", "things to carry")] = ()
-    robots: Annotated[tuple[RobotDescription, ...], Entry("list", "at least one")] = (RobotDescription(),)
-    people: Annotated[tuple[PersonDescription, ...], Entry("list", "people who walk")] = ()
+    rooms: Annotated[tuple[Room, ...], FieldSpec("mapping", "parts of the floor by name")] = ()
+    docks: Annotated[tuple[Dock, ...], FieldSpec("list", "charging stations")] = ()
+    doors: Annotated[tuple[Door, ...], FieldSpec("list", "open or closed")] = ()
+    cliffs: Annotated[tuple[Rectangle, ...], FieldSpec("list", "areas without floor")] = ()
+    objects: Annotated[tuple[ObjectDescription, ...], FieldSpec("list", "things to carry")] = ()
+    robots: Annotated[tuple[RobotDescription, ...], FieldSpec("list", "at least one")] = (RobotDescription(),)
+    people: Annotated[tuple[PersonDescription, ...], FieldSpec("list", "people who walk")] = ()
     seed: Annotated[int, whole(0, "of all noise")] = 0
 
     def with_noise(self, factor: float) -> "WorldDescription":

@@ -12,8 +12,8 @@ from jacaros.robots.world.data.world import PersonDescription, WorldDescription,
 from jacaros.robots.world.files.floor import place_problem, read_path
 from jacaros.robots.world.files.map import open_document
 from jacaros.robots.world.files.robot import read_pose
-from jacaros.runtime.files.entries import Reader, values
-from jacaros.runtime.files.yaml import Node, Problem, read_document, top_keys
+from jacaros.runtime.files.entries import ReadValue, values
+from jacaros.runtime.files.yaml import Problem, YamlNode, read_document, top_keys
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _REQUIRED = {
@@ -33,7 +33,7 @@ def read_faults(source: str | Path, world: WorldDescription) -> tuple[Fault, ...
     Raises:
         WorldError: the file does not exist, has mistakes, or does not match the *world*; the text lists all mistakes.
     """
-    document: Node | None
+    document: YamlNode | None
     text, problems = str(source), list[Problem]()
     if isinstance(source, str) and "\n" in source:
         name, document = "faults", read_document(text, problems, "a fault file")
@@ -59,17 +59,17 @@ def fault_file_problems(path: Path) -> tuple[str, list[Problem]]:
     return text, problems
 
 
-def _open(path: Path) -> tuple[str, list[Problem], Node | None]:
+def _open(path: Path) -> tuple[str, list[Problem], YamlNode | None]:
     return open_document(path, "a fault file", "give the path of a file that begins with `faults:`")
 
 
-def _faults(document: Node | None, world: WorldDescription | None) -> tuple[Fault, ...]:
+def _faults(document: YamlNode | None, world: WorldDescription | None) -> tuple[Fault, ...]:
     entries = document.mapping("faults", required=("faults",)) if document is not None else {}
     given = entries["faults"].entries() if "faults" in entries else ()
     return tuple(_fault(key, item, world) for key, item in given)
 
 
-def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
+def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fault:
     name = key.text()
     if not _NAME.fullmatch(name):
         key.wrong(f"invalid fault name '{name}'", "begin with a letter, and use letters, digits and _ only")
@@ -114,7 +114,9 @@ def _fault(key: Node, node: Node, world: WorldDescription | None) -> Fault:
     return fault
 
 
-def _robot(node: Node, given: Node | None, word: str, kind: FaultKind, world: WorldDescription | None) -> str:
+def _robot(
+    node: YamlNode, given: YamlNode | None, word: str, kind: FaultKind, world: WorldDescription | None
+) -> str:
     """Read the affected robot; by default, the only one."""
     if not kind.robot:
         if given is not None:
@@ -139,10 +141,10 @@ def _prefix(robot: str, world: WorldDescription | None) -> str:
     return f"/{namespace}" if namespace else ""
 
 
-def _one_of(what: str, things: Any) -> Reader:
+def _one_of(what: str, things: Any) -> ReadValue:
     """Read the name of one of the *things* of a world; None for any name."""
 
-    def read(node: Node, _: object) -> str:
+    def read(node: YamlNode, _: object) -> str:
         name = node.text()
         names = None if things is None else [each.name for each in things]
         if names is not None and name not in names:
@@ -152,7 +154,7 @@ def _one_of(what: str, things: Any) -> Reader:
     return read
 
 
-def _landing(node: Node, name: str, world: WorldDescription | None) -> Pose:
+def _landing(node: YamlNode, name: str, world: WorldDescription | None) -> Pose:
     """Read where a robot is put down; closed doors are ignored, because they may be open by then."""
     mistakes = len(node.problems)
     pose = read_pose(node.mapping("x", "y", "yaw_degrees"))

@@ -30,20 +30,20 @@ from jacaros.robots.world.data.world import (
     Room,
     WorldDescription,
 )
-from jacaros.runtime.files.entries import Reader, read, values
-from jacaros.runtime.files.yaml import Node
+from jacaros.runtime.files.entries import ReadValue, read, values
+from jacaros.runtime.files.yaml import YamlNode
 
 LARGEST = 10_000.0
 """Largest area of one field of dirt, in square metres: a million cells of 10 cm."""
 _MOST = 1e9
 
 
-def read_rooms(node: Node, _: object) -> tuple[Room, ...]:
+def read_rooms(node: YamlNode, _: object) -> tuple[Room, ...]:
     """Read all rooms, in the order of the file."""
     return tuple(_room(name, room) for name, room in node.mapping().items())
 
 
-def _room(name: str, node: Node) -> Room:
+def _room(name: str, node: YamlNode) -> Room:
     entries = node.mapping("from", "to", "dirt", required=("from", "to"))
     area = corners_of(node, entries)
     if "dirt" not in entries:
@@ -51,7 +51,7 @@ def _room(name: str, node: Node) -> Room:
     return Room(name, area, tuple(_dirt(kind, dirt, area) for kind, dirt in entries["dirt"].entries()))
 
 
-def _dirt(kind: Node, node: Node, room: Rectangle) -> Dirt:
+def _dirt(kind: YamlNode, node: YamlNode, room: Rectangle) -> Dirt:
     if isinstance(node.value, dict):
         entries = node.mapping("grams", "from", "to", required=("grams", "from", "to"))
         grams = entries["grams"].number(0.0, _MOST) if "grams" in entries else 0.0
@@ -67,12 +67,12 @@ def _dirt(kind: Node, node: Node, room: Rectangle) -> Dirt:
     return Dirt(kind.text(), grams, area)
 
 
-def read_rectangle(node: Node) -> Rectangle:
+def read_rectangle(node: YamlNode) -> Rectangle:
     """Read the opposite corners ``from`` and ``to``, in metres."""
     return corners_of(node, node.mapping("from", "to", required=("from", "to")))
 
 
-def corners_of(node: Node, entries: dict[str, Node]) -> Rectangle:
+def corners_of(node: YamlNode, entries: dict[str, YamlNode]) -> Rectangle:
     """Return the rectangle between the opposite corners ``from`` and ``to`` among the *entries* of a node."""
     if not {"from", "to"} <= entries.keys():
         return Rectangle(0.0, 0.0, 1.0, 1.0)
@@ -100,14 +100,14 @@ COLORS = {
 _RGB = re.compile(r"#[0-9a-f]{6}")
 
 
-def read_box(node: Node) -> Furniture:
+def read_box(node: YamlNode) -> Furniture:
     """Read a box; its colour becomes ``#rrggbb``."""
     entries = node.mapping("from", "to", "kind", "color", required=("from", "to"))
     box = Furniture(corners_of(node, entries))
     return replace(box, **values(entries, box, color=read_color))
 
 
-def read_color(node: Node, _: object) -> str:
+def read_color(node: YamlNode, _: object) -> str:
     """Read a colour, a name or ``#rrggbb``; return it as ``#rrggbb``."""
     text = node.text().lower()
     if text in COLORS or not text:
@@ -117,15 +117,15 @@ def read_color(node: Node, _: object) -> str:
     return text
 
 
-def read_object(node: Node) -> ObjectDescription:
+def read_object(node: YamlNode) -> ObjectDescription:
     """Read one object that grippers can carry."""
     return read(node, ObjectDescription("", 0.0, 0.0), color=read_color)
 
 
-def named(what: str, read_one: Callable[[Node], Any]) -> Reader:
+def named(what: str, read_one: Callable[[YamlNode], Any]) -> ReadValue:
     """Return the reader of a list of things, in the order of the file, whose names must differ."""
 
-    def read_all(node: Node, _: object) -> tuple[Any, ...]:
+    def read_all(node: YamlNode, _: object) -> tuple[Any, ...]:
         found: list[Any] = []
         for item in node.sequence():
             each = read_one(item)
@@ -140,12 +140,12 @@ def named(what: str, read_one: Callable[[Node], Any]) -> Reader:
 _TOUCHING = 0.001
 
 
-def read_person(node: Node) -> PersonDescription:
+def read_person(node: YamlNode) -> PersonDescription:
     """Read one person."""
     return read(node, PersonDescription("", ((0.0, 0.0),)), path=read_path, color=read_color)
 
 
-def read_path(node: Node, _: object) -> tuple[tuple[float, float], ...]:
+def read_path(node: YamlNode, _: object) -> tuple[tuple[float, float], ...]:
     points = tuple(point.pair() for point in node.sequence())
     if not points:
         node.wrong(f"{node.what} has no points", "write [[x, y], ...], in metres")
@@ -159,7 +159,7 @@ def read_path(node: Node, _: object) -> tuple[tuple[float, float], ...]:
     return points
 
 
-def check_people(items: Iterable[Node], world: WorldDescription, walled: bool) -> None:
+def check_people(items: Iterable[YamlNode], world: WorldDescription, walled: bool) -> None:
     """Report duplicate names of people and robots, and paths that touch a wall or a robot's initial pose.
 
     Closed doors are allowed: people wait in front of them.
@@ -172,7 +172,7 @@ def check_people(items: Iterable[Node], world: WorldDescription, walled: bool) -
         _check_path(item, person, world, walled)
 
 
-def _check_path(item: Node, person: PersonDescription, world: WorldDescription, walled: bool) -> None:
+def _check_path(item: YamlNode, person: PersonDescription, world: WorldDescription, walled: bool) -> None:
     x, y = person.path[0]
     for robot in world.robots:
         dx, dy, reach = robot.pose.x - x, robot.pose.y - y, robot.radius + person.radius

@@ -30,7 +30,7 @@ from jacaros.runtime.files.maps import (
     read_image,
 )
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.files.yaml import Node, Problem, read_document, read_text, top_keys
+from jacaros.runtime.files.yaml import Problem, YamlNode, read_document, read_text, top_keys
 
 _ROOM_FOR_ROBOT = 0.4
 """Metres of free floor around an automatically placed robot."""
@@ -161,7 +161,7 @@ def is_map(path: Path) -> bool:
     return "image" in keys and len(keys & set(KEYS)) > 1
 
 
-def open_document(path: Path, what: str, help: str = "") -> tuple[str, list[Problem], Node | None]:
+def open_document(path: Path, what: str, help: str = "") -> tuple[str, list[Problem], YamlNode | None]:
     """Return the text of a YAML file, the list of all its mistakes, and its content if it is YAML.
 
     Mistakes that are found in the content are added to the list.
@@ -204,7 +204,7 @@ def free_place(found: OccupancyMap | None, problems: list[Problem]) -> tuple[flo
     return place
 
 
-def _image(node: Node, path: Path) -> GreyImage | None:
+def _image(node: YamlNode, path: Path) -> GreyImage | None:
     try:
         return read_image(path)
     except FileNotFoundError:

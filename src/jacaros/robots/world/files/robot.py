@@ -34,7 +34,7 @@ from jacaros.robots.world.data.robot import (
 )
 from jacaros.runtime.files.entries import declared_entries, read, values
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.files.yaml import Node
+from jacaros.runtime.files.yaml import YamlNode
 
 _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 
@@ -42,7 +42,7 @@ _REACH = 0.35
 """Default reach of a gripper, in metres."""
 
 
-def read_robot(node: Node) -> RobotDescription:
+def read_robot(node: YamlNode) -> RobotDescription:
     """Read one robot; the defaults are those of its kind, at the origin."""
     given = node.mapping("kind", *declared_entries(RobotDescription), *SECTIONS)
     usual = KINDS[given["kind"].choice(*KINDS)] if "kind" in given else KINDS[USUAL]
@@ -64,14 +64,14 @@ def read_robot(node: Node) -> RobotDescription:
     return replace(usual, interface=read_interface(given, usual.interface), **described)
 
 
-def _footprint(node: Node, _: object) -> tuple[float, float]:
+def _footprint(node: YamlNode, _: object) -> tuple[float, float]:
     length, width = node.pair()
     if not (0.04 <= length <= 4.0 and 0.04 <= width <= 4.0):
         node.wrong("a footprint is from 0.04 to 4 m long and wide", "write [length, width], in metres")
     return length, width
 
 
-def read_pose(entries: dict[str, Node]) -> Pose:
+def read_pose(entries: dict[str, YamlNode]) -> Pose:
     """Read a pose from the keys ``x``, ``y`` (metres) and ``yaw_degrees``, each 0 by default."""
 
     def value(key: str) -> float:
@@ -80,11 +80,11 @@ def read_pose(entries: dict[str, Node]) -> Pose:
     return Pose(value("x"), value("y"), radians(value("yaw_degrees")))
 
 
-def _pose(node: Node, _: object) -> Pose:
+def _pose(node: YamlNode, _: object) -> Pose:
     return read_pose(node.mapping("x", "y", "yaw_degrees"))
 
 
-def _namespace(node: Node, _: object) -> str:
+def _namespace(node: YamlNode, _: object) -> str:
     text = node.text()
     if text and not _NAMESPACE.fullmatch(text):
         node.wrong(
@@ -93,24 +93,24 @@ def _namespace(node: Node, _: object) -> str:
     return text.strip("/")
 
 
-def _gripper_reach(node: Node, _: object) -> float:
+def _gripper_reach(node: YamlNode, _: object) -> float:
     if isinstance(node.value, dict):
         given = node.mapping("reach")
         return given["reach"].number(0.05, 5.0, _REACH) if "reach" in given else _REACH
     return _REACH if node.truth() else 0.0
 
 
-def _navigation(node: Node, usual: NavigationSettings) -> NavigationSettings:
+def _navigation(node: YamlNode, usual: NavigationSettings) -> NavigationSettings:
     if isinstance(node.value, dict):
         return read(node, usual)
     return replace(usual, enabled=node.truth())
 
 
-def _tools(node: Node, _: object) -> tuple[CleaningTool, ...]:
+def _tools(node: YamlNode, _: object) -> tuple[CleaningTool, ...]:
     return tuple(read(tool, CleaningTool(name.text(), ()), removes=_removes) for name, tool in node.entries())
 
 
-def _removes(node: Node, _: object) -> tuple[str, ...]:
+def _removes(node: YamlNode, _: object) -> tuple[str, ...]:
     if not node.value:
         node.wrong("a tool removes at least one kind of dirt", "write the kinds: [dust, crumbs]")
     return tuple(kind.text() for kind in node.sequence())
@@ -125,7 +125,7 @@ _FASTEST = 20.0
 """Highest rate of an added topic, in messages per second: that of the world's ticks."""
 
 
-def read_interface(entries: Mapping[str, Node], usual: RobotInterface) -> RobotInterface:
+def read_interface(entries: Mapping[str, YamlNode], usual: RobotInterface) -> RobotInterface:
     """Read the names of one robot; *usual* are those of its kind."""
     renamed: dict[str, str] = {}
     added: dict[str, list[Added]] = {section: [] for section in _TYPES}
@@ -150,7 +150,7 @@ def read_interface(entries: Mapping[str, Node], usual: RobotInterface) -> RobotI
     return RobotInterface(usual.lacking, renamed, tuple(added["topics"]), tuple(added["services"]))
 
 
-def _name(node: Node) -> str:
+def _name(node: YamlNode) -> str:
     text = node.text()
     if text and not _NAME.fullmatch(text):
         node.wrong(
@@ -159,7 +159,7 @@ def _name(node: Node) -> str:
     return text
 
 
-def _unknown(key: Node, section: str) -> None:
+def _unknown(key: YamlNode, section: str) -> None:
     other = f"known names: {', '.join(_KNOWN[section])}"
     if section in _TYPES:
         other = f"to add it, give its type: `{key.value}: {{type: PACKAGE/{_TYPES[section]}/TYPE}}`"
@@ -168,7 +168,7 @@ def _unknown(key: Node, section: str) -> None:
     )
 
 
-def _added(name: str, node: Node, section: str) -> Added:
+def _added(name: str, node: YamlNode, section: str) -> Added:
     entries = node.mapping(*_KEYS[section], required=("type",))
     kind, type_name = _TYPES[section], entries["type"].text() if "type" in entries else ""
     if type_name and not re.fullmatch(rf"[a-z]\w*/{kind}/[A-Z]\w*", type_name):

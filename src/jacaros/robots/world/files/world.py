@@ -34,9 +34,9 @@ from jacaros.robots.world.files.map import (
     read_map,
 )
 from jacaros.robots.world.files.robot import read_pose, read_robot
-from jacaros.runtime.files.entries import Reader, declared_entries, read, values
+from jacaros.runtime.files.entries import ReadValue, declared_entries, read, values
 from jacaros.runtime.files.texts import is_file, suggestion
-from jacaros.runtime.files.yaml import Node, Problem, read_document, top_keys
+from jacaros.runtime.files.yaml import Problem, YamlNode, read_document, top_keys
 
 _WORLDS = Path(__file__).parents[1] / "worlds"
 _KEYS = ("map", "size", "bounds", "border", "walls", *declared_entries(WorldDescription))
@@ -135,7 +135,7 @@ def _read_as_world(path: Path) -> tuple[str, list[Problem], WorldDescription | N
     return text, [], WorldDescription(path.stem, found.bounds, walls, boxes, robots=(robot,))
 
 
-def _world(document: Node, folder: Path) -> WorldDescription:
+def _world(document: YamlNode, folder: Path) -> WorldDescription:
     entries = document.mapping(*_KEYS, required=("robots",))
     found = _map(entries["map"], folder) if "map" in entries else None
     bounds = (
@@ -178,7 +178,7 @@ def _world(document: Node, folder: Path) -> WorldDescription:
     return world
 
 
-def _check_places(items: Iterable[Node], world: WorldDescription) -> None:
+def _check_places(items: Iterable[YamlNode], world: WorldDescription) -> None:
     """Report robots that are outside the world, in furniture, over a cliff, or in a wall or a closed door."""
     solid = (*world.segments, *(door.segment for door in world.doors if not door.open))
     for item, robot in zip(items, world.robots, strict=True):
@@ -193,7 +193,7 @@ def _check_places(items: Iterable[Node], world: WorldDescription) -> None:
             )
 
 
-def _map(node: Node, folder: Path) -> OccupancyMap | None:
+def _map(node: YamlNode, folder: Path) -> OccupancyMap | None:
     name = node.text()
     if not name:
         return None
@@ -209,7 +209,7 @@ def _map(node: Node, folder: Path) -> OccupancyMap | None:
     return found
 
 
-def _bounds(entries: dict[str, Node]) -> Rectangle:
+def _bounds(entries: dict[str, YamlNode]) -> Rectangle:
     if "bounds" in entries:
         if "size" in entries:
             entries["size"].wrong("'size' and 'bounds' are alternatives", "remove one of them")
@@ -222,7 +222,7 @@ def _bounds(entries: dict[str, Node]) -> Rectangle:
     return Rectangle(-width / 2, -height / 2, width / 2, height / 2)
 
 
-def _wall(node: Node, segments: list[Segment], boxes: list[Furniture]) -> None:
+def _wall(node: YamlNode, segments: list[Segment], boxes: list[Furniture]) -> None:
     entries = node.mapping("segment", "polyline", "box", "closed")
     kinds = [kind for kind in ("segment", "polyline", "box") if kind in entries]
     if len(kinds) != 1:
@@ -240,7 +240,7 @@ def _wall(node: Node, segments: list[Segment], boxes: list[Furniture]) -> None:
     _straight(shape, segments, kinds[0] == "polyline", closed)
 
 
-def _straight(shape: Node, segments: list[Segment], several: bool = False, closed: bool = False) -> None:
+def _straight(shape: YamlNode, segments: list[Segment], several: bool = False, closed: bool = False) -> None:
     """Read the points of a segment, or of *several* connected segments, and add them to *segments*."""
     mistakes = len(shape.problems)
     points = [point.pair() for point in shape.sequence()]
@@ -260,11 +260,11 @@ def _straight(shape: Node, segments: list[Segment], several: bool = False, close
             segments.append(Segment(ax, ay, bx, by))
 
 
-def _each(item: Callable[[Node], Any]) -> Reader:
+def _each(item: Callable[[YamlNode], Any]) -> ReadValue:
     return lambda node, _: tuple(map(item, node.sequence()))
 
 
-def _docks(node: Node, _: object) -> tuple[Dock, ...]:
+def _docks(node: YamlNode, _: object) -> tuple[Dock, ...]:
     docks = []
     for index, item in enumerate(node.sequence()):
         entries = item.mapping("name", "x", "y", "yaw_degrees", "radius", required=("x", "y"))
@@ -273,24 +273,24 @@ def _docks(node: Node, _: object) -> tuple[Dock, ...]:
     return tuple(docks)
 
 
-def _door(node: Node) -> Door:
+def _door(node: YamlNode) -> Door:
     return read(node, Door("", Segment(0.0, 0.0, 1.0, 0.0)), name=_door_name, segment=_segment)
 
 
-def _door_name(node: Node, _: object) -> str:
+def _door_name(node: YamlNode, _: object) -> str:
     name = node.text()
     if not _DOOR_NAME.fullmatch(name):
         node.wrong(f"'{name}' cannot be part of a ROS name", "use letters, digits and _ for a door's name")
     return name
 
 
-def _segment(node: Node, usual: Segment) -> Segment:
+def _segment(node: YamlNode, usual: Segment) -> Segment:
     pieces: list[Segment] = []
     _straight(node, pieces)
     return pieces[0] if pieces else usual
 
 
-def _robots(node: Node, _: object) -> tuple[RobotDescription, ...]:
+def _robots(node: YamlNode, _: object) -> tuple[RobotDescription, ...]:
     """Read all robots; report those with the same name or the same topics, and a world without robots."""
     seen: dict[tuple[str, str], int] = {}
     items = list(node.sequence())

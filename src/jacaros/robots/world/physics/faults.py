@@ -10,7 +10,7 @@ from jacaros.robots.world.data.faults import MESSAGES, Fault
 from jacaros.runtime.errors import UsageError
 
 Undo = Callable[[], object]
-Abort = Callable[[str], object]
+AbortGoal = Callable[[str], object]
 """Aborts a goal because of a fault."""
 
 
@@ -67,7 +67,7 @@ class Faults:
         self._disturbances: dict[str, dict[str, TopicFault]] = {}
         self._aborting: dict[str, tuple[str, Callable[[], bool]]] = {}
         """Active faults that abort goals: their actions, and a function that decides about the next goal."""
-        self._goals: dict[Abort, str] = {}
+        self._goals: dict[AbortGoal, str] = {}
         self._look_ahead()
 
     @property
@@ -79,7 +79,7 @@ class Faults:
         """Return the active faults of the messages of a topic, oldest first."""
         return self._disturbances.get(topic, {}).values()
 
-    def watch_goal(self, action: str, abort: Abort) -> Undo:
+    def watch_goal(self, action: str, abort: AbortGoal) -> Undo:
         """Call *abort* with the name of each fault that aborts goals of *action*; immediately if one is active.
 
         Returns:

@@ -7,10 +7,10 @@ from itertools import product
 
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.runtime.cli.graph.joining import Joined, NothingThere, root
-from jacaros.runtime.cli.graph.listing import Kind, Thing
+from jacaros.runtime.cli.graph.listing import GraphEntry, GraphKind
 from jacaros.runtime.cli.graph.standard_topics import robot_of, robots
 from jacaros.runtime.cli.graph.suggestions import (
-    Entry,
+    MappingEntry,
     acting,
     calling,
     looking,
@@ -42,7 +42,7 @@ _BODIES = ("base_link", "base_footprint")
 class _Artifact:
     name: str
     namespace: str
-    entries: list[Entry] = field(default_factory=list)
+    entries: list[MappingEntry] = field(default_factory=list)
 
     def free_name(self, ros_name: str) -> str:
         """Return a free name: the last part of the ROS name, with further parts in front or a number if that is taken."""
@@ -61,7 +61,7 @@ class _Artifact:
         return name.removeprefix(inside) if name.startswith(inside) else name
 
 
-def lines_for(joined: Joined, thing: Thing) -> list[str]:
+def lines_for(joined: Joined, thing: GraphEntry) -> list[str]:
     """Return the lines of a mapping file for one topic, service or action."""
     artifact = _Artifact("robot", robot_of(thing.name, robots(joined.contents)))
     _add(joined, artifact, thing)
@@ -70,11 +70,11 @@ def lines_for(joined: Joined, thing: Thing) -> list[str]:
 
 def mapping_for(
     joined: Joined,
-    things: Sequence[Thing],
+    things: Sequence[GraphEntry],
     frames: dict[str, str],
     file: str,
     options: str,
-    left: Sequence[Thing] = (),
+    left: Sequence[GraphEntry] = (),
     interfaces: Sequence[str] = (),
 ) -> str:
     """Return the text of a mapping file.
@@ -105,12 +105,12 @@ def mapping_for(
     return "\n".join([*_file(artifacts, file, options, interfaces), *_left(left, options)]) + "\n"
 
 
-def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
+def _add(joined: Joined, artifact: _Artifact, thing: GraphEntry) -> None:
     if not thing.type_name:
         raise NothingThere(f"unknown type of {thing.kind} `{thing.name}`\n  = help: write this entry by hand")
     types, name, written = joined.backend, artifact.free_name(thing.name), artifact.relative(thing.name)
-    if thing.kind is not Kind.TOPIC:
-        suggest = calling if thing.kind is Kind.SERVICE else acting
+    if thing.kind is not GraphKind.TOPIC:
+        suggest = calling if thing.kind is GraphKind.SERVICE else acting
         artifact.entries.append(suggest(types, name, written, thing.type_name))
         return
     info = joined.contents.topics[thing.name]
@@ -121,7 +121,7 @@ def _add(joined: Joined, artifact: _Artifact, thing: Thing) -> None:
     artifact.entries += filter(None, (entry, looking(entry)))
 
 
-def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
+def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[MappingEntry]:
     """Return an entry for the pose of the robot in the map, from tf; without a map, odometry gives the same pose."""
     prefix = f"{artifact.namespace}/" if artifact.namespace else ""
     for body, inside in product(_BODIES, dict.fromkeys((prefix, ""))):
@@ -137,10 +137,13 @@ def _frame(artifact: _Artifact, frames: dict[str, str]) -> list[Entry]:
             "rate: 5",
             "dead_band: [0.02, 0.02, 1]",
         )
-        pose = Entry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", lines)
+        pose = MappingEntry("frames", name, f"{name}(X, Y, Yaw) in {target}: metres, metres, degrees", lines)
         if not prefix or inside:
             return [pose]
-        return [Entry("", "tf_prefix", "frames of this robot have no prefix", ('tf_prefix: ""',)), pose]
+        return [
+            MappingEntry("", "tf_prefix", "frames of this robot have no prefix", ('tf_prefix: ""',)),
+            pose,
+        ]
     return []
 
 
@@ -180,7 +183,7 @@ def _head(artifacts: list[_Artifact], file: str, options: str) -> Iterator[str]:
     yield ""
 
 
-def _left(left: Sequence[Thing], options: str) -> Iterator[str]:
+def _left(left: Sequence[GraphEntry], options: str) -> Iterator[str]:
     """Yield a comment with the rest of the graph, so that the file does not look complete."""
     if not left:
         return

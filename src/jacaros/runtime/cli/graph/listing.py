@@ -23,7 +23,7 @@ _COLUMNS = ("type", "pub", "sub", "Hz")
 """What follows the name of an entry: in lines for other programs, and as columns of a table."""
 
 
-class Kind(StrEnum):
+class GraphKind(StrEnum):
     """Kinds of entries of a graph."""
 
     TOPIC = "topic"
@@ -34,7 +34,7 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
+class GraphEntry:
     """An entry of a graph.
 
     Attributes:
@@ -42,22 +42,28 @@ class Thing:
         type_name: full name of the type; empty if the graph does not report it, and for nodes.
     """
 
-    kind: Kind
+    kind: GraphKind
     name: str
     type_name: str = ""
 
 
-def all_things(contents: GraphContents) -> list[Thing]:
+def all_things(contents: GraphContents) -> list[GraphEntry]:
     """Return topics, actions, services and nodes, each sorted by name."""
     topics = [
-        Thing(Kind.TOPIC, name, next(iter(info.types), "")) for name, info in sorted(contents.topics.items())
+        GraphEntry(GraphKind.TOPIC, name, next(iter(info.types), ""))
+        for name, info in sorted(contents.topics.items())
     ]
-    actions = [Thing(Kind.ACTION, name, type_name) for name, type_name in sorted(contents.actions.items())]
-    services = [Thing(Kind.SERVICE, name, type_name) for name, type_name in sorted(contents.services.items())]
-    return [*topics, *actions, *services, *(Thing(Kind.NODE, name) for name in contents.nodes)]
+    actions = [
+        GraphEntry(GraphKind.ACTION, name, type_name) for name, type_name in sorted(contents.actions.items())
+    ]
+    services = [
+        GraphEntry(GraphKind.SERVICE, name, type_name)
+        for name, type_name in sorted(contents.services.items())
+    ]
+    return [*topics, *actions, *services, *(GraphEntry(GraphKind.NODE, name) for name in contents.nodes)]
 
 
-def find(joined: Joined, written: str) -> list[Thing]:
+def find(joined: Joined, written: str) -> list[GraphEntry]:
     """Return the entries named *written*: an absolute name, a name relative to the namespace, or a type.
 
     Raises:
@@ -65,7 +71,7 @@ def find(joined: Joined, written: str) -> list[Thing]:
     """
     types = _type_names(written)
     if types:
-        return [Thing(Kind.TYPE, name, name) for name in types]
+        return [GraphEntry(GraphKind.TYPE, name, name) for name in types]
     try:
         name = joined.backend.resolve(written)
     except NameInvalid as wrong:
@@ -80,14 +86,14 @@ def find(joined: Joined, written: str) -> list[Thing]:
     return found
 
 
-def find_mappable(joined: Joined, written: str) -> list[Thing]:
+def find_mappable(joined: Joined, written: str) -> list[GraphEntry]:
     """Return the entries named *written* that a mapping can contain: a node may have the same name as a topic.
 
     Raises:
         UsageError: the name is unknown, or names only a node or a type.
     """
     things = find(joined, written)
-    mappable = [thing for thing in things if thing.kind not in (Kind.NODE, Kind.TYPE)]
+    mappable = [thing for thing in things if thing.kind not in (GraphKind.NODE, GraphKind.TYPE)]
     if not mappable:
         found = things[0]
         raise usage_error(
@@ -124,20 +130,20 @@ def as_json(contents: GraphContents, rates: dict[str, float]) -> str:
             for thing in all_things(contents)
             if thing.kind is kind
         ]
-        for kind in (Kind.ACTION, Kind.SERVICE)
+        for kind in (GraphKind.ACTION, GraphKind.SERVICE)
     }
     return json.dumps({"topics": topics, **typed, "nodes": list(contents.nodes)}, indent=2)
 
 
-def _rows(contents: GraphContents, rates: dict[str, float]) -> Iterator[tuple[Kind, list[str]]]:
+def _rows(contents: GraphContents, rates: dict[str, float]) -> Iterator[tuple[GraphKind, list[str]]]:
     """Yield each entry as its name and what `_LABELS` names."""
     for thing in all_things(contents):
         row = [thing.name]
-        if thing.kind is Kind.TOPIC:
+        if thing.kind is GraphKind.TOPIC:
             info = contents.topics[thing.name]
             row += [",".join(info.types) or UNKNOWN, str(len(info.publishers)), str(len(info.subscriptions))]
             row += [f"{rates[thing.name]:g}"] if thing.name in rates else []
-        elif thing.kind is not Kind.NODE:
+        elif thing.kind is not GraphKind.NODE:
             row.append(thing.type_name or UNKNOWN)
         yield thing.kind, row
 
@@ -156,14 +162,14 @@ def show_tables(contents: GraphContents, rates: dict[str, float]) -> None:
     from jacaros.look.page.terminal_console import TerminalConsole
 
     console = TerminalConsole(file=beneath(sys.stdout))
-    tables: dict[Kind, Table] = {}
+    tables: dict[GraphKind, Table] = {}
     for kind, row in _rows(contents, rates):
         if kind not in tables:
             title = f"{kind.capitalize()}s"
             table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
             tables[kind] = table
             table.add_column("name", overflow="fold")
-            number = {Kind.TOPIC: 4 if rates else 3, Kind.NODE: 0}.get(kind, 1)
+            number = {GraphKind.TOPIC: 4 if rates else 3, GraphKind.NODE: 0}.get(kind, 1)
             for column in _COLUMNS[:number]:
                 table.add_column(column, justify="left" if column == "type" else "right", overflow="fold")
         tables[kind].add_row(*row)

@@ -13,7 +13,7 @@ from jacaros.robots.ros.message import to_seconds
 from jacaros.robots.ros.node import Capability
 from jacaros.runtime.cli.graph.first_mapping import lines_for
 from jacaros.runtime.cli.graph.joining import Joined, one_message
-from jacaros.runtime.cli.graph.listing import Kind, Thing
+from jacaros.runtime.cli.graph.listing import GraphEntry, GraphKind
 from jacaros.runtime.cli.graph.values import Leaf, is_time, leaves, messages, parts, value_at
 
 FEW = 6
@@ -22,7 +22,7 @@ LONG = 60
 """Number of characters of a string shown."""
 
 
-async def described_all(joined: Joined, things: Sequence[Thing]) -> list[dict[str, Any]]:
+async def described_all(joined: Joined, things: Sequence[GraphEntry]) -> list[dict[str, Any]]:
     """Describe entries; for a type named without its kind, describe the kinds that exist.
 
     Raises:
@@ -39,7 +39,7 @@ async def described_all(joined: Joined, things: Sequence[Thing]) -> list[dict[st
     return found
 
 
-async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
+async def described(joined: Joined, thing: GraphEntry) -> dict[str, Any]:
     """Describe an entry, as data for `as_text` and for JSON.
 
     Raises:
@@ -48,17 +48,17 @@ async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
     data: dict[str, Any] = {"kind": str(thing.kind), "name": thing.name}
     if thing.type_name:
         data["type"] = thing.type_name
-    if thing.kind is Kind.NODE:
+    if thing.kind is GraphKind.NODE:
         return {**data, **await _node(joined, thing.name)}
     message = None
-    if thing.kind is Kind.TOPIC:
+    if thing.kind is GraphKind.TOPIC:
         info = joined.contents.topics[thing.name]
         data["types"] = list(info.types)
         data["publishers"] = [_endpoint(each) for each in info.publishers]
         data["subscriptions"] = [_endpoint(each) for each in info.subscriptions]
     if not thing.type_name:
         return data
-    if thing.kind is Kind.TOPIC and data["publishers"]:
+    if thing.kind is GraphKind.TOPIC and data["publishers"]:
         message = await one_message(joined, joined.contents.topics[thing.name], joined.timeout)
         data["heard"] = message is not None
     data["parts"] = {
@@ -67,7 +67,7 @@ async def described(joined: Joined, thing: Thing) -> dict[str, Any]:
     }
     if others := _other_constants(joined.backend, parts(thing.type_name).values()):
         data["constants"] = others
-    if thing.kind is not Kind.TYPE:
+    if thing.kind is not GraphKind.TYPE:
         data["mapping"] = lines_for(joined, thing)
     return data
 

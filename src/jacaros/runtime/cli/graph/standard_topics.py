@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from jacaros.robots.ros.backend import GraphContents
 from jacaros.robots.ros.guarded import VELOCITIES
-from jacaros.runtime.cli.graph.listing import Kind, Thing, all_things
+from jacaros.runtime.cli.graph.listing import GraphEntry, GraphKind, all_things
 
 _BASE = ("nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan")
 """A namespace with one of these topics, or a subscription to ``cmd_vel``, belongs to a robot."""
@@ -51,10 +51,8 @@ _OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
 """Topics that agents use in other ways, or not at all."""
 
 
-Body = tuple[str, ...]
-"""Section, comment and lines of an entry."""
 _SIDES = "names: {0: left, 1: center, 2: right}"
-KNOWN: Mapping[str, Body] = {
+KNOWN: Mapping[str, tuple[str, ...]] = {
     "nav_msgs/msg/Odometry": (
         "properties",
         "NAME(X, Y, Yaw): metres, metres, degrees",
@@ -116,32 +114,34 @@ KNOWN: Mapping[str, Body] = {
         "  - {path: state, names: {0: floor, 1: cliff}}",
     ),
 }
-"""Entries of a first mapping file for topics that most robots have; ``NAME`` stands for the name of the entry."""
+"""Section, comment and lines in a first mapping file for topics that most robots have; ``NAME`` stands for the name of
+the entry.
+"""
 
 
-def usual_things(contents: GraphContents) -> list[Thing]:
+def usual_things(contents: GraphContents) -> list[GraphEntry]:
     """Return odometry, scan, velocity, battery, bumpers, map, actions to drive and dock, and plain services."""
     things = all_things(contents)
     spaces = robots(contents)
     taken = {thing for space in ("", *spaces) for thing in _in_roles(things, contents, space, spaces)}
     found = [thing for thing in things if thing in taken or _is_usual(thing, contents)]
-    services = [thing for thing in found if thing.kind is Kind.SERVICE][:SERVICES_AT_MOST]
-    return [thing for thing in found if thing.kind is not Kind.SERVICE] + services
+    services = [thing for thing in found if thing.kind is GraphKind.SERVICE][:SERVICES_AT_MOST]
+    return [thing for thing in found if thing.kind is not GraphKind.SERVICE] + services
 
 
-def left_out(contents: GraphContents, taken: list[Thing]) -> list[Thing]:
+def left_out(contents: GraphContents, taken: list[GraphEntry]) -> list[GraphEntry]:
     """Return the rest that could be mapped: actions, then topics with publishers, other topics, and services."""
 
-    def order(thing: Thing) -> int:
-        if thing.kind is Kind.ACTION:
+    def order(thing: GraphEntry) -> int:
+        if thing.kind is GraphKind.ACTION:
             return 0
-        return 3 if thing.kind is Kind.SERVICE else 1 if _is_there(thing, contents) else 2
+        return 3 if thing.kind is GraphKind.SERVICE else 1 if _is_there(thing, contents) else 2
 
     others = [
         thing
         for thing in all_things(contents)
         if thing not in taken
-        and thing.kind is not Kind.NODE
+        and thing.kind is not GraphKind.NODE
         and thing.type_name
         and thing.name not in _OF_ROS
         and not any(part in thing.name for part in _INNER)
@@ -149,7 +149,9 @@ def left_out(contents: GraphContents, taken: list[Thing]) -> list[Thing]:
     return sorted(others, key=order)
 
 
-def _in_roles(things: list[Thing], contents: GraphContents, space: str, spaces: list[str]) -> Iterator[Thing]:
+def _in_roles(
+    things: list[GraphEntry], contents: GraphContents, space: str, spaces: list[str]
+) -> Iterator[GraphEntry]:
     """Yield the entries of one robot for each role."""
     own = [thing for thing in things if robot_of(thing.name, spaces) == space and _is_there(thing, contents)]
     for role in _ROLES:
@@ -160,15 +162,15 @@ def _in_roles(things: list[Thing], contents: GraphContents, space: str, spaces: 
                 break
 
 
-def _is_there(thing: Thing, contents: GraphContents) -> bool:
-    return thing.kind is not Kind.TOPIC or bool(contents.topics[thing.name].publishers)
+def _is_there(thing: GraphEntry, contents: GraphContents) -> bool:
+    return thing.kind is not GraphKind.TOPIC or bool(contents.topics[thing.name].publishers)
 
 
-def _is_usual(thing: Thing, contents: GraphContents) -> bool:
-    if thing.kind is Kind.SERVICE:
+def _is_usual(thing: GraphEntry, contents: GraphContents) -> bool:
+    if thing.kind is GraphKind.SERVICE:
         return thing.type_name in _SERVICES and not any(part in thing.name for part in _INNER)
     wanted = _USUAL.get(thing.type_name)
-    if thing.kind is not Kind.TOPIC or wanted not in ("", thing.name.rpartition("/")[2]):
+    if thing.kind is not GraphKind.TOPIC or wanted not in ("", thing.name.rpartition("/")[2]):
         return False
     info = contents.topics[thing.name]
     return bool(info.subscriptions if thing.type_name in VELOCITIES else info.publishers)

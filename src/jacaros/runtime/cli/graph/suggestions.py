@@ -10,12 +10,12 @@ from jacaros.robots.ros.backend import TopicInfo
 from jacaros.robots.ros.fields import FieldType
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.robots.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.runtime.cli.graph.standard_topics import KNOWN, Body
+from jacaros.runtime.cli.graph.standard_topics import KNOWN
 from jacaros.runtime.cli.graph.values import (
     HEADER,
     MANY,
+    GivenValue,
     Unit,
-    Value,
     leaves,
     list_of,
     lists_of,
@@ -38,7 +38,7 @@ _WORDS = "std_msgs/msg/String"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class MappingEntry:
     """A property, signal or operation of a mapping file.
 
     Attributes:
@@ -54,19 +54,19 @@ class Entry:
     lines: tuple[str, ...]
 
 
-def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> Entry:
+def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> MappingEntry:
     """Return a property that follows a topic, or a signal if its messages are events. Raises `UnknownInterface`."""
     type_name = info.types[0]
     section, comment, *body = KNOWN.get(type_name) or _property(types, name, type_name)
     kept = _kept(info, type_name)
     if type_name == _WORDS and not kept:
         section = "signals"  # two equal messages are two events, but one belief
-    return Entry(
+    return MappingEntry(
         section, name, comment.replace("NAME", name), (f"topic: {topic}", f"type: {type_name}", *body, *kept)
     )
 
 
-def _property(types: Interfaces, name: str, type_name: str) -> Body:
+def _property(types: Interfaces, name: str, type_name: str) -> tuple[str, ...]:
     if type_name in _BIG:
         comment = f"{name}(Object), for Python code; get_{name} reads the newest message"
         return "properties", comment, "fields: [{path: ., as: object}]", "mode: on_demand"
@@ -89,7 +89,7 @@ def _some(names: Sequence[str]) -> str:
     return f"{', '.join(names[:_MOST_NAMES])}{more}"
 
 
-def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
+def _only_lists(types: Interfaces, name: str, type_name: str) -> tuple[str, ...]:
     lists = lists_of(types, type_name)
     if not lists:
         return "signals", f"{name}, for each message (the type has no fields)"
@@ -106,7 +106,7 @@ def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
     return "properties", comment, f"each: {field}", *_fields(shown), *_calm(shown)
 
 
-def _key(elements: Sequence[Value]) -> Value | None:
+def _key(elements: Sequence[GivenValue]) -> GivenValue | None:
     """Return the field that identifies an element of a list."""
     for wanted in ("name", "id"):
         for value in elements:
@@ -116,11 +116,11 @@ def _key(elements: Sequence[Value]) -> Value | None:
     return None
 
 
-def _fields(values: Sequence[Value]) -> list[str]:
+def _fields(values: Sequence[GivenValue]) -> list[str]:
     return ["fields:", *(f"  - {value.as_field}{value.remark}" for value in values)]
 
 
-def _calm(values: Sequence[Value]) -> list[str]:
+def _calm(values: Sequence[GivenValue]) -> list[str]:
     """Return a rate and dead bands for numbers that keep changing a little."""
     if all(value.unit.digits is None for value in values):
         return []
@@ -134,7 +134,7 @@ def _figure(number: float) -> str:
     return f"{number:.5f}".rstrip("0").rstrip(".")
 
 
-def _call(name: str, values: Sequence[Value]) -> str:
+def _call(name: str, values: Sequence[GivenValue]) -> str:
     """Return the AgentSpeak notation: ``odom(X, Y, Yaw): metres, metres, degrees``."""
     arguments = ", ".join(_variable(value.name) for value in values)
     head = f"{name}({arguments})" if values else name
@@ -157,14 +157,16 @@ def _kept(info: TopicInfo, type_name: str) -> list[str]:
     return ["qos: latched"] if offers or type_name == "nav_msgs/msg/OccupancyGrid" else []
 
 
-def looking(entry: Entry) -> Entry | None:
+def looking(entry: MappingEntry) -> MappingEntry | None:
     """Return the operation that reads a property on demand."""
     if "mode: on_demand" not in entry.lines:
         return None
-    return Entry("operations", f"get_{entry.name}", "takes the newest message", (f"refresh: {entry.name}",))
+    return MappingEntry(
+        "operations", f"get_{entry.name}", "takes the newest message", (f"refresh: {entry.name}",)
+    )
 
 
-def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> list[Entry]:
+def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> list[MappingEntry]:
     """Return operations that publish on a topic; for velocities also one that stops."""
     type_name = info.types[0]
     if type_name in VELOCITIES:
@@ -174,10 +176,10 @@ def publishing(types: Interfaces, name: str, topic: str, info: TopicInfo) -> lis
     wants = [each.qos for each in info.subscriptions if each.qos is not None]
     if any(each.durability == "transient_local" for each in wants):
         lines.append("qos: latched")
-    return [Entry("operations", name, _call(name, inputs), tuple(lines))]
+    return [MappingEntry("operations", name, _call(name, inputs), tuple(lines))]
 
 
-def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
+def _driving(name: str, topic: str, type_name: str) -> list[MappingEntry]:
     inner = "" if type_name == VELOCITIES[0] else "twist."
     stamp = [] if not inner else ["  header.stamp: now", "  header.frame_id: base_link"]
     drive = (
@@ -192,24 +194,24 @@ def _driving(name: str, topic: str, type_name: str) -> list[Entry]:
         "duration: $seconds   # stops after this time",
     )
     comment = f"{name}(Speed, Turn, Seconds): metres per second, degrees per second"
-    stop = Entry(
+    stop = MappingEntry(
         "operations",
         "stop" if name == "drive" else f"stop_{name}",
         "stops immediately",
         (f"publish: {topic}", f"type: {type_name}"),
     )
-    return [Entry("operations", name, comment, drive), stop]
+    return [MappingEntry("operations", name, comment, drive), stop]
 
 
-def calling(types: Interfaces, name: str, service: str, type_name: str) -> Entry:
+def calling(types: Interfaces, name: str, service: str, type_name: str) -> MappingEntry:
     """Return an operation that calls a service."""
     inputs, body = _filled(types, request_type(type_name), "request")
     outputs = _results(types, response_type(type_name))
     lines = (*_parameters(inputs), f"service: {service}", f"type: {type_name}", *body, *_outputs(outputs))
-    return Entry("operations", name, _call(name, [*inputs, *outputs]), lines)
+    return MappingEntry("operations", name, _call(name, [*inputs, *outputs]), lines)
 
 
-def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
+def acting(types: Interfaces, name: str, action: str, type_name: str) -> MappingEntry:
     """Return an operation that sends a goal and waits for its result."""
     inputs, body = _filled(types, goal_type(type_name), "goal")
     outputs = _results(types, result_type(type_name))
@@ -217,7 +219,7 @@ def acting(types: Interfaces, name: str, action: str, type_name: str) -> Entry:
     lines += [*_code(types, result_type(type_name)), *_feedback(types, name, type_name)]
     lines += [_SUCCESS[type_name]] if type_name in _SUCCESS else []
     lines.append("suspend: cancel   # .suspend cancels the goal and stops the robot; .resume sends it again")
-    return Entry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
+    return MappingEntry("operations", name, _call(name, [*inputs, *outputs]), tuple(lines))
 
 
 _SUCCESS = {
@@ -260,20 +262,20 @@ _REMARKS = ("kobuki_msgs/action/AutoDocking_Result",)
 """Result types with nothing but a message; plans for docking do not expect an output."""
 
 
-def _results(types: Interfaces, type_name: str) -> list[Value]:
+def _results(types: Interfaces, type_name: str) -> list[GivenValue]:
     values = values_of(types, type_name) if type_name not in _REMARKS else []
     return [value for value in values if value.path not in _TOLD_ANYWAY and "pose." not in value.path][:3]
 
 
-def _outputs(values: Sequence[Value]) -> list[str]:
+def _outputs(values: Sequence[GivenValue]) -> list[str]:
     return [f"outputs: [{', '.join(value.as_field for value in values)}]"] if values else []
 
 
-def _parameters(inputs: Sequence[Value]) -> list[str]:
+def _parameters(inputs: Sequence[GivenValue]) -> list[str]:
     return [f"parameters: [{', '.join(value.name for value in inputs)}]"] if inputs else []
 
 
-def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[Value], list[str]]:
+def _filled(types: Interfaces, type_name: str, key: str) -> tuple[list[GivenValue], list[str]]:
     """Return the parameters that fill a message, and its lines under *key*."""
     values = values_of(types, type_name)
     inputs, left = values[:MANY], [value.path for value in values[MANY:]]
@@ -303,7 +305,7 @@ def _can_be_given(kind: FieldType) -> bool:
     return not kind.fixed and kind.base not in _OCTETS
 
 
-def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[Value, list[str]]:
+def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[GivenValue, list[str]]:
     """Return a list parameter, and the lines that put it into a message."""
     if not kind.is_message:
         value = list_of(name, kind)
@@ -317,20 +319,20 @@ def _list(types: Interfaces, name: str, kind: FieldType) -> tuple[Value, list[st
         f"    each: ${name.lower()}",
         f"    fields: {{{_elements(types, kind.base, elements)}}}",
     ]
-    return Value(name, name.lower(), "", Unit(comment)), lines
+    return GivenValue(name, name.lower(), "", Unit(comment)), lines
 
 
-def _trajectory(path: str) -> tuple[Value, list[str]]:
+def _trajectory(path: str) -> tuple[GivenValue, list[str]]:
     """Return a parameter for the points of a joint trajectory, which has no effect without points."""
     lines = [
         f"  {path}:   # in the order of the joints: radians, or metres for a prismatic joint",
         "    each: $points",
         "    fields: {positions: $1, time_from_start: $2}",
     ]
-    return Value(path, "points", "", Unit("a list of point(Positions, Seconds)")), lines
+    return GivenValue(path, "points", "", Unit("a list of point(Positions, Seconds)")), lines
 
 
-def _elements(types: Interfaces, type_name: str, values: Sequence[Value]) -> str:
+def _elements(types: Interfaces, type_name: str, values: Sequence[GivenValue]) -> str:
     """Return how the parts of each list element are filled."""
     headers = [line.strip() for line in _headers(types, type_name)]
     parts = [

@@ -1,11 +1,12 @@
 """The fields of a message: paths with types and units, and the selection of fields for beliefs and parameters."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any
 
 from jacaros.robots.mapping.interfaces import (
+    Fields,
     Interfaces,
     chosen,
     constants,
@@ -98,7 +99,7 @@ def _shown(unit: str) -> Unit:
 
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class GivenValue:
     """A value of a message, as read or given by an agent.
 
     Attributes:
@@ -140,10 +141,10 @@ def quoted(path: str) -> str:
     return f'"{path}"' if "[" in path else path
 
 
-def values_of(types: Interfaces, type_name: str) -> list[Value]:
+def values_of(types: Interfaces, type_name: str) -> list[GivenValue]:
     """Return the values of a message that agents need, without lists and headers. Raises `UnknownInterface`."""
     if is_time(FieldType(type_name)):
-        return [Value(".", "seconds", "", _shown("s"))]
+        return [GivenValue(".", "seconds", "", _shown("s"))]
     return _with_own_names(list(_walk(types, type_name, "", "")))
 
 
@@ -161,14 +162,14 @@ def lists_of(types: Interfaces, type_name: str) -> list[tuple[str, FieldType]]:
     return found
 
 
-def list_of(path: str, kind: FieldType) -> Value:
+def list_of(path: str, kind: FieldType) -> GivenValue:
     """Return a list of plain values as one value."""
-    return Value(
+    return GivenValue(
         path, path.rpartition(".")[2].lower(), "", Unit("a list", 3 if kind.base in FLOATS else None)
     )
 
 
-def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[Value]:
+def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[GivenValue]:
     chosen = _CHOSEN.get(type_name) or _IN_THE_PLANE.get(type_name)
     for name, kind in types.fields(type_name).items():
         here = f"{path}.{name}" if path else name
@@ -176,35 +177,37 @@ def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[V
         if kind.array or kind.base in (HEADER, _LAYOUT) or (chosen and name not in chosen):
             continue
         if kind.base == _QUATERNION:
-            yield Value(here, "yaw", "as: yaw, unit: degrees", _DEGREES)
+            yield GivenValue(here, "yaw", "as: yaw, unit: degrees", _DEGREES)
         elif kind.is_message and not is_time(kind):
             if type_name == "geometry_msgs/msg/Twist" and name == "linear":
-                yield Value(f"{here}.x", "speed", "", _shown("m/s"))
+                yield GivenValue(f"{here}.x", "speed", "", _shown("m/s"))
             elif name in _TURNS:
-                yield Value(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
+                yield GivenValue(f"{here}.z", "turn", "unit: degrees", _DEGREES_PER_SECOND)
             else:
                 yield from _walk(types, kind.base, here, own)
         elif name not in _LEFT:
             yield _single(types, type_name, name, kind, here, own)
 
 
-def _single(types: Interfaces, type_name: str, name: str, kind: FieldType, path: str, unit: str) -> Value:
+def _single(
+    types: Interfaces, type_name: str, name: str, kind: FieldType, path: str, unit: str
+) -> GivenValue:
     """Return the value of a plain field."""
     word = "yaw" if name == "theta" else name.lower()
     if is_time(kind):
-        return Value(path, word, "", _shown("s"))
+        return GivenValue(path, word, "", _shown("s"))
     if kind.base in FLOATS:
         conversion = "unit: degrees" if unit in ("rad", "rad/s") else ""
-        return Value(path, word, conversion, _shown(unit))
+        return GivenValue(path, word, conversion, _shown(unit))
     if kind.base in INTEGER_RANGES and name in constants_by_field(types, type_name):
         named = chosen(constants(types, type_name), name, "")
         if len(set(named.values())) == len(named):  # otherwise two constants name the same value
             limits = ", ".join(list(named)[:_FEW]) + ", ..." * (len(named) > _FEW)
-            return Value(path, word, "as: name", limits=limits)
-    return Value(path, word, limits=f"at most {kind.bound} characters" if kind.bound else "")
+            return GivenValue(path, word, "as: name", limits=limits)
+    return GivenValue(path, word, limits=f"at most {kind.bound} characters" if kind.bound else "")
 
 
-def _with_own_names(values: list[Value]) -> list[Value]:
+def _with_own_names(values: list[GivenValue]) -> list[GivenValue]:
     """Prefix equal names with the parts of their paths that differ: ``start_x``, ``end_x``."""
     longer = [_longer(value, [each for each in values if each.name == value.name]) for value in values]
     names = [value.name for value in longer]
@@ -214,16 +217,12 @@ def _with_own_names(values: list[Value]) -> list[Value]:
     ]
 
 
-def _longer(value: Value, alike: Sequence[Value]) -> Value:
+def _longer(value: GivenValue, alike: Sequence[GivenValue]) -> GivenValue:
     """Return a value, its name prefixed with the parts of its path that differ from *alike*."""
     paths = [each.path.split(".")[:-1] for each in alike]
     differ = [len(set(steps)) > 1 for steps in zip_longest(*paths)]
     own = [step for step, is_own in zip(value.path.split(".")[:-1], differ, strict=False) if is_own]
     return replace(value, name="_".join([*own, value.name]).lower())
-
-
-Fields = Callable[[str], Mapping[str, FieldType]]
-"""Returns the fields of a message type, given its full name."""
 
 
 @dataclass(frozen=True, slots=True)

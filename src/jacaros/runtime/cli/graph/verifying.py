@@ -25,7 +25,7 @@ _VERBS = {OperationKind.SERVICE: "offers the service", OperationKind.ACTION: "of
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class ResolvedNames:
     """Names of an artifact, resolved in the graph."""
 
     joined: Joined
@@ -51,7 +51,7 @@ class Names:
 
 def topics_of(joined: Joined, part: ArtifactPart) -> set[str]:
     """Return the absolute names of the topics that an artifact receives or publishes."""
-    names = Names(joined, part)
+    names = ResolvedNames(joined, part)
     received = [topic.topic.text for topic in part.topics if topic.topic is not None]
     published = [each.target.text for each in part.operations if each.kind is OperationKind.PUBLISH]
     return {names.resolve(written) for written in (*received, *published)}
@@ -65,7 +65,7 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
         part: an artifact of the file.
         frames: the frames received.
     """
-    names = Names(joined, part)
+    names = ResolvedNames(joined, part)
     for folder in part.interfaces:
         joined.backend.add_interfaces(folder)
     found: list[Problem] = []
@@ -94,7 +94,7 @@ async def problems_of(joined: Joined, part: ArtifactPart, frames: dict[str, str]
 
 def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
     """Yield a warning for each topic of velocities that another node publishes on, too."""
-    names = Names(joined, part)
+    names = ResolvedNames(joined, part)
     for operation in part.operations:
         if operation.kind is not OperationKind.PUBLISH:
             continue  # the target of other operations may be empty, or not a topic
@@ -106,7 +106,7 @@ def warnings_of(joined: Joined, part: ArtifactPart) -> Iterator[Problem]:
             )
 
 
-def _of_topic(names: Names, topic: TopicPart) -> Iterator[Problem]:
+def _of_topic(names: ResolvedNames, topic: TopicPart) -> Iterator[Problem]:
     written = topic.topic
     assert written is not None
     name = names.resolve(written.text)
@@ -175,7 +175,7 @@ def _of_type(written: Written | None, found: Iterable[str], place: FilePosition)
     ]
 
 
-def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
+def _of_operation(names: ResolvedNames, operation: OperationPart) -> Iterator[Problem]:
     if operation.kind is OperationKind.PUBLISH:
         yield from _of_publishing(names, operation)
     if operation.kind not in _VERBS:
@@ -191,7 +191,7 @@ def _of_operation(names: Names, operation: OperationPart) -> Iterator[Problem]:
         yield _absent(names, written, f"no node {_VERBS[operation.kind]} `{name}`", near)
 
 
-def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
+def _of_publishing(names: ResolvedNames, operation: OperationPart) -> Iterator[Problem]:
     written = operation.target
     name = names.resolve(written.text)
     info = names.joined.contents.topics.get(name)
@@ -206,7 +206,7 @@ def _of_publishing(names: Names, operation: OperationPart) -> Iterator[Problem]:
         yield from _of_qos(written.place, name, end, operation.qos or DEFAULT_QOS, end.qos, help)
 
 
-def _absent(names: Names, written: Written, what: str, near: Iterable[str]) -> Problem:
+def _absent(names: ResolvedNames, written: Written, what: str, near: Iterable[str]) -> Problem:
     """Return the problem for a missing name, with the names that it may mean."""
     help = did_you_mean([_as_written(names, each) for each in near])
     return written.place.problem(what, help or "start its node; `jacaros ros list` shows all names")
@@ -216,13 +216,13 @@ def _text(type_name: Written | None) -> str:
     return "" if type_name is None else type_name.text
 
 
-def _as_written(names: Names, name: str) -> str:
+def _as_written(names: ResolvedNames, name: str) -> str:
     """Return an absolute name as written in the file."""
     prefix = names.resolve("x").removesuffix("x")
     return name.removeprefix(prefix) if name.startswith(prefix) else name
 
 
-def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator[Problem]:
+def _of_frame(names: ResolvedNames, part: FramePart, frames: dict[str, str]) -> Iterator[Problem]:
     target, source = names.frame(part.target), names.frame(part.source)
     if not frames:
         yield part.place.problem("no frames on /tf and /tf_static", "start the node that publishes them")
@@ -243,7 +243,9 @@ def _of_frame(names: Names, part: FramePart, frames: dict[str, str]) -> Iterator
         )
 
 
-async def _of_parameter(names: Names, node: str, parameter: str, place: FilePosition) -> Problem | None:
+async def _of_parameter(
+    names: ResolvedNames, node: str, parameter: str, place: FilePosition
+) -> Problem | None:
     joined = names.joined
     if Capability.PARAMETERS not in joined.backend.capabilities:
         return place.problem("this graph has no parameters", "remove the entry")

@@ -6,10 +6,10 @@ from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
 from jacaros.agents.language.nodes import Literal
-from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, Timer
+from jacaros.agents.mind.state.act import NEEDS, Act, AgentSystem, Completion, SpeechAct, TimerHandle
 from jacaros.agents.terms.values import String, atom, functor
 from jacaros.runtime.clock import Clock
-from jacaros.runtime.mas.console import Console
+from jacaros.runtime.mas.console import RunConsole
 from jacaros.runtime.mas.scheduler import Activity, AgentTimer, Scheduler
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class Run(AgentSystem, Protocol):
     clock: Clock
     scheduler: Scheduler
     activity: Activity
-    console: Console
+    console: RunConsole
 
     def deliver(self, message: SpeechAct) -> bool:
         """Deliver a message. Return False if the receiver is unknown."""
@@ -184,11 +184,11 @@ class AgentHost:
         """Return the time of the run's clock in seconds since the Unix epoch."""
         return self.system.clock.now()
 
-    def set_timer(self, delay: float, callback: Callable[[], None]) -> Timer:
+    def set_timer(self, delay: float, callback: Callable[[], None]) -> TimerHandle:
         """Call *callback* after *delay* seconds."""
         return AgentTimer(self.system.clock, self.system.activity, delay, callback)
 
-    def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> Timer:
+    def start_coroutine(self, coroutine: Coroutine[Any, Any, Any], ended: Ended) -> TimerHandle:
         """Run a coroutine of the project's Python code beside the mind."""
         running = AgentCoroutine(coroutine, ended, self.system.activity, self._over)
         self._coroutines[running] = None

@@ -16,7 +16,7 @@ from jacaros.runtime.files.python_modules import ModuleUnreadable, ProjectModule
 from jacaros.runtime.files.texts import file_text, shown_from
 
 if TYPE_CHECKING:
-    from jacaros.agents.python.declaring import Additions, Limits
+    from jacaros.agents.python.declaring import Additions, ArityRange
 
 _ASSERTIONS: Final = "jacaros.testing.assertions"
 """The module with the internal actions for assertion goals."""
@@ -44,7 +44,7 @@ class PythonCode:
         self.actions: dict[str, InternalAction] = dict(STANDARD)
         if restricted:
             self.actions.update(_refused(self.actions))
-        self.functions: Mapping[str, Limits] = _Functions(self)
+        self.functions: Mapping[str, ArityRange] = _Functions(self)
         self._additions: Additions | None = None
         self._read: dict[str, ModuleUnreadable | None] = {}
         self._met: dict[str, None] = {}

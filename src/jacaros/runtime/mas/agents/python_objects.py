@@ -12,7 +12,7 @@ from typing import Any
 
 from jacaros.agents.body.body import AgentBody, name_of
 from jacaros.agents.body.values import UNKEPT, to_term, to_value
-from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, Registry
+from jacaros.agents.mind.actions.internal_action import ActionError, InternalAction, InternalActions
 from jacaros.agents.mind.rules.context import Context
 from jacaros.agents.python.declaring import FAULTS
 from jacaros.agents.terms.text import text
@@ -26,7 +26,7 @@ PACKAGE = "cartago."
 """Common prefix of their names."""
 
 
-def actions(modules: ProjectModules) -> Registry:
+def actions(modules: ProjectModules) -> InternalActions:
     """Return the internal actions for a project, whose classes are found beside it."""
     declared = (
         InternalAction(f"{PACKAGE}new_obj", partial(_new_object, modules), arity=3, restricted=0),

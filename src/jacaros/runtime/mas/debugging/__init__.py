@@ -1,6 +1,6 @@
 """Debug a running system: pause, step, speed, breakpoints, and reload of changed programs."""
 
 from jacaros.runtime.mas.debugging.breakpoints import Breakpoint
-from jacaros.runtime.mas.debugging.debugger import Debugger, DebugState, Step
+from jacaros.runtime.mas.debugging.debugger import Debugger, DebugState, StepKind
 
-__all__ = ["Breakpoint", "DebugState", "Debugger", "Step"]
+__all__ = ["Breakpoint", "DebugState", "Debugger", "StepKind"]

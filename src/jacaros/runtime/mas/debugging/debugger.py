@@ -8,8 +8,9 @@ from typing import Any, Literal, get_args
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.cycle import observe_steps
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
+from jacaros.agents.mind.state.intention import PLAN, STEP, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
+from jacaros.agents.terms.values import Annotations
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.runtime.clock import Clock, WallClock, outside_run
 from jacaros.runtime.errors import UsageError
@@ -30,10 +31,10 @@ from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.ros_graph import RosGraph
 from jacaros.runtime.mas.scheduler import Runnable
 
-Step = Literal["cycle", "step", "event"]
+StepKind = Literal["cycle", "step", "event"]
 """The unit of stepping: a reasoning cycle, a plan step, or until the next event is handled."""
 
-STEPS = get_args(Step)
+STEPS = get_args(StepKind)
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class DebugState:
         return {**asdict(self), "cannot": list(self.cannot), "breakpoints": list(self.breakpoints)}
 
 
-Listener = Callable[[DebugState], None]
+DebugListener = Callable[[DebugState], None]
 
 
 class Debugger:
@@ -82,9 +83,9 @@ class Debugger:
     def __init__(self, system: ObservedSystem) -> None:
         self._system = system
         self._breakpoints: dict[str, Breakpoint] = {}
-        self._listeners: tuple[Listener, ...] = ()
+        self._listeners: tuple[DebugListener, ...] = ()
         self._state = DebugState("running", speed=self.speed)
-        self._stepping: tuple[Step, str | None] | None = None
+        self._stepping: tuple[StepKind, str | None] | None = None
         self._stepped_from: dict[str, int] = {}
         """By agent, the number of the cycle in which a step began."""
         self._noted: dict[str, dict[str, None]] = {}
@@ -104,7 +105,7 @@ class Debugger:
         """The current state, as listeners received it."""
         return self._state
 
-    def listen(self, listener: Listener) -> Callable[[], None]:
+    def listen(self, listener: DebugListener) -> Callable[[], None]:
         """Call *listener* with every new state. Return a function that ends this."""
         self._listeners = (*self._listeners, listener)
 
@@ -155,7 +156,7 @@ class Debugger:
         self._system.scheduler.resume()
         self._system.clock.resume()
 
-    def step(self, what: Step = "step", agent: str | None = None) -> None:
+    def step(self, what: StepKind = "step", agent: str | None = None) -> None:
         """Continue until the next reasoning cycle, plan step or event, and pause before it.
 
         Meanwhile time advances, and other agents have their turns.
@@ -312,7 +313,7 @@ class Debugger:
         met += [each.text for each in self._breakpoints.values() if test(each)]
         return f"breakpoint {', '.join(met)}" if met else ""
 
-    def _why_before(self, agent: Circumstance, what: Step) -> str:
+    def _why_before(self, agent: Circumstance, what: StepKind) -> str:
         """Return ``step`` if the requested step ends here."""
         if self._stepping is None or self._stepping[1] not in (None, agent.name):
             return ""

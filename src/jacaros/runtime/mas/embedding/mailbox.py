@@ -13,8 +13,8 @@ from jacaros.agents.terms.substitution import rename
 from jacaros.agents.terms.unifier import Trail, undo, unify
 from jacaros.agents.terms.values import Term, bare, is_list, list_items
 from jacaros.runtime.mas.embedding.running_agent import question, values_of
-from jacaros.runtime.mas.embedding.waits import RunEnded, Waits
-from jacaros.runtime.mas.messaging import Arrivals, Correspondent, Names, Send
+from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits
+from jacaros.runtime.mas.messaging import Arrivals, Correspondent, ListNames, Send
 
 T = TypeVar("T")
 
@@ -27,7 +27,7 @@ class Stream(Arrivals[T]):
         what: what is missing while there is no item, for errors.
     """
 
-    def __init__(self, waits: Waits, what: str) -> None:
+    def __init__(self, waits: RunWaits, what: str) -> None:
         super().__init__()
         self._waits = waits
         self._what = what
@@ -73,7 +73,7 @@ class Mailbox(Stream[Message]):
         name: its name for agents.
     """
 
-    def __init__(self, name: str, send: Send, names: Names, waits: Waits) -> None:
+    def __init__(self, name: str, send: Send, names: ListNames, waits: RunWaits) -> None:
         super().__init__(waits, f"no message for {name}")
         self.name = name
         self._sender = Correspondent(name, send, names)

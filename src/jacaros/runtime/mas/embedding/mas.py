@@ -17,7 +17,7 @@ from jacaros.runtime.mas.agents.programs import source_folders
 from jacaros.runtime.mas.console import StandardConsole, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
-from jacaros.runtime.mas.embedding.waits import RunEnded, UnknownAgent, Waits
+from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
 from jacaros.runtime.mas.launch import chosen_clock, load_deployment, mapped
 from jacaros.runtime.mas.options import RunOptions
 from jacaros.runtime.mas.system import System
@@ -158,7 +158,7 @@ class Mas:
         self._deployment = _deployment(project, name, base, self._options.mappings)
         self._options.check()
         self._console = PrintedConsole(on_print, on_log)
-        self._begun: tuple[System, Waits] | None = None
+        self._begun: tuple[System, RunWaits] | None = None
         self._stop_watching: Callable[[], None] = lambda: None
         self._at_end: list[Callable[[], None]] = []
         self._agents: dict[str, RunningAgent] = {}
@@ -177,7 +177,7 @@ class Mas:
         options.check()
         clock = chosen_clock(options, self._console, clock_of(loop))
         system = System(self._deployment, clock, self._console, options)
-        waits = Waits(clock)
+        waits = RunWaits(clock)
         self._begun = system, waits
         system.lifecycle.when_ended = waits.agent_ended
         try:
@@ -208,7 +208,7 @@ class Mas:
             raise system.error
 
     @property
-    def _running(self) -> tuple[System, Waits]:
+    def _running(self) -> tuple[System, RunWaits]:
         if self._begun is None:
             raise RunEnded("the system is not running: use it inside `async with Mas(...) as mas:`")
         self._begun[1].check_thread()

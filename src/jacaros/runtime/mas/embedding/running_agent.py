@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.agents.body.values import to_value
 from jacaros.agents.language.loader import parse_formula, parse_literal, parse_term
-from jacaros.agents.language.lowering import Names, lower_value
+from jacaros.agents.language.lowering import VariableNames, lower_value
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import belief_update, goals
 from jacaros.agents.mind.rules.failure import told
@@ -32,7 +32,7 @@ from jacaros.agents.terms.values import (
 )
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.host import AgentHost
-from jacaros.runtime.mas.embedding.waits import AgentEnded, GoalFailed, Waits
+from jacaros.runtime.mas.embedding.waits import AgentEnded, GoalFailed, RunWaits
 
 
 class OpenMind:
@@ -197,13 +197,13 @@ def literal(written: str) -> Term:
     return lower_value(parse_literal(written))
 
 
-def question(formula: str) -> tuple[Term, Names]:
+def question(formula: str) -> tuple[Term, VariableNames]:
     """Parse a formula. Return its term and its variables by name."""
-    names = Names()
+    names = VariableNames()
     return lower_value(parse_formula(formula), names.__getitem__), names
 
 
-def values_of(names: Names) -> dict[str, Any]:
+def values_of(names: VariableNames) -> dict[str, Any]:
     """Return the current values of variables, by name."""
     return {name: to_value(resolve(value)) for name, value in names.items() if name[0] != "_"}
 
@@ -258,7 +258,7 @@ class RunningAgent(OpenMind):
         name: name of the agent.
     """
 
-    def __init__(self, host: AgentHost, waits: Waits, end: Callable[[AgentHost], None]) -> None:
+    def __init__(self, host: AgentHost, waits: RunWaits, end: Callable[[AgentHost], None]) -> None:
         self.name = host.name
         self._host = host
         self._waits = waits
@@ -392,7 +392,7 @@ class Goal(PursuedGoal):
     or was dropped. A goal that is not awaited is pursued, too. Its failure is logged, like that of every goal.
     """
 
-    def __init__(self, written: str, mind: Mind, waits: Waits, agent_ended: Callable[[], bool]) -> None:
+    def __init__(self, written: str, mind: Mind, waits: RunWaits, agent_ended: Callable[[], bool]) -> None:
         super().__init__(written, WatchedGoal(mind, literal(written), self._news, self._news))
         self._mind = mind
         self._agent_ended = agent_ended

@@ -60,7 +60,7 @@ class GoalFailed(JacarosError):
         return None
 
 
-class Waits:
+class RunWaits:
     """The waits of one run, created in the thread of its event loop, the only one that may use the run.
 
     Args:

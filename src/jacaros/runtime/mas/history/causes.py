@@ -20,7 +20,7 @@ RECORDED = ("event", "message")
 LARGE = 4096
 """Number of elements in the field ``data`` from which on a message, such as an image, is not kept."""
 
-Link = tuple[Cause, float, Any]
+CauseLink = tuple[Cause, float, Any]
 """A cause, its time (by the clock, which continues during a pause on a real graph), and its subject."""
 
 
@@ -103,8 +103,8 @@ class CauseRecords:
         self.with_effect: Callable[[float, str, Any], None] | None = None
         self._last = 0
         # Two generations: the older one is dropped as a whole, at no cost per cause.
-        self._young: dict[int, Link] = {}
-        self._old: dict[int, Link] = {}
+        self._young: dict[int, CauseLink] = {}
+        self._old: dict[int, CauseLink] = {}
         self._samples: set[int] = set()
         """Messages that have led to something. Each is kept, or recorded, once."""
 
@@ -186,14 +186,14 @@ class CauseRecords:
         if isinstance(cause, _Received):
             self._keep_sample(cause)
         number = cause.id
-        chain: list[Link] = []
+        chain: list[CauseLink] = []
         while (link := self._young.pop(number, None) or self._old.pop(number, None)) is not None:
             chain.append(link)
             number = link[0].parent
         for link in reversed(chain):
             self._record(link)
 
-    def _record(self, link: Link) -> None:
+    def _record(self, link: CauseLink) -> None:
         (number, parent, kind, what), moment, about = link
         at = round(moment - self._beginning, 3)
         record = records.CauseRecord(number, kind, what, parent, at)

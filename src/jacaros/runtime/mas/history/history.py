@@ -14,7 +14,7 @@ from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.goals import GoalRecords
 from jacaros.runtime.mas.history.intentions import Looks, Moments
-from jacaros.runtime.mas.history.minds import IN_ALL, Allowance, MessageRecords, MindRecords, Shared
+from jacaros.runtime.mas.history.minds import IN_ALL, MessageRecords, MindRecords, RateLimit, Shared
 from jacaros.runtime.mas.history.programs import ProgramRecords
 from jacaros.runtime.mas.history.run_environment import ObservedSystem, RunEnvironmentRecords
 from jacaros.runtime.trace import Cause
@@ -42,7 +42,7 @@ class Happening(NamedTuple):
     data: Mapping[str, Any]
 
 
-Listener = Callable[[float, str, Mapping[str, Any]], None]
+RecordListener = Callable[[float, str, Mapping[str, Any]], None]
 """Called with ``t``, ``event`` and ``data`` of a record. See `Happening`."""
 
 
@@ -73,13 +73,13 @@ class History:
         self.events: deque[Happening] = deque(maxlen=kept)
         self._kept = kept
         self._lasting: Lasting[Happening] = Lasting()
-        self._listeners: tuple[Listener, ...] = ()
+        self._listeners: tuple[RecordListener, ...] = ()
         self._message_listeners: list[Callable[[float, str, Any], None]] = []
         self._ends = ExitStack()
         self._starts = 0
         self._agents: AgentRecords | None = None
 
-    def listen(self, listener: Listener) -> Callable[[], None]:
+    def listen(self, listener: RecordListener) -> Callable[[], None]:
         """Call *listener* with every record from now on. Return a function that ends this."""
         self._listeners = (*self._listeners, listener)
 
@@ -175,7 +175,7 @@ class AgentRecords:
         self._looks = Looks(system.clock)
         self._goals = GoalRecords(tell)
         messages = MessageRecords(links, self._cause, tell)
-        examinations = Allowance(t, IN_ALL)
+        examinations = RateLimit(t, IN_ALL)
         self._shared = Shared(tell, t, links, examinations, ProgramRecords(tell), messages, self._looks)
         self._minds: dict[str, MindRecords] = {}
         self._ends: dict[str, ExitStack] = {}

@@ -15,9 +15,9 @@ from jacaros.agents.mind.state.pending import (
     ASK,
     GOAL_CONDITION,
     CoroutineWait,
-    Listener,
+    PendingCondition,
+    PendingEvent,
     Waiting,
-    Watch,
     is_action,
 )
 from jacaros.agents.mind.state.plan import Plan, StepInfo
@@ -243,7 +243,7 @@ def waits_for(waiting: Waiting) -> str:
     if waiting.reason in (ASK, GOAL_CONDITION):
         return "an answer" if waiting.reason is ASK else "the condition of its goal"
     kinds = {type(each) for each in waiting.pending}
-    what = "the event " if Listener in kinds else "the condition " if Watch in kinds else ""
+    what = "the event " if PendingEvent in kinds else "the condition " if PendingCondition in kinds else ""
     return f"{what}{shown(_awaited(waiting))}" if what else _time(waiting)
 
 

@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
 from jacaros.agents.mind.state.plan import OpenFact, Plan, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
-from jacaros.agents.terms.values import Annotated, Functor, Term, atom
+from jacaros.agents.terms.values import Annotated, Annotations, Functor, Term, atom
 from jacaros.look.records import records
 from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import shown, shown_event
@@ -48,7 +48,7 @@ class _Reason(NamedTuple):
         return any(each is self.frame for each in frames[max(0, self.depth - 1) : self.depth + 1])
 
 
-class Allowance:
+class RateLimit:
     """Limits how often something happens per second of the run's clock.
 
     Args:
@@ -121,7 +121,6 @@ class MessageRecords:
 MOST_BELIEFS = 1000
 """Maximum number of beliefs of one agent that are recorded when its observation begins."""
 
-Annotations = tuple[Term, ...]
 _NOTHING = atom("nothing")
 
 
@@ -139,7 +138,7 @@ class Shared(NamedTuple):
     tell: RecordSink
     t: Moments
     links: CauseRecords
-    examinations: Allowance
+    examinations: RateLimit
     programs: ProgramRecords
     messages: MessageRecords
     looks: Looks
@@ -162,7 +161,7 @@ class MindRecords:
         self._reasons: dict[int, list[_Reason]] = {}
         """By intention, the causes of the plans on its stack, the lowest first."""
         self._candidates: dict[Trigger, list[Plan]] = {}
-        self._allowance = Allowance(shared.t, PER_SECOND)
+        self._allowance = RateLimit(shared.t, PER_SECOND)
         self._message: Cause | None = None
         self._told: dict[int, tuple[Annotations, str]] = {}
         """The texts of annotations, which many beliefs share."""

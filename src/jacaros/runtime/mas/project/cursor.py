@@ -31,7 +31,7 @@ _LONGEST: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Token:
+class ProjectToken:
     """A token of a project file.
 
     Attributes:
@@ -73,18 +73,18 @@ class ProjectCursor:
         self._depth = 0
 
     @property
-    def token(self) -> Token:
+    def token(self) -> ProjectToken:
         return self.tokens[self.index]
 
-    def peek(self, further: int = 1) -> Token:
+    def peek(self, further: int = 1) -> ProjectToken:
         """Return the token *further* positions ahead."""
         return self.tokens[min(self.index + further, len(self.tokens) - 1)]
 
-    def before(self) -> Token:
+    def before(self) -> ProjectToken:
         """Return the token before the current one."""
         return self.tokens[self.index - 1]
 
-    def advance(self) -> Token:
+    def advance(self) -> ProjectToken:
         """Consume the current token and return it. The ``end`` token is never consumed."""
         token = self.token
         if token.kind != "end":
@@ -98,24 +98,24 @@ class ProjectCursor:
         self.advance()
         return True
 
-    def expect(self, text: str, help: str | None = None) -> Token:
+    def expect(self, text: str, help: str | None = None) -> ProjectToken:
         """Consume this sign or word, or fail."""
         token = self.token
         if not self.accept(text):
             self.fail(f"expected `{text}`, found {token}", help=help)
         return token
 
-    def take(self, what: str, *kinds: str, help: str | None = None) -> Token:
+    def take(self, what: str, *kinds: str, help: str | None = None) -> ProjectToken:
         """Consume a token of one of these kinds, or fail. *what* says in messages what it is."""
         if self.token.kind not in kinds:
             self.fail(f"expected {what}, found {self.token}", help=help)
         return self.advance()
 
-    def name(self, what: str) -> Token:
+    def name(self, what: str) -> ProjectToken:
         """Consume a name, or fail."""
         return self.take(what, "word")
 
-    def lower_name(self, what: str) -> Token:
+    def lower_name(self, what: str) -> ProjectToken:
         """Consume a name. Report one that does not begin with a lower-case letter."""
         token = self.name(what)
         if not token.text[0].islower():
@@ -125,7 +125,7 @@ class ProjectCursor:
             )
         return token
 
-    def span_of(self, token: Token) -> Span:
+    def span_of(self, token: ProjectToken) -> Span:
         return Span(self.file, token.line, token.column, token.line, token.column + len(token.text))
 
     def report(self, message: str, span: Span | None = None, help: str | None = None) -> None:
@@ -141,7 +141,7 @@ class ProjectCursor:
         self.report(message, span, help)
         raise ProjectPanic
 
-    def fail_unclosed(self, opener: Token, help: str | None = None) -> NoReturn:
+    def fail_unclosed(self, opener: ProjectToken, help: str | None = None) -> NoReturn:
         """Report a bracket that is not closed."""
         self.report(f"`{opener.kind}` is not closed", self.span_of(opener), help)
         raise UnclosedPanic
@@ -157,7 +157,7 @@ class ProjectCursor:
         finally:
             self._depth -= 1
 
-    def number(self, token: Token) -> int | float:
+    def number(self, token: ProjectToken) -> int | float:
         """Return the value of a number token."""
         if token.text.lstrip("-").isdigit():
             if len(token.text) > _LONGEST:
@@ -196,15 +196,15 @@ class ProjectCursor:
             depth += (token.kind in OPENERS) - (token.kind in OPENERS.values())
 
 
-def text_of(token: Token) -> str:
+def text_of(token: ProjectToken) -> str:
     """Return the content of a string, or the text of any other token."""
     if token.kind != "string":
         return token.text
     return unquoted(token.text)
 
 
-def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[Token]:
-    tokens: list[Token] = []
+def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[ProjectToken]:
+    tokens: list[ProjectToken] = []
     line, begin, last_line = 1, 0, 0
     for found in _TOKEN.finditer(file.text):
         kind = found.lastgroup
@@ -224,9 +224,9 @@ def _tokenize(file: SourceFile, report: Callable[[str, Span], None]) -> list[Tok
             report(what, Span(file, line, column, line, column + len(text.splitlines()[0].rstrip())))
             continue
         tokens.append(
-            Token(text if kind == "sign" else kind, text, line, column, start, stop, line != last_line)
+            ProjectToken(text if kind == "sign" else kind, text, line, column, start, stop, line != last_line)
         )
         last_line = line
     end = (tokens[-1].line, tokens[-1].column + len(tokens[-1].text)) if tokens else (1, 1)
-    tokens.append(Token("end", "", *end, len(file.text), len(file.text), False))
+    tokens.append(ProjectToken("end", "", *end, len(file.text), len(file.text), False))
     return tokens

@@ -13,7 +13,7 @@ _NAMED: Final = 3
 """Up to this number of declarations are named in a warning; beyond it, only their number is given."""
 
 
-class Topic(NamedTuple):
+class IgnoredDeclaration(NamedTuple):
     """A kind of declaration without effect. ``plural`` names several of them; ``why`` ends the message."""
 
     plural: str
@@ -21,43 +21,43 @@ class Topic(NamedTuple):
     help: str | None = None
 
 
-ROLES: Final = Topic(
+ROLES: Final = IgnoredDeclaration(
     "roles",
     "roles in organisations are not supported",
     "declare the duties as goals, and coordinate agents by messages or through an artifact",
 )
-ORGANISATIONS: Final = Topic(
+ORGANISATIONS: Final = IgnoredDeclaration(
     "organisations",
     "organisations are not supported",
     "coordinate agents by messages or through an artifact",
 )
-INSTITUTIONS: Final = Topic("institutions", "institutions are not supported")
-NODES: Final = Topic("nodes and hosts", "all agents run in one process")
-PACKAGES: Final = Topic(
+INSTITUTIONS: Final = IgnoredDeclaration("institutions", "institutions are not supported")
+NODES: Final = IgnoredDeclaration("nodes and hosts", "all agents run in one process")
+PACKAGES: Final = IgnoredDeclaration(
     "packages", "Java packages are not supported", "install Python packages beside jacaros with pip"
 )
-PATHS: Final = Topic(
+PATHS: Final = IgnoredDeclaration(
     "paths",
     "Java classes and organisations are not supported",
     "put Python artifacts beside the project file, or in src/env",
 )
-PLATFORMS: Final = Topic("platforms", "all agents run in one process")
-INSPECTORS: Final = Topic(
+PLATFORMS: Final = IgnoredDeclaration("platforms", "all agents run in one process")
+INSPECTORS: Final = IgnoredDeclaration(
     "inspectors", "JaCaROS opens no windows", "watch the run with --view, or record it with --record"
 )
-JAVA: Final = Topic("sections", "JaCaROS runs no Java code")
-INFRASTRUCTURES: Final = Topic("infrastructures", "all agents run in one process")
-JAVA_ENVIRONMENT: Final = Topic(
+JAVA: Final = IgnoredDeclaration("sections", "JaCaROS runs no Java code")
+INFRASTRUCTURES: Final = IgnoredDeclaration("infrastructures", "all agents run in one process")
+JAVA_ENVIRONMENT: Final = IgnoredDeclaration(
     "environments",
     "Java environments are not supported",
     "write artifacts in Python, and declare `environment: jacaros.Environment`",
 )
-ARCHITECTURES: Final = Topic(
+ARCHITECTURES: Final = IgnoredDeclaration(
     "agent architectures",
     "JaCaROS runs no architectures of projects",
     "write percepts and actions as an artifact, as docs/how-to/come_from_jason.md shows",
 )
-BELIEF_BASES: Final = Topic(
+BELIEF_BASES: Final = IgnoredDeclaration(
     "belief bases",
     "JaCaROS runs no belief bases of projects",
     "keep data in an artifact or a file, as docs/how-to/come_from_jason.md shows",
@@ -69,7 +69,7 @@ _REPLACED: Final = ("jaca.", "c4jason.", "jason.architecture.AgArch", "jason.bb.
 class Unsupported(NamedTuple):
     """One declaration without effect. A *detail* belongs to another one that is reported."""
 
-    topic: Topic
+    topic: IgnoredDeclaration
     what: str
     span: Span
     detail: bool = False
@@ -82,7 +82,7 @@ class Unsupported(NamedTuple):
         return Diagnostic("warning", message, self.span, self.topic.help, CODE)
 
 
-def class_without_effect(key: str, written: str) -> tuple[Topic, str] | None:
+def class_without_effect(key: str, written: str) -> tuple[IgnoredDeclaration, str] | None:
     """Return what to report about the class of an agent; None if JaCaROS does its work itself.
 
     Args:
@@ -97,7 +97,7 @@ def class_without_effect(key: str, written: str) -> tuple[Topic, str] | None:
 
 def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
     """Return one warning for each topic and file, without details, as a run prints them."""
-    groups: dict[tuple[str, Topic], list[Unsupported]] = {}
+    groups: dict[tuple[str, IgnoredDeclaration], list[Unsupported]] = {}
     for one in sorted(found, key=lambda one: one.span[1:]):
         if not one.detail:
             groups.setdefault((one.span.file.name, one.topic), []).append(one)
@@ -107,7 +107,7 @@ def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
     ]
 
 
-def _together(topic: Topic, group: Sequence[Unsupported]) -> Diagnostic:
+def _together(topic: IgnoredDeclaration, group: Sequence[Unsupported]) -> Diagnostic:
     names = list(dict.fromkeys(one.what for one in group))
     lines = list(dict.fromkeys(str(one.span.line) for one in group))
     several = f"{', '.join(names[:-1])} and {names[-1]}"
@@ -117,7 +117,7 @@ def _together(topic: Topic, group: Sequence[Unsupported]) -> Diagnostic:
     return Diagnostic("warning", message, group[0].span, topic.help, CODE)
 
 
-Written = tuple[str, Span]
+WrittenName = tuple[str, Span]
 """A piece of text and its location."""
 
 
@@ -161,8 +161,8 @@ class AgentPart:
     instances: int | list[str] | None = None
     options: dict[str, str] = field(default_factory=dict)
     option_places: dict[str, Span] = field(default_factory=dict)
-    beliefs: list[Written] = field(default_factory=list)
-    goals: list[Written] = field(default_factory=list)
+    beliefs: list[WrittenName] = field(default_factory=list)
+    goals: list[WrittenName] = field(default_factory=list)
     join: list[JoinPart] = field(default_factory=list)
     focus: list[FocusPart] = field(default_factory=list)
     agent_class: str | None = None
@@ -179,7 +179,7 @@ class AgentPart:
 
 
 @dataclass
-class ArtifactPart:
+class ArtifactDeclaration:
     """One declared artifact. ``focused_by`` are agents with an optional namespace."""
 
     spec: ArtifactSpec
@@ -194,8 +194,8 @@ class WorkspacePart:
     span: Span
     parent: str | None = None
     parent_span: Span | None = None
-    artifacts: list[ArtifactPart] = field(default_factory=list)
-    agents: list[Written] = field(default_factory=list)
+    artifacts: list[ArtifactDeclaration] = field(default_factory=list)
+    agents: list[WrittenName] = field(default_factory=list)
 
 
 @dataclass
@@ -205,8 +205,8 @@ class OrganisationPart:
     name: str
     span: Span
     is_institution: bool = False
-    agents: list[Written] = field(default_factory=list)
-    workspaces: list[Written] = field(default_factory=list)
+    agents: list[WrittenName] = field(default_factory=list)
+    workspaces: list[WrittenName] = field(default_factory=list)
 
 
 @dataclass
@@ -214,7 +214,7 @@ class ProjectPart:
     """One project file. ``mapped`` are the artifacts of its mapping files."""
 
     name: str = "mas"
-    uses: list[Written] = field(default_factory=list)
+    uses: list[WrittenName] = field(default_factory=list)
     agents: list[AgentPart] = field(default_factory=list)
     workspaces: list[WorkspacePart] = field(default_factory=list)
     organisations: list[OrganisationPart] = field(default_factory=list)
@@ -222,8 +222,8 @@ class ProjectPart:
     infrastructure: list[str] = field(default_factory=list)
     world: str | None = None
     world_span: Span | None = None
-    mappings: list[Written] = field(default_factory=list)
-    mapped: list[ArtifactPart] = field(default_factory=list)
+    mappings: list[WrittenName] = field(default_factory=list)
+    mapped: list[ArtifactDeclaration] = field(default_factory=list)
     source_paths: list[str] = field(default_factory=list)
     code_paths: list[str] = field(default_factory=list)
     folders: tuple[Path, ...] = ()

@@ -13,7 +13,7 @@ from jacaros.agents.language.diagnostics import Diagnostic, SourceFile
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.runtime.files.texts import did_you_mean, suggestion
 from jacaros.runtime.mas.deployment import ArtifactSpec
-from jacaros.runtime.mas.project.cursor import ProjectPanic, Token, UnclosedPanic, text_of
+from jacaros.runtime.mas.project.cursor import ProjectPanic, ProjectToken, UnclosedPanic, text_of
 from jacaros.runtime.mas.project.declarations import (
     INSPECTORS,
     INSTITUTIONS,
@@ -25,12 +25,12 @@ from jacaros.runtime.mas.project.declarations import (
     ROLES,
     AgentName,
     AgentPart,
-    ArtifactPart,
+    ArtifactDeclaration,
     FocusPart,
     JoinPart,
     OrganisationPart,
     WorkspacePart,
-    Written,
+    WrittenName,
 )
 from jacaros.runtime.mas.project.language import NAME, ProjectReader
 
@@ -51,9 +51,9 @@ class Block:
     """
 
     what: str
-    keys: "Mapping[str, Callable[[JcmReader, Any, Token], object]]"
-    entries: "Mapping[str, Callable[[JcmReader, Any, Token], object]]" = field(default_factory=dict)
-    other: "Callable[[JcmReader, Any, Token], object] | None" = None
+    keys: "Mapping[str, Callable[[JcmReader, Any, ProjectToken], object]]"
+    entries: "Mapping[str, Callable[[JcmReader, Any, ProjectToken], object]]" = field(default_factory=dict)
+    other: "Callable[[JcmReader, Any, ProjectToken], object] | None" = None
     is_strict: bool = False
 
 
@@ -193,37 +193,37 @@ class JcmReader(ProjectReader):
 
     # ---- values
 
-    def _items(self, *kinds: str) -> Iterator[Token]:
+    def _items(self, *kinds: str) -> Iterator[ProjectToken]:
         """Yield the first token of each item of a value, separated by spaces, commas or line ends."""
         while self.token.kind in kinds and not self._at_end():
             yield self.advance()
             self.accept(",")
 
-    def names(self, *_: object) -> list[Written]:
+    def names(self, *_: object) -> list[WrittenName]:
         """Return names."""
         return [(text_of(token), self.span_of(token)) for token in self._items(*NAME, "number", "*")]
 
-    def some_names(self, key: Token) -> list[Written]:
+    def some_names(self, key: ProjectToken) -> list[WrittenName]:
         """Return at least one name."""
         found = self.names()
         if not found:
             self.fail(f"expected a value after `{key.text}:`, found {self.token}")
         return found
 
-    def _classes(self, missing: str = "") -> list[Written]:
+    def _classes(self, missing: str = "") -> list[WrittenName]:
         """Return classes with their arguments as written. Without any, fail if *missing* says what is expected."""
         found = [(text_of(token) + self.parameters(), self.span_of(token)) for token in self._items(*NAME)]
         if not found and missing:
             self.fail(f"expected {missing}, found {self.token}")
         return found
 
-    def pieces(self, *_: object) -> list[Written]:
+    def pieces(self, *_: object) -> list[WrittenName]:
         """Return the pieces of a value, separated by commas or line ends, as written."""
-        found: list[Written] = []
+        found: list[WrittenName] = []
         while not self._at_end():
             start = self.token
 
-            def ends(start: Token = start) -> bool:
+            def ends(start: ProjectToken = start) -> bool:
                 token = self.token
                 return token.kind == "," or (token.first and token is not start) or self._at_end()
 
@@ -234,7 +234,7 @@ class JcmReader(ProjectReader):
                 self.fail(f"unexpected `{start.text}`")
         return found
 
-    def _file_name(self, what: str) -> Written:
+    def _file_name(self, what: str) -> WrittenName:
         """Return the name of a file. Without quotes, it ends at a space."""
         first = last = self.take(what, *NAME)
         if first.kind == "string":
@@ -262,7 +262,7 @@ class JcmReader(ProjectReader):
                 self.expect(",", f"close the `{opener.kind}` in line {opener.line} with `{closer}`")
         return tuple(values)
 
-    def _argument(self, opener: Token) -> object:
+    def _argument(self, opener: ProjectToken) -> object:
         """Return one value. A string remains a string even if it looks like a number."""
         token = self.token
         if token.kind == "[":
@@ -288,11 +288,11 @@ class JcmReader(ProjectReader):
 
     # ---- the project
 
-    def _java_path(self, key: Token) -> None:
+    def _java_path(self, key: ProjectToken) -> None:
         self.some_names(key)
         self.unsupported(PATHS, f"`{key.text}`", self.span_of(key))
 
-    def _platforms(self, key: Token) -> None:
+    def _platforms(self, key: ProjectToken) -> None:
         for text, span in self._classes(f"a platform after `{key.text}:`"):
             self.part.infrastructure.append(text)
             name, _, parameters = text.partition("(")
@@ -300,7 +300,7 @@ class JcmReader(ProjectReader):
             if name.strip() not in _OWN_PLATFORMS and not switched_off:
                 self.unsupported(PLATFORMS, f"the platform `{name}`", span)
 
-    def _node(self, _: Token) -> None:
+    def _node(self, _: ProjectToken) -> None:
         """``node name [running] [@ host[:port]]``."""
         name = self.name("the name of a node")
         self.accept("running")
@@ -308,7 +308,7 @@ class JcmReader(ProjectReader):
             self._file_name("the address of the node")
         self.unsupported(NODES, f"the node `{name.text}`", self.span_of(name))
 
-    def _package(self, _: Token) -> None:
+    def _package(self, _: ProjectToken) -> None:
         """``uses package: name "file or coordinates"``."""
         self.expect("package", 'write `uses package: name "file.jar"`')
         self.expect(":", 'write `uses package: name "file.jar"`')
@@ -319,7 +319,7 @@ class JcmReader(ProjectReader):
 
     # ---- agents
 
-    def _agent(self, _: Token) -> None:
+    def _agent(self, _: ProjectToken) -> None:
         """``agent name : file { ... }``."""
         name = self.lower_name("the name of an agent")
         agent = AgentPart(name.text, self.span_of(name))
@@ -333,13 +333,13 @@ class JcmReader(ProjectReader):
             )
         self._read_block(_AGENT, agent)
 
-    def _join(self, agent: AgentPart, _: Token) -> None:
+    def _join(self, agent: AgentPart, _: ProjectToken) -> None:
         for token in self._items(*NAME):
             name = text_of(token)
             elsewhere = self._node_of(f"the workspace `{name}`")
             agent.join.append(JoinPart(name, self.span_of(token), elsewhere))
 
-    def _focus(self, agent: AgentPart, _: Token) -> None:
+    def _focus(self, agent: AgentPart, _: ProjectToken) -> None:
         for first in self._items("word"):
             token, namespace = first, None
             if self.accept("::"):
@@ -349,7 +349,7 @@ class JcmReader(ProjectReader):
             elsewhere = self._node_of(f"the artifact `{token.text}`")
             agent.focus.append(FocusPart(artifact, workspace if dot else None, namespace, span, elsewhere))
 
-    def _instances(self, agent: AgentPart, key: Token) -> None:
+    def _instances(self, agent: AgentPart, key: ProjectToken) -> None:
         values = self.names()
         text = values[0][0] if values else ""
         if len(values) == 1 and text.isdecimal() and 0 < len(text) < 7 and int(text) > 0:
@@ -360,7 +360,7 @@ class JcmReader(ProjectReader):
             span = values[0][1] if values else self.span_of(key)
             self.report("expected a number or names of agents as `instances`", span)
 
-    def _roles(self, agent: AgentPart, _: Token) -> None:
+    def _roles(self, agent: AgentPart, _: ProjectToken) -> None:
         """``role in [organisation.]group [@ node]``, any number of times."""
         for role in self._items("word"):
             self.expect("in", "write `role in organisation.group`")
@@ -369,21 +369,21 @@ class JcmReader(ProjectReader):
             self.unsupported(ROLES, f"the role `{role.text}` in `{group.text}`", span)
             self._node_of(f"the group `{group.text}`")
 
-    def _class(self, agent: AgentPart, key: Token) -> None:
+    def _class(self, agent: AgentPart, key: ProjectToken) -> None:
         found = self._classes(f"the class for `{key.text}`")
         if len(found) > 1 or agent.agent_class is not None:
             self.report(f"duplicate key `{key.text}`: an agent has only one", found[-1][1])
         agent.agent_class = found[0][0]
 
-    def _class_without_effect(self, agent: AgentPart, key: Token) -> None:
+    def _class_without_effect(self, agent: AgentPart, key: ProjectToken) -> None:
         for text, span in self._classes():
             self.class_of_agent(key.text, text, span)
 
-    def _host_of_agent(self, agent: AgentPart, key: Token) -> None:
+    def _host_of_agent(self, agent: AgentPart, key: ProjectToken) -> None:
         agent.host = " ".join(text for text, _ in self.names())
         self.unsupported(NODES, f"`{key.text}` of agent `{agent.name}`", self.span_of(key))
 
-    def _option(self, agent: AgentPart, key: Token) -> None:
+    def _option(self, agent: AgentPart, key: ProjectToken) -> None:
         """Read an option of Jason, or a parameter of the project's own."""
         span = self.span_of(key)
         if key.text in agent.options:
@@ -401,36 +401,36 @@ class JcmReader(ProjectReader):
 
     # ---- workspaces
 
-    def _workspace(self, _: Token) -> None:
+    def _workspace(self, _: ProjectToken) -> None:
         """``workspace name { ... }``."""
         name = self.lower_name("the name of a workspace")
         workspace = WorkspacePart(name.text, self.span_of(name))
         self.part.workspaces.append(workspace)
         self._read_block(_WORKSPACE, workspace)
 
-    def _agents(self, part: WorkspacePart | OrganisationPart, _: Token) -> None:
+    def _agents(self, part: WorkspacePart | OrganisationPart, _: ProjectToken) -> None:
         part.agents += self.names()
 
-    def _parent(self, workspace: WorkspacePart, _: Token) -> None:
+    def _parent(self, workspace: WorkspacePart, _: ProjectToken) -> None:
         parent = self.name("the name of a workspace")
         workspace.parent, workspace.parent_span = parent.text, self.span_of(parent)
 
-    def _host_of_workspace(self, workspace: WorkspacePart, key: Token) -> None:
+    def _host_of_workspace(self, workspace: WorkspacePart, key: ProjectToken) -> None:
         self.name("the name of a node")
         self.unsupported(NODES, f"`{key.text}` of workspace `{workspace.name}`", self.span_of(key))
 
-    def _inspector(self, workspace: WorkspacePart, key: Token) -> None:
+    def _inspector(self, workspace: WorkspacePart, key: ProjectToken) -> None:
         what = f"`debug` of workspace `{workspace.name}`"
         self.unsupported(INSPECTORS, what, self.span_of(key))
 
-    def _inspector_key(self, workspace: WorkspacePart, key: Token) -> None:
+    def _inspector_key(self, workspace: WorkspacePart, key: ProjectToken) -> None:
         self.pieces()
         self._inspector(workspace, key)
 
-    def _artifact(self, workspace: WorkspacePart, _: Token) -> None:
+    def _artifact(self, workspace: WorkspacePart, _: ProjectToken) -> None:
         name = self.lower_name("the name of an artifact")
         # Add it now: if the rest has an error, references to the artifact are still valid.
-        part = ArtifactPart(ArtifactSpec(name.text, "", span=self.span_of(name)))
+        part = ArtifactDeclaration(ArtifactSpec(name.text, "", span=self.span_of(name)))
         workspace.artifacts.append(part)
         self.expect(":", _ARTIFACT)
         kind = self.take("the class of the artifact", *NAME, help=_ARTIFACT)
@@ -446,7 +446,7 @@ class JcmReader(ProjectReader):
             type_span=self.span_of(kind),
         )
 
-    def _focused_by(self, found: list[AgentName], _: Token) -> None:
+    def _focused_by(self, found: list[AgentName], _: ProjectToken) -> None:
         """``[namespace::]agent`` or ``*``, any number of times."""
         for token in self._items("word", "*"):
             agent, namespace = token, None
@@ -457,7 +457,7 @@ class JcmReader(ProjectReader):
 
     # ---- organisations and institutions: read and checked, but without effect
 
-    def _organisation(self, keyword: Token) -> None:
+    def _organisation(self, keyword: ProjectToken) -> None:
         """``organisation name : file { ... }``, and the same of an institution."""
         is_institution = keyword.text == "institution"
         what, topic = ("institution", INSTITUTIONS) if is_institution else ("organisation", ORGANISATIONS)
@@ -469,7 +469,7 @@ class JcmReader(ProjectReader):
         self.unsupported(topic, f"the {what} `{part.name}`", part.span)
         self._read_block(_INSTITUTION if is_institution else _ORGANISATION, part)
 
-    def _part_of_organisation(self, part: OrganisationPart, keyword: Token) -> None:
+    def _part_of_organisation(self, part: OrganisationPart, keyword: ProjectToken) -> None:
         """``group name : type { ... }``, and the same of a scheme."""
         what = keyword.text
         name = self.name(f"the name of a {what}")
@@ -479,7 +479,7 @@ class JcmReader(ProjectReader):
         # The agents that it mentions are those of the organisation.
         self._read_block(_GROUP if what == "group" else _SCHEME, replace(part, name=name.text))
 
-    def _players(self, group: OrganisationPart, _: Token) -> None:
+    def _players(self, group: OrganisationPart, _: ProjectToken) -> None:
         """``agent role``, any number of times."""
         for agent in self._items("word", "*"):
             if agent.kind == "word":

@@ -6,8 +6,19 @@ from typing import Any, ClassVar
 
 from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, Span
 from jacaros.runtime.files.texts import suggestion
-from jacaros.runtime.mas.project.cursor import ProjectCursor, ProjectPanic, Token, UnclosedPanic, text_of
-from jacaros.runtime.mas.project.declarations import ProjectPart, Topic, Unsupported, class_without_effect
+from jacaros.runtime.mas.project.cursor import (
+    ProjectCursor,
+    ProjectPanic,
+    ProjectToken,
+    UnclosedPanic,
+    text_of,
+)
+from jacaros.runtime.mas.project.declarations import (
+    IgnoredDeclaration,
+    ProjectPart,
+    Unsupported,
+    class_without_effect,
+)
 
 NAME = ("word", "string")
 
@@ -26,7 +37,7 @@ class ProjectReader(ProjectCursor):
     keyword: ClassVar[str]
     kind: ClassVar[str]
     sections: ClassVar[Sequence[str]]
-    readers: ClassVar[Mapping[str, Callable[[Any, Token], object]]]
+    readers: ClassVar[Mapping[str, Callable[[Any, ProjectToken], object]]]
 
     def __init__(self, file: SourceFile, diagnostics: list[Diagnostic]) -> None:
         super().__init__(file, diagnostics)
@@ -93,7 +104,7 @@ class ProjectReader(ProjectCursor):
         while self.token.kind != "end" and not self.at_next_section():
             self.advance()
 
-    def unsupported(self, topic: Topic, what: str, span: Span, detail: bool = False) -> None:
+    def unsupported(self, topic: IgnoredDeclaration, what: str, span: Span, detail: bool = False) -> None:
         """Record a declaration that has no effect."""
         self.part.unsupported.append(Unsupported(topic, what, span, detail))
 

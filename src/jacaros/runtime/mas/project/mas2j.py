@@ -5,7 +5,7 @@ from typing import ClassVar, Final
 from jacaros.agents.language.cursor import is_slip_of
 from jacaros.runtime.files.texts import did_you_mean, suggestion
 from jacaros.runtime.mas.deployment import CARTAGO_ENVIRONMENTS
-from jacaros.runtime.mas.project.cursor import ProjectPanic, Token, text_of
+from jacaros.runtime.mas.project.cursor import ProjectPanic, ProjectToken, text_of
 from jacaros.runtime.mas.project.declarations import INFRASTRUCTURES, JAVA, JAVA_ENVIRONMENT, NODES, AgentPart
 from jacaros.runtime.mas.project.language import ProjectReader
 
@@ -26,7 +26,7 @@ class Mas2jReader(ProjectReader):
     def at_next_section(self) -> bool:
         return self.token.kind == "}" or self.at_key_of_project()
 
-    def _infrastructure(self, _: Token) -> None:
+    def _infrastructure(self, _: ProjectToken) -> None:
         """Read the infrastructure. Agents always share one process here."""
         token = self.token
         self.part.infrastructure.append(self._class())
@@ -34,7 +34,7 @@ class Mas2jReader(ProjectReader):
             span = self.span_of(token)
             self.unsupported(INFRASTRUCTURES, f"the infrastructure `{token.text}`", span)
 
-    def _environment(self, _: Token) -> None:
+    def _environment(self, _: ProjectToken) -> None:
         """Read the class of the environment. A Java class has no effect."""
         token = self.token
         self.part.environment = self._class()
@@ -42,21 +42,21 @@ class Mas2jReader(ProjectReader):
         if name not in CARTAGO_ENVIRONMENTS:
             self.unsupported(JAVA_ENVIRONMENT, f"the environment `{name}`", self.span_of(token))
 
-    def _java(self, key: Token) -> None:
+    def _java(self, key: ProjectToken) -> None:
         self.raw(self.at_next_section)
         self.unsupported(JAVA, f"`{key.text}`", self.span_of(key))
 
-    def _source_path(self, _: Token) -> None:
+    def _source_path(self, _: ProjectToken) -> None:
         while self.token.kind in ("string", "word") and not self.at_next_section():
             self.part.source_paths.append(text_of(self.advance()))
             if not (self.accept(";") or self.accept(",")):
                 break
 
-    def _world(self, _: Token) -> None:
+    def _world(self, _: ProjectToken) -> None:
         self.world(_VALUE)
         self.accept(";")
 
-    def _mapping(self, _: Token) -> None:
+    def _mapping(self, _: ProjectToken) -> None:
         token = self.take("the name of a mapping file", *_VALUE)
         self.part.mappings.append((text_of(token), self.span_of(token)))
         self.accept(";")
@@ -73,7 +73,7 @@ class Mas2jReader(ProjectReader):
 
     # agents
 
-    def _agents(self, _: Token) -> None:
+    def _agents(self, _: ProjectToken) -> None:
         if self.at_next_section():
             self.report("expected at least one agent")
         while not self.at_next_section() and self.token.kind != "end":

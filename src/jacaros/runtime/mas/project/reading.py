@@ -9,7 +9,7 @@ from jacaros.runtime.files.texts import file_text, is_file
 from jacaros.runtime.mas.agents.programs import source_folders
 from jacaros.runtime.mas.deployment import CARTAGO_ENVIRONMENTS, Deployment, ProjectError
 from jacaros.runtime.mas.project.declarations import (
-    ArtifactPart,
+    ArtifactDeclaration,
     FocusPart,
     ProjectPart,
     WorkspacePart,
@@ -24,7 +24,7 @@ _CODE_PATHS: Final = ("src", "src/env", "src/agt")
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadProject:
     """The result of reading a project.
 
     Attributes:
@@ -38,7 +38,7 @@ class Reading:
     used: frozenset[Path]
 
 
-def read_project(path: Path) -> Reading:
+def read_project(path: Path) -> ReadProject:
     """Read a `.mas2j` or `.jcm` file, with the files that it uses.
 
     Raises:
@@ -51,7 +51,7 @@ def read_project(path: Path) -> Reading:
     told = [*found, *condensed(part.unsupported)]
     every = [*found, *(each.diagnostic() for each in part.unsupported)]
     used = frozenset(files.seen - {path.resolve()})
-    return Reading(
+    return ReadProject(
         replace(deployment, ignored=tuple(sorted(told, key=_place))), sorted(every, key=_place), used
     )
 
@@ -95,7 +95,7 @@ class _Files:
         for name, span in part.mappings:
             specs, wrong = read_mapping_file(name, (path.parent,), span)
             self.diagnostics += wrong
-            part.mapped += map(ArtifactPart, specs)
+            part.mapped += map(ArtifactDeclaration, specs)
         if path.suffix != _JCM:
             # A `.mas2j` file cannot declare what agents focus.
             for agent in part.agents:

@@ -20,7 +20,7 @@ from jacaros.runtime.mas.project.declarations import (
     ProjectPart,
     Unsupported,
     WorkspacePart,
-    Written,
+    WrittenName,
 )
 
 _MAIN = "/main"
@@ -264,7 +264,7 @@ class Resolver:
             self.error(message, agent.source_span or agent.span, str(missing))
             return (agent.folders or (Path(),))[0] / file
 
-    def _literals(self, written: list[Written], what: str) -> str:
+    def _literals(self, written: list[WrittenName], what: str) -> str:
         """Return the literals, joined. Report what is not a literal."""
         for text, span in written:
             try:

@@ -9,7 +9,7 @@ from jacaros.look.records.records import DeliberationRecord, PlanRecord, Record
 from jacaros.look.why.about_events import candidates
 from jacaros.look.why.chains import is_written, place_of, plan_name, plan_text, shown
 from jacaros.look.why.explanation import Fact, seconds
-from jacaros.look.why.past import Past, Timed
+from jacaros.look.why.past import Past, TimedRecords
 
 MOST_EVENTS = 5
 """Number of events of one run only that the text lists."""
@@ -110,8 +110,8 @@ def compare(
     return Comparison(agent, same, tuple(decisions), only_then, only_now, tuple(waiting), unreadable)
 
 
-def _by_event(past: Past, agent: str) -> dict[str, Timed[DeliberationRecord]]:
-    found: dict[str, Timed[DeliberationRecord]] = defaultdict(list)
+def _by_event(past: Past, agent: str) -> dict[str, TimedRecords[DeliberationRecord]]:
+    found: dict[str, TimedRecords[DeliberationRecord]] = defaultdict(list)
     for t, data in past.deliberations:
         if data.agent == agent:
             found[shown(data.trigger)].append((t, data))
@@ -119,7 +119,7 @@ def _by_event(past: Past, agent: str) -> dict[str, Timed[DeliberationRecord]]:
 
 
 def _rest(
-    first: dict[str, Timed[DeliberationRecord]], other: dict[str, Timed[DeliberationRecord]]
+    first: dict[str, TimedRecords[DeliberationRecord]], other: dict[str, TimedRecords[DeliberationRecord]]
 ) -> tuple[str, ...]:
     """Return the events that only the first run has, the oldest first."""
     left = [(t, event) for event, handled in first.items() for t, _ in handled[len(other.get(event, ())) :]]

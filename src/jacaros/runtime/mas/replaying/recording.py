@@ -124,7 +124,7 @@ CANCELLED: Final = "cancelled"
 
 
 @dataclass(slots=True)
-class RecordedAct:
+class RecordedAction:
     """One action of an agent.
 
     Attributes:
@@ -153,7 +153,7 @@ class RecordedActs:
         past = Past.of(records)
         operations = [each for each in past.operations.values() if each.data.agent == agent]
         self._left = [
-            RecordedAct(
+            RecordedAction(
                 _operation_key(each.data.operation),
                 shown(each.data.operation),
                 each.began,
@@ -164,17 +164,17 @@ class RecordedActs:
         ]
         known = {each.data.cause for each in operations}
         self._left += [
-            RecordedAct(link.what.rpartition(" ")[2], "", t, t)
+            RecordedAction(link.what.rpartition(" ")[2], "", t, t)
             for number, (t, link, _) in past.links.items()
             if link.sort == "act" and link.agent == agent and number not in known
         ]
         self._left.sort(key=lambda each: each.began)
 
-    def ends(self) -> list[RecordedAct]:
+    def ends(self) -> list[RecordedAction]:
         """Return the actions whose end is known."""
         return [each for each in self._left if each.end and each.ended is not None]
 
-    def take(self, act: Act, now: float) -> RecordedAct | None:
+    def take(self, act: Act, now: float) -> RecordedAction | None:
         """Return the recorded action for an action that begins *now*, or None if none is left."""
         key = f"{act.functor.name}/{act.functor.arity}"
         written = shown(text((act.functor, *act.arguments) if act.arguments else act.functor))
@@ -183,11 +183,11 @@ class RecordedActs:
         if found is not None:
             self._left.remove(found)
         elif key in keys():
-            return RecordedAct(key, written, now, now)
+            return RecordedAction(key, written, now, now)
         return found
 
 
-def completion(recorded: RecordedAct, act: Act) -> Completion:
+def completion(recorded: RecordedAction, act: Act) -> Completion:
     """Return how an action ended, for its agent."""
     end = recorded.end
     if end is None or end.state != "failed":
@@ -197,7 +197,7 @@ def completion(recorded: RecordedAct, act: Act) -> Completion:
     return Completion(False, (), (message,) if term is None else (message, (_REASON, term)))
 
 
-def _outputs(recorded: RecordedAct, act: Act) -> Iterator[tuple[Term, Term]]:
+def _outputs(recorded: RecordedAction, act: Act) -> Iterator[tuple[Term, Term]]:
     """Return the output variables of an action with the recorded values."""
     variables = [each for each in act.arguments if deref(each).__class__ is Var]
     outputs = (recorded.end.outputs if recorded.end is not None else None) or ()

@@ -21,7 +21,7 @@ from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.embedding.mas import Mas
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.replaying.differences import Comparison, compare
-from jacaros.runtime.mas.replaying.recording import Input, RecordedAct, RecordedActs, completion, inputs_of
+from jacaros.runtime.mas.replaying.recording import Input, RecordedAction, RecordedActs, completion, inputs_of
 
 AT_ONCE = 1e-3
 """Seconds by which an action of the rerun may begin earlier or later than the recorded one, and still end with it."""
@@ -125,9 +125,9 @@ class _Rerun:
         self._host.send = self._send
         return agent
 
-    def _moments(self) -> list[tuple[float, int, Input | RecordedAct]]:
+    def _moments(self) -> list[tuple[float, int, Input | RecordedAction]]:
         """Return all that happens to the agent, in the order of the recording."""
-        inputs: list[tuple[float, int, Input | RecordedAct]] = [
+        inputs: list[tuple[float, int, Input | RecordedAction]] = [
             (each.t, each.order, each) for each in self._inputs
         ]
         ends = {
@@ -147,7 +147,7 @@ class _Rerun:
             if event in ("deliberation", "goal") and data.get("agent") == self._name
         ]
 
-    def _happen(self, agent: RunningAgent, each: Input | RecordedAct) -> None:
+    def _happen(self, agent: RunningAgent, each: Input | RecordedAction) -> None:
         if isinstance(each, Input):
             self._give(agent, each)
             return
@@ -156,7 +156,7 @@ class _Rerun:
         if act is not None:
             self._finish(act, each)
 
-    def _finish(self, act: Act, recorded: RecordedAct) -> None:
+    def _finish(self, act: Act, recorded: RecordedAction) -> None:
         assert self._host.mind is not None, "it runs a program"
         self._host.mind.complete(act.id, completion(recorded, act))
 

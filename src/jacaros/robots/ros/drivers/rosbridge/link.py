@@ -43,7 +43,7 @@ GOODBYE = 0.5
 """Seconds for the server to close the connection after our close frame."""
 
 
-class Connection(asyncio.Protocol):
+class RosbridgeConnection(asyncio.Protocol):
     """One connection.
 
     Args:
@@ -236,7 +236,7 @@ class Connection(asyncio.Protocol):
         self._ping_later()
 
 
-class Link:
+class RosbridgeLink:
     """A connection that is made again whenever it is lost.
 
     Args:
@@ -262,7 +262,7 @@ class Link:
         self._on_problem = on_problem
         self._loop: asyncio.AbstractEventLoop | None = None
         self._work: asyncio.Task[None] | None = None
-        self._connection: Connection | None = None
+        self._connection: RosbridgeConnection | None = None
         self._fragments = Fragments()
         self._awaited: dict[str, dict[str, Any] | None] = {}
 
@@ -374,9 +374,9 @@ class Link:
             await asyncio.sleep(pause)
             pause = min(pause * GROWTH, LONGEST_PAUSE)
 
-    async def _connect(self) -> Connection | None:
+    async def _connect(self) -> RosbridgeConnection | None:
         host, port = address(self._url)
-        connection = Connection(self._url, self.received)
+        connection = RosbridgeConnection(self._url, self.received)
         try:
             async with asyncio.timeout(CONNECTING):
                 loop = asyncio.get_running_loop()

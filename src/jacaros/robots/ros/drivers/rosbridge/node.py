@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from jacaros.robots.ros.backend import Backend
-from jacaros.robots.ros.drivers.rosbridge.link import Link
+from jacaros.robots.ros.drivers.rosbridge.link import RosbridgeLink
 from jacaros.robots.ros.errors import CallFailed, CallTimedOut, ServiceError, ServiceUnavailable
 from jacaros.robots.ros.handoff import post
 from jacaros.robots.ros.lifetime import Lifetime
@@ -76,7 +76,7 @@ class BridgeNode(Backend):
 
     def __init__(self, settings: NodeSettings, url: str) -> None:
         self.url = url
-        self._link = Link(self.url, self._link_up, self._link_down, self._received, self._say)
+        self._link = RosbridgeLink(self.url, self._link_up, self._link_down, self._received, self._say)
         self.requests = Requests(self._link.send, self._link.ask)
         self.schema = BridgeSchema(settings.interface_paths, self._ask_for_type, self._cannot_ask)
         super().__init__(settings, self.schema, Lifetime(settings.log, self._leave, threaded=True))
