@@ -73,7 +73,7 @@ class ClaimState(StrEnum):
 
 
 class Claimant(Protocol):
-    """Receives the events of a claim. Each method may call the arbiter."""
+    """Receives the events of a claim: an operation, or the plan of an agent. Each method may call the arbiter."""
 
     @property
     def can_yield(self) -> bool:

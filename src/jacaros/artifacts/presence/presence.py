@@ -659,7 +659,7 @@ identifies it, and the reason of a failure as text.
 
 
 class ActivityCounter(Protocol):
-    """Counts what runs, so that a run can detect idleness."""
+    """Counts what runs, so that a run can detect idleness: keeps the run's scheduler out of artifacts."""
 
     def begin(self) -> None:
         """Something with an end has begun."""

@@ -45,7 +45,7 @@ _BATCH = 64
 
 
 class Format(Protocol):
-    """Converts records to bytes; one object for each file."""
+    """Converts records to bytes, as lines or as MCAP; one object for each file."""
 
     def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return records as bytes, so that a file that ends after them is readable."""

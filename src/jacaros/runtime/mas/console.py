@@ -18,7 +18,7 @@ LEVELS = ("debug", "info", "warning", "error")
 
 
 class RunConsole(Protocol):
-    """The outputs of a run."""
+    """The outputs of a run: `StandardConsole`, or a console of the embedding program."""
 
     def print(self, agent: str, text: str) -> None:
         """Print a line of an agent's output."""

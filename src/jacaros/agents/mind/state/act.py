@@ -180,7 +180,7 @@ class MindObserver(Protocol):
 
 
 class TimerHandle(Protocol):
-    """A pending call."""
+    """A pending call: keeps the clock, and asyncio, out of minds."""
 
     def cancel(self) -> None:
         """Cancel the call."""
