@@ -580,7 +580,6 @@ def _nearest_to(times: list[float], time: float) -> int | None:
 
 
 def _operator(spec: Spec, emit: Emit) -> StreamOperator:
-    """Make the operator of a valid declaration."""
     options = spec.options
     match spec.operator:
         case "count":

@@ -143,7 +143,6 @@ class Trial:
         await self._mas.run(self._start)
 
     def _start(self) -> None:
-        """Post the goal of the test."""
         test = self._outcome.test
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
@@ -156,7 +155,6 @@ class Trial:
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
     def _goal_ended(self) -> None:
-        """Handle the end of the goal of the test."""
         assert self._goal is not None
         if self._goal.failed:
             self._fail(_failure(self._outcome.test, self._goal.reason))
@@ -182,7 +180,6 @@ class Trial:
         self._finish()
 
     def _end_run(self, problem: FailureReport) -> None:
-        """Handle an early end of the run."""
         if self._done:
             return
         self._done = True
@@ -251,7 +248,6 @@ class Trial:
     # ---- observation
 
     def _observe(self, host: AgentHost) -> None:
-        """Observe an agent from its creation."""
         mind = host.mind
         if isinstance(mind, Mind):
             fakes = Fakes(mind.complete, host.set_timer)
@@ -262,7 +258,6 @@ class Trial:
             host.intercept_stop = fakes.stop
 
     def _asserted(self, assertion: Assertion) -> None:
-        """Record an assertion of an agent."""
         self._outcome.assertions += 1
         if not assertion.passed:
             self._outcome.problems.append(FailureReport.of(assertion))
@@ -293,7 +288,6 @@ class Trial:
 
 
 def _failure(test: AgentTest, reason: FailureReason | None) -> FailureReport:
-    """Return why the goal of a test failed."""
     if reason is None:
         return FailureReport("the goal of the test failed", (), test.span)
     place = reason.place.span() or test.span
@@ -302,7 +296,6 @@ def _failure(test: AgentTest, reason: FailureReason | None) -> FailureReport:
 
 
 def _stuck(message: str, intentions: Sequence[Intention], test: AgentTest) -> FailureReport:
-    """Return why a test does not end."""
     if not intentions:
         return FailureReport(f"{message}: its intention was dropped", (), test.span)
     intention = intentions[-1]

@@ -134,9 +134,7 @@ def parse_trigger(text: str) -> nodes.Trigger:
 
 
 def parse_plans(
-    text: str,
-    functions: Mapping[str, int] | None = None,
-    actions: Mapping[str, Declaration] | None = None,
+    text: str, functions: Mapping[str, int] | None = None, actions: Mapping[str, Declaration] | None = None
 ) -> tuple[nodes.Plan, ...]:
     """Parse the plans in *text*, each with its final '.' (optional after the last one).
 
@@ -172,12 +170,8 @@ def parse_literals(text: str, name: str = TEXT) -> tuple[nodes.Literal, ...]:
 
 
 def _parse(
-    text: str,
-    read: Callable[[PlanParser], T],
-    name: str = TEXT,
-    functions: Mapping[str, int] | None = None,
+    text: str, read: Callable[[PlanParser], T], name: str = TEXT, functions: Mapping[str, int] | None = None
 ) -> T:
-    """Parse the whole of *text* with *read*."""
     diagnostics: list[Diagnostic] = []
     parser = PlanParser(SourceFile(name, text), _names_with(functions), diagnostics)
     result: T | None = None

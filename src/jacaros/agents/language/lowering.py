@@ -43,7 +43,7 @@ Lookup = Callable[[str], Term]
 """Return the value of the variable of that name."""
 
 
-class VariableNames(dict[str, Term]):
+class Variables(dict[str, Term]):
     """Variables by name, created on first use."""
 
     def __missing__(self, name: str) -> Var:
@@ -53,7 +53,7 @@ class VariableNames(dict[str, Term]):
 
 def fresh_names() -> Lookup:
     """Return a lookup that creates a new variable for every name."""
-    return VariableNames().__getitem__
+    return Variables().__getitem__
 
 
 def lower(node: nodes.Node, lookup: Lookup) -> Term:
@@ -409,7 +409,6 @@ def _block(body: Any) -> str:
 
 
 def _named(node: nodes.Variable | nodes.Literal, name: str) -> str:
-    """Format a name with its namespace and negation."""
     namespace = format_term(node.namespace) if isinstance(node.namespace, nodes.Variable) else node.namespace
     return f"{'' if namespace is None else f'{namespace}::'}{'~' if node.negated else ''}{name}"
 

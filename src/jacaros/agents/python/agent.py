@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.agents.body.values import UNKEPT, Outputs, symbol_name, to_term, to_value
 from jacaros.agents.language.loader import parse_formula, parse_literal, parse_term
-from jacaros.agents.language.lowering import VariableNames, fresh_names, lower
+from jacaros.agents.language.lowering import Variables, fresh_names, lower
 from jacaros.agents.mind.actions.agents import QUESTIONS
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.state.act import SpeechAct
@@ -336,7 +336,7 @@ class Agent:
             AslError: the text is not a query.
         """
         mind = self._mind
-        names = VariableNames()
+        names = Variables()
         formula = lower(parse_formula(query), names.__getitem__)
         mark = len(mind.trail)
         answers = [

@@ -196,11 +196,7 @@ class RecordingFile:
     """
 
     def __init__(
-        self,
-        path: Path,
-        make_format: Callable[[], Format],
-        warn: Callable[[str], None] | None,
-        limit: int,
+        self, path: Path, make_format: Callable[[], Format], warn: Callable[[str], None] | None, limit: int
     ) -> None:
         self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
         self._batch = max(1, min(_BATCH, limit // 100_000))

@@ -83,7 +83,6 @@ class EventRecord(Struct, omit_defaults=True):
     kind: ClassVar[str]
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Name the kind."""
         super().__init_subclass__(**options)
         cls.kind = cls.__name__.removesuffix("Record").lower()
 

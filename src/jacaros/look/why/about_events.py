@@ -101,7 +101,6 @@ def _candidate(plan: records.PlanRecord | None, what: str) -> Fact:
 
 
 def _outcome(past: Past, t: float, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
-    """Return the outcome of the goal of an event."""
     goal = unsigned(deliberation.trigger)
     for later, data in past.goals if goal.startswith("!") else ():
         same = data.agent == deliberation.agent and data.goal == goal
@@ -293,7 +292,6 @@ def explain_belief(past: Past, asked: Question) -> Explanation:
 
 
 def _changing_step(past: Past, t: float, change: records.BeliefRecord) -> Iterator[Fact]:
-    """Return the step of a plan that changed a belief."""
     file, line = place_of(change)
     if file:
         written = source_line(past, file, line)

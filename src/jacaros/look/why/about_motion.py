@@ -198,7 +198,6 @@ def _events_before(past: Past, t: float, link: int, agent: str) -> TimedRecords[
 
 
 def _event_fact(past: Past, t: float, deliberation: records.DeliberationRecord) -> Fact:
-    """Return a handled event with its plan."""
     plan = past.plan(deliberation.agent, deliberation.chosen)
     name = plan_name(plan) if plan else "`?`"
     handled = f"{shown(deliberation.trigger)} handled at {seconds(t)} with {name}"

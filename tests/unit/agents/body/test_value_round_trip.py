@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from jacaros.agents.body.values import References, atom_of, to_term, to_value
 from jacaros.agents.language.loader import parse_literal
-from jacaros.agents.language.lowering import VariableNames, lower_value
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.terms.collections import MapValue, SetValue
 from jacaros.agents.terms.substitution import equal
 from jacaros.agents.terms.text import text
@@ -171,7 +171,7 @@ def test_the_name_of_a_functor_is_a_plain_text() -> None:
 
 
 def test_the_annotations_of_structures_come_back_and_do_not_count_in_comparisons() -> None:
-    value = to_value(lower_value(parse_literal("ns(1, q(2)[b])[a(2), c]"), VariableNames()))
+    value = to_value(lower_value(parse_literal("ns(1, q(2)[b])[a(2), c]"), Variables()))
     assert value == Structure("ns", (1, Structure("q", (2,))))
     assert str(value) == "ns(1,q(2)[b])[a(2),c]"
     assert text(to_term(plain([value]), References())) == "[ns(1,q(2)[b])[a(2),c]]"

@@ -114,7 +114,6 @@ def _direct(written: FixedArguments) -> Function | None:
 
 
 def _known_name(term: Term | None) -> str | None:
-    """Return the name that a term of the program denotes, or None."""
     if term is None or is_list(term) or bare(term).__class__ not in (String, Functor):
         return None
     return _name(term, "")

@@ -87,7 +87,6 @@ class InternalAction(Declaration):
     restricted: int | None = None
 
     def __call__(self, function: F) -> F:
-        """Register *function* under the name."""
         _declared[self.name] = replace(self, function=function)
         return function
 

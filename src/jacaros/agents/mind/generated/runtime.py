@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from jacaros.agents.language.lowering import VariableNames, lower
+from jacaros.agents.language.lowering import Variables, lower
 from jacaros.agents.mind.rules.belief_update import add_belief, delete_belief, replace_belief
 from jacaros.agents.mind.rules.deadlines import begin_guarded
 from jacaros.agents.mind.rules.forks import join_branch

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from jacaros.agents.language import nodes
-from jacaros.agents.language.lowering import VariableNames, lower
+from jacaros.agents.language.lowering import Variables, lower
 from jacaros.agents.language.nodes import names_in
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.rules import failure_reason, forks, meta_events, needs
@@ -86,7 +86,7 @@ class Selection:
         self, plan: Plan, agent: Circumstance, goal: Goal, annotations: EventAnnotations
     ) -> Iterator[Frame]:
         """Yield a frame for each answer of the context. A plan whose context cannot be evaluated is not applicable."""
-        names = VariableNames() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
+        names = Variables() if self.outer is None else _names_of(self.outer, agent.outer_frame, plan)
         try:
             if not is_relevant(plan, goal, annotations, names, agent.trail):
                 return
@@ -103,7 +103,7 @@ class Selection:
 
 
 def is_relevant(
-    plan: Plan, goal: Goal, annotations: EventAnnotations, names: VariableNames, trail: Trail
+    plan: Plan, goal: Goal, annotations: EventAnnotations, names: Variables, trail: Trail
 ) -> bool:
     """Rule RelPl: return whether the trigger of a plan unifies with an event; bind the variables of the plan."""
     literal = plan.node.trigger.literal
@@ -129,9 +129,9 @@ def is_relevant(
     return unify_annotations(items, tail, annotations_of_event(annotations), None, trail)
 
 
-def _names_of(outer: Plan, frame: Frame, plan: Plan) -> VariableNames:
+def _names_of(outer: Plan, frame: Frame, plan: Plan) -> Variables:
     """Return the variables that a sub-plan shares with its outer plan."""
-    names = VariableNames()
+    names = Variables()
     for name in names_in(plan.node):
         slot = outer.slots.get(name)
         if slot is not None:
@@ -139,7 +139,7 @@ def _names_of(outer: Plan, frame: Frame, plan: Plan) -> VariableNames:
     return names
 
 
-def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: VariableNames, serial: int) -> Frame:
+def _frame(plan: Plan, goal: Goal, annotations: EventAnnotations, names: Variables, serial: int) -> Frame:
     """Return the frame of an applicable plan, at its first step."""
     body = interpreted(plan)
     for name in body.known:

@@ -15,7 +15,7 @@ from jacaros.agents.language import nodes
 from jacaros.agents.language.loader import parse_trigger
 from jacaros.agents.language.lowering import (
     Reflection,
-    VariableNames,
+    Variables,
     fresh_names,
     lower,
     lower_plan,
@@ -86,7 +86,6 @@ class Step:
         self.place = 0
 
     def __call__(self, agent: Any, frame: Frame) -> object:
-        """Run the step."""
         return _MEANING[type(self.node)](self, self.node, agent, frame)
 
     def go_on_with(self, behind: Next) -> None:
@@ -94,18 +93,18 @@ class Step:
         self.next = behind
         self.info.next = "None" if behind is None else behind.__name__
 
-    def values(self, frame: Frame) -> VariableNames:
+    def values(self, frame: Frame) -> Variables:
         """The variables that the step mentions; those without a value are made when they are first asked for."""
-        return VariableNames(variables_of(frame, self.names))
+        return Variables(variables_of(frame, self.names))
 
-    def keep(self, frame: Frame, names: VariableNames) -> None:
+    def keep(self, frame: Frame, names: Variables) -> None:
         """Store the variables that the step has bound. Known variables keep their places: a loop around unbinds them."""
         slots = frame[PLAN].slots
         for name in self.names:
             if name in slots and name in names and frame[slots[name]] is None:
                 frame[slots[name]] = deref(names[name])
 
-    def go_on(self, frame: Frame, names: VariableNames, posted: object = None) -> object:
+    def go_on(self, frame: Frame, names: Variables, posted: object = None) -> object:
         """The step has succeeded."""
         self.keep(frame, names)
         frame[STEP] = self.next
@@ -118,7 +117,6 @@ class Round(Step):
     __slots__ = ()
 
     def __call__(self, agent: Any, frame: Frame) -> None:
-        """Run the step."""
         if isinstance(self.node, nodes.While):
             _while_round(self, self.node, agent, frame)
         elif isinstance(self.node, nodes.For):
@@ -168,7 +166,6 @@ class InterpretedBody:
         return f"step_{self._count}"
 
     def _fill(self, step: Step, node: nodes.Node) -> None:
-        """Make the steps inside a step."""
         if isinstance(node, nodes.If):
             step.names = names_in(node.condition)
             then, otherwise = self._name(), self._name()
@@ -218,12 +215,12 @@ class GoalCondition:
 
     def __call__(self, agent: Any, frame: Frame) -> bool:
         """Ask the beliefs."""
-        found = holds(agent, self.node, VariableNames(variables_of(frame, self.names)), agent.trail)
+        found = holds(agent, self.node, Variables(variables_of(frame, self.names)), agent.trail)
         undo(agent.trail, 0)
         return found
 
 
-def holds(agent: Any, condition: nodes.Node, names: VariableNames, trail: Trail) -> bool:
+def holds(agent: Any, condition: nodes.Node, names: Variables, trail: Trail) -> bool:
     """Whether a condition has an answer; the bindings of the first one stay."""
     for _ in run(answers(agent, condition, names.__getitem__, trail), agent.options.rule_depth):
         return True
@@ -255,7 +252,6 @@ def _test(step: Step, node: nodes.Test, agent: Any, frame: Frame) -> object:
 
 
 def _constraint(step: Step, node: nodes.Constraint, agent: Any, frame: Frame) -> object:
-    """A condition, or an internal action."""
     formula = node.formula
     if isinstance(formula, nodes.InternalAction) and collecting(agent, formula) is None:
         return _internal_action(step, formula, agent, frame)
@@ -348,9 +344,7 @@ def _for(step: Step, node: nodes.For, agent: Any, frame: Frame) -> object:
     return step.first[0](agent, frame)  # type: ignore[misc]
 
 
-def _rounds(
-    node: nodes.For, agent: Any, names: VariableNames, wanted: list[str]
-) -> Iterator[tuple[Term, ...]]:
+def _rounds(node: nodes.For, agent: Any, names: Variables, wanted: list[str]) -> Iterator[tuple[Term, ...]]:
     """Yield the values of the variables of a ``for`` in each round."""
     trail = Trail()
     trail.serial = agent.trail.serial

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple, cast
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.loader import parse_term
-from jacaros.agents.language.lowering import VariableNames, lower_value
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.language.nodes import walk
 from jacaros.agents.mind.actions.internal_action import InternalAction
 from jacaros.agents.mind.rules.query import interpret_rule, solve_formula
@@ -204,12 +204,10 @@ class Context:
         constant = all(isinstance(part, _CONSTANTS) for part in walk(node))
         return node, lower_value(node) if constant else None
 
-    def _names(self) -> VariableNames:
+    def _names(self) -> Variables:
         """The variables of the running plan by their names."""
         current = self.intention
-        return VariableNames(
-            variables_of(current.frames[-1]) if current is not None and current.frames else ()
-        )
+        return Variables(variables_of(current.frames[-1]) if current is not None and current.frames else ())
 
     def report(self, action: str, fault: object) -> None:
         """Warn of an internal action that failed in a condition."""
@@ -385,7 +383,6 @@ class _Beliefs:
         return iter(list(self._beliefs))
 
     def items(self) -> Iterator[tuple[Functor, "_Table"]]:
-        """Yield all predicates with their tables."""
         return ((symbol, self[symbol]) for symbol in self)
 
 

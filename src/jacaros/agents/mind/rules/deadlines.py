@@ -9,7 +9,7 @@ deadline and attempts apply to each period.
 
 from math import ceil, floor
 
-from jacaros.agents.language.lowering import VariableNames, lower
+from jacaros.agents.language.lowering import Variables, lower
 from jacaros.agents.mind.rules import failure, meta_events
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.clr_int import cut_out, pop_finished
@@ -218,7 +218,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
 
 def _guards(frame: Frame) -> dict[str, Term]:
     """Return the guards of a plan, with the values of its variables when it begins."""
-    names = VariableNames(variables_of(frame))
+    names = Variables(variables_of(frame))
     return {
         node.functor: rename(resolve(lower(node.arguments[0], names.__getitem__)))
         for node in frame[PLAN].guards

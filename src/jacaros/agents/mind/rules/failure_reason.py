@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Span
-from jacaros.agents.language.lowering import VariableNames, format_term, lower
+from jacaros.agents.language.lowering import Variables, format_term, lower
 from jacaros.agents.language.nodes import names_in, operands
 from jacaros.agents.mind.rules.context import Impure, ReadOnly, reading
 from jacaros.agents.mind.state.belief_base import Table
@@ -185,7 +185,6 @@ class Place:
         return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
-        """Return the formula, with the values of its variables."""
         assert self.info is not None
         formula = _failed_formula(self.info.node)
         try:
@@ -393,7 +392,7 @@ class FailingContexts:
         """Return whether the trigger of a plan fits the goal; True if that cannot be determined."""
         trail = Trail()
         try:
-            return self._matches(plan, VariableNames().__getitem__, trail)
+            return self._matches(plan, Variables().__getitem__, trail)
         except Exception:
             return True
         finally:
@@ -406,7 +405,7 @@ class FailingContexts:
             return ""
         try:
             with reading(self._agent, MOST_STEPS) as view:
-                names = VariableNames()
+                names = Variables()
                 if not self._matches(plan, names.__getitem__, view.trail):
                     return ""
                 return _Search(self._agent, view, context, names).outcome()
@@ -422,9 +421,7 @@ class FailingContexts:
 class _Search:
     """One search of a context, conjunct by conjunct, from the left."""
 
-    def __init__(
-        self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: VariableNames
-    ) -> None:
+    def __init__(self, agent: Circumstance, view: ReadOnly, context: nodes.Node, names: Variables) -> None:
         self._agent, self._view, self._names = agent, view, names
         self._conjuncts = operands(context) if isinstance(context, nodes.And) else [context]
         self._deepest: _Stop | None = None

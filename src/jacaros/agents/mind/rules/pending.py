@@ -108,11 +108,7 @@ def _ring(agent: Circumstance, alarm: PendingTimer) -> None:
 
 
 def listen(
-    agent: Circumstance,
-    kind: Trigger | None,
-    pattern: Term,
-    function: Callable[..., None],
-    *arguments: Any,
+    agent: Circumstance, kind: Trigger | None, pattern: Term, function: Callable[..., None], *arguments: Any
 ) -> PendingEvent:
     """Call *function* with the agent and the arguments at the next event of a kind (None: of any) that matches."""
     listener = PendingEvent(_numbered(agent), function, arguments, kind, pattern)

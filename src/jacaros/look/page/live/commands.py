@@ -16,7 +16,7 @@ from msgspec.structs import asdict
 from jacaros.agents.body.values import Outputs, to_value
 from jacaros.agents.language.diagnostics import TEXT, AslError
 from jacaros.agents.language.loader import parse_literal
-from jacaros.agents.language.lowering import VariableNames, lower_value
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.terms.values import Var, bare
 from jacaros.artifacts.env.environment import Environment
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
@@ -106,7 +106,6 @@ def _fields_of(command: Command) -> type[Struct]:
 
 
 def _values(given: Given, fields: type[Struct]) -> dict[str, Any]:
-    """Return the fields of a command."""
     try:
         values = asdict(convert(given, fields))
     except ValidationError as error:
@@ -275,7 +274,7 @@ def artifact_commands(system: System) -> Mapping[str, Command]:
 async def _operate(environment: Environment, artifact: str, written: str) -> str:
     """Call an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
     target = _find(environment, artifact)
-    names = VariableNames()
+    names = Variables()
     outputs: Outputs = []
     term: Any = bare(lower_value(parse_literal(written), names.__getitem__))
     name, *arguments = term if term.__class__ is tuple else (term,)
@@ -297,7 +296,6 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
 
 
 def _value_of(variable: Var, outputs: Outputs) -> str:
-    """Return the value of an output variable, ``_`` for none."""
     found = next((out for each, out in outputs if each is variable), None)
     return value_text(found.value) if found is not None and found.is_set else "_"
 

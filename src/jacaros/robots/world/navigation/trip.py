@@ -125,7 +125,6 @@ class Trip:
         await self._turn(claim)
 
     async def _turn(self, claim: WheelClaim) -> None:
-        """Turn to the heading of the last goal."""
         self._marked = self._clock.now()
         while (command := self._driver.heading(self._pose, self.goals[-1], YAW_TOLERANCE)) is not None:
             self._check()

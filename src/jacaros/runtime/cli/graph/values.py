@@ -192,7 +192,6 @@ def _walk(types: Interfaces, type_name: str, path: str, unit: str) -> Iterator[G
 def _single(
     types: Interfaces, type_name: str, name: str, kind: FieldType, path: str, unit: str
 ) -> GivenValue:
-    """Return the value of a plain field."""
     word = "yaw" if name == "theta" else name.lower()
     if is_time(kind):
         return GivenValue(path, word, "", _shown("s"))

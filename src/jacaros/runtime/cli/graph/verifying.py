@@ -217,7 +217,6 @@ def _text(type_name: Written | None) -> str:
 
 
 def _as_written(names: ResolvedNames, name: str) -> str:
-    """Return an absolute name as written in the file."""
     prefix = names.resolve("x").removesuffix("x")
     return name.removeprefix(prefix) if name.startswith(prefix) else name
 

@@ -1,6 +1,5 @@
 """Debug a running system: pause, step, speed, breakpoints, and reload of changed programs."""
 
-from jacaros.runtime.mas.debugging.breakpoints import Breakpoint
-from jacaros.runtime.mas.debugging.debugger import Debugger, DebugState, StepKind
+from jacaros.runtime.mas.debugging.debugger import Debugger, DebugState
 
-__all__ = ["Breakpoint", "DebugState", "Debugger", "StepKind"]
+__all__ = ["DebugState", "Debugger"]

@@ -5,7 +5,7 @@ from typing import Any
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.loader import parse_formula, parse_trigger
-from jacaros.agents.language.lowering import VariableNames, lower, lower_value
+from jacaros.agents.language.lowering import Variables, lower, lower_value
 from jacaros.agents.language.nodes import nodes_in
 from jacaros.agents.mind.actions.internal_action import STANDARD
 from jacaros.agents.mind.rules.context import reading
@@ -124,7 +124,7 @@ class EventBreakpoint(Breakpoint):
         node = parse_trigger(pattern)
         self.pattern = pattern
         self._operator, self._kind = node.operator, node.kind
-        names = VariableNames()
+        names = Variables()
         self._pattern = lower_value(node.literal, names.__getitem__)
         self._functor = functor_of(self._pattern)
         if self._functor is None:
@@ -195,7 +195,7 @@ class ConditionBreakpoint(Breakpoint):
         """Return whether the formula holds now; False if it cannot be evaluated, or the search takes too long."""
         try:
             with reading(agent, MOST_STEPS) as view:
-                return any(True for _ in view.answers(lower(self._formula, VariableNames().__getitem__)))
+                return any(True for _ in view.answers(lower(self._formula, Variables().__getitem__)))
         except Exception:
             return False
 

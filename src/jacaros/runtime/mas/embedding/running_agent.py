@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.agents.body.values import to_value
 from jacaros.agents.language.loader import parse_formula, parse_literal, parse_term
-from jacaros.agents.language.lowering import VariableNames, lower_value
+from jacaros.agents.language.lowering import Variables, lower_value
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules import belief_update, goals
 from jacaros.agents.mind.rules.failure import told
@@ -197,13 +197,13 @@ def literal(written: str) -> Term:
     return lower_value(parse_literal(written))
 
 
-def question(formula: str) -> tuple[Term, VariableNames]:
+def question(formula: str) -> tuple[Term, Variables]:
     """Parse a formula. Return its term and its variables by name."""
-    names = VariableNames()
+    names = Variables()
     return lower_value(parse_formula(formula), names.__getitem__), names
 
 
-def values_of(names: VariableNames) -> dict[str, Any]:
+def values_of(names: Variables) -> dict[str, Any]:
     """Return the current values of variables, by name."""
     return {name: to_value(resolve(value)) for name, value in names.items() if name[0] != "_"}
 

@@ -291,7 +291,6 @@ class MindRecords:
     # ---- beliefs
 
     def _record_beliefs(self) -> None:
-        """Record present beliefs."""
         left = MOST_BELIEFS
         for symbol, table in list(self._mind.beliefs.items()):
             for entry, annotations in table.entries()[: max(0, left)]:

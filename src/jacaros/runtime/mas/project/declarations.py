@@ -13,7 +13,7 @@ _NAMED: Final = 3
 """Up to this number of declarations are named in a warning; beyond it, only their number is given."""
 
 
-class IgnoredDeclaration(NamedTuple):
+class Ignored(NamedTuple):
     """A kind of declaration without effect. ``plural`` names several of them; ``why`` ends the message."""
 
     plural: str
@@ -21,43 +21,43 @@ class IgnoredDeclaration(NamedTuple):
     help: str | None = None
 
 
-ROLES: Final = IgnoredDeclaration(
+ROLES: Final = Ignored(
     "roles",
     "roles in organisations are not supported",
     "declare the duties as goals, and coordinate agents by messages or through an artifact",
 )
-ORGANISATIONS: Final = IgnoredDeclaration(
+ORGANISATIONS: Final = Ignored(
     "organisations",
     "organisations are not supported",
     "coordinate agents by messages or through an artifact",
 )
-INSTITUTIONS: Final = IgnoredDeclaration("institutions", "institutions are not supported")
-NODES: Final = IgnoredDeclaration("nodes and hosts", "all agents run in one process")
-PACKAGES: Final = IgnoredDeclaration(
+INSTITUTIONS: Final = Ignored("institutions", "institutions are not supported")
+NODES: Final = Ignored("nodes and hosts", "all agents run in one process")
+PACKAGES: Final = Ignored(
     "packages", "Java packages are not supported", "install Python packages beside jacaros with pip"
 )
-PATHS: Final = IgnoredDeclaration(
+PATHS: Final = Ignored(
     "paths",
     "Java classes and organisations are not supported",
     "put Python artifacts beside the project file, or in src/env",
 )
-PLATFORMS: Final = IgnoredDeclaration("platforms", "all agents run in one process")
-INSPECTORS: Final = IgnoredDeclaration(
+PLATFORMS: Final = Ignored("platforms", "all agents run in one process")
+INSPECTORS: Final = Ignored(
     "inspectors", "JaCaROS opens no windows", "watch the run with --view, or record it with --record"
 )
-JAVA: Final = IgnoredDeclaration("sections", "JaCaROS runs no Java code")
-INFRASTRUCTURES: Final = IgnoredDeclaration("infrastructures", "all agents run in one process")
-JAVA_ENVIRONMENT: Final = IgnoredDeclaration(
+JAVA: Final = Ignored("sections", "JaCaROS runs no Java code")
+INFRASTRUCTURES: Final = Ignored("infrastructures", "all agents run in one process")
+JAVA_ENVIRONMENT: Final = Ignored(
     "environments",
     "Java environments are not supported",
     "write artifacts in Python, and declare `environment: jacaros.Environment`",
 )
-ARCHITECTURES: Final = IgnoredDeclaration(
+ARCHITECTURES: Final = Ignored(
     "agent architectures",
     "JaCaROS runs no architectures of projects",
     "write percepts and actions as an artifact, as docs/how-to/come_from_jason.md shows",
 )
-BELIEF_BASES: Final = IgnoredDeclaration(
+BELIEF_BASES: Final = Ignored(
     "belief bases",
     "JaCaROS runs no belief bases of projects",
     "keep data in an artifact or a file, as docs/how-to/come_from_jason.md shows",
@@ -69,7 +69,7 @@ _REPLACED: Final = ("jaca.", "c4jason.", "jason.architecture.AgArch", "jason.bb.
 class Unsupported(NamedTuple):
     """One declaration without effect. A *detail* belongs to another one that is reported."""
 
-    topic: IgnoredDeclaration
+    topic: Ignored
     what: str
     span: Span
     detail: bool = False
@@ -82,7 +82,7 @@ class Unsupported(NamedTuple):
         return Diagnostic("warning", message, self.span, self.topic.help, CODE)
 
 
-def class_without_effect(key: str, written: str) -> tuple[IgnoredDeclaration, str] | None:
+def class_without_effect(key: str, written: str) -> tuple[Ignored, str] | None:
     """Return what to report about the class of an agent; None if JaCaROS does its work itself.
 
     Args:
@@ -97,7 +97,7 @@ def class_without_effect(key: str, written: str) -> tuple[IgnoredDeclaration, st
 
 def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
     """Return one warning for each topic and file, without details, as a run prints them."""
-    groups: dict[tuple[str, IgnoredDeclaration], list[Unsupported]] = {}
+    groups: dict[tuple[str, Ignored], list[Unsupported]] = {}
     for one in sorted(found, key=lambda one: one.span[1:]):
         if not one.detail:
             groups.setdefault((one.span.file.name, one.topic), []).append(one)
@@ -107,7 +107,7 @@ def condensed(found: Sequence[Unsupported]) -> list[Diagnostic]:
     ]
 
 
-def _together(topic: IgnoredDeclaration, group: Sequence[Unsupported]) -> Diagnostic:
+def _together(topic: Ignored, group: Sequence[Unsupported]) -> Diagnostic:
     names = list(dict.fromkeys(one.what for one in group))
     lines = list(dict.fromkeys(str(one.span.line) for one in group))
     several = f"{', '.join(names[:-1])} and {names[-1]}"

@@ -13,12 +13,7 @@ from jacaros.runtime.mas.project.cursor import (
     UnclosedPanic,
     text_of,
 )
-from jacaros.runtime.mas.project.declarations import (
-    IgnoredDeclaration,
-    ProjectPart,
-    Unsupported,
-    class_without_effect,
-)
+from jacaros.runtime.mas.project.declarations import Ignored, ProjectPart, Unsupported, class_without_effect
 
 NAME = ("word", "string")
 
@@ -104,7 +99,7 @@ class ProjectReader(ProjectCursor):
         while self.token.kind != "end" and not self.at_next_section():
             self.advance()
 
-    def unsupported(self, topic: IgnoredDeclaration, what: str, span: Span, detail: bool = False) -> None:
+    def unsupported(self, topic: Ignored, what: str, span: Span, detail: bool = False) -> None:
         """Record a declaration that has no effect."""
         self.part.unsupported.append(Unsupported(topic, what, span, detail))
 

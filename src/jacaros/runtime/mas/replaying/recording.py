@@ -198,7 +198,6 @@ def completion(recorded: RecordedAction, act: Act) -> Completion:
 
 
 def _outputs(recorded: RecordedAction, act: Act) -> Iterator[tuple[Term, Term]]:
-    """Return the output variables of an action with the recorded values."""
     variables = [each for each in act.arguments if deref(each).__class__ is Var]
     outputs = (recorded.end.outputs if recorded.end is not None else None) or ()
     for variable, written in zip(variables, outputs, strict=False):
