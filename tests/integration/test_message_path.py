@@ -18,7 +18,7 @@ COUNT = re.compile(r"the message passes (\d+) functions of (\d+) files")
 OTHERS = frozenset(
     {
         # the motion that is under way, and what wakes it
-        *("Steps._drive", "Motion._drive", "Claim.wait", "Claim.wake"),
+        *("Steps._drive", "Motion._drive", "MotionClaim.wait", "MotionClaim.wake"),
         *("WheeledArtifact.perform", "WheeledArtifact.on_odometry"),
         # done once for each operation, not for each message
         "Workspace.providers",

@@ -38,13 +38,6 @@ if TYPE_CHECKING:
     from jacaros.artifacts.presence.presence import ObservedProperty, PropertyChange, ReceivedSignal
     from jacaros.artifacts.presence.session import Session, SessionOperation
 
-
-# Workspaces and artifacts as in CArtAgO, usable without agents.
-#
-# To write artifacts, use `Artifact`, the decorators and the plain values. A host uses `Environment`. To use artifacts from
-# Python, use a `Session`. Each name is loaded on first use. This package does not depend on agents, ROS or the language.
-
-
 __all__ = [
     "UNSET",
     "Artifact",

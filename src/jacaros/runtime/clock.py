@@ -480,7 +480,6 @@ class _VirtualSelector(selectors.DefaultSelector):
         clock.when_paused = self._hold
 
     def _hold(self, paused: bool) -> None:
-        """Hold the callbacks of the run, or release them."""
         if not paused:
             self.ready.extend(self.held)
             self.held.clear()

@@ -143,7 +143,6 @@ class Trial:
         await self._mas.run(self._start)
 
     def _start(self) -> None:
-        """Post the goal of the test."""
         test = self._outcome.test
         self._began, self._began_run = time.perf_counter(), self._clock.now()
         limit = test.timeout if test.timeout is not None else self._options.timeout
@@ -156,7 +155,6 @@ class Trial:
         self._goal = WatchedGoal(host.mind, lower_value(test.goal), self._goal_ended)
 
     def _goal_ended(self) -> None:
-        """Handle the end of the goal of the test."""
         assert self._goal is not None
         if self._goal.failed:
             self._fail(_failure(self._outcome.test, self._goal.reason))
@@ -251,7 +249,6 @@ class Trial:
     # ---- observation
 
     def _observe(self, host: AgentHost) -> None:
-        """Observe an agent from its creation."""
         mind = host.mind
         if isinstance(mind, Mind):
             fakes = Fakes(mind.complete, host.set_timer)
@@ -262,7 +259,6 @@ class Trial:
             host.intercept_stop = fakes.stop
 
     def _asserted(self, assertion: Assertion) -> None:
-        """Record an assertion of an agent."""
         self._outcome.assertions += 1
         if not assertion.passed:
             self._outcome.problems.append(FailureReport.of(assertion))

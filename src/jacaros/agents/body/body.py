@@ -367,7 +367,6 @@ def _base(presence: AgentPresence, call: Call) -> Workspace:
 
 
 def _name_of(call: Call, index: int, holder: ArtifactId, what: str = "a name (a string or an atom)") -> str:
-    """Return the name in an argument."""
     name = name_of(bare(call.arguments[index]))
     if name is None:
         raise _wrong(call, holder, f"argument {index + 1}: expected {what}", index)

@@ -38,6 +38,7 @@ from jacaros.agents.terms.values import (
     SOURCE_PERCEPT,
     TRUE,
     Annotated,
+    Annotations,
     Functor,
     List,
     Reference,
@@ -292,8 +293,6 @@ _WORKSPACE = functor("workspace", 2)
 _OBSERVABLE_PROPERTY = (_PERCEPT_TYPE, atom("obs_prop"))
 _OBSERVABLE_EVENT = (_PERCEPT_TYPE, atom("obs_ev"))
 _NULL = Atom("null")
-
-Annotations = tuple[Term, ...]
 
 
 class PerceptWriter:

@@ -476,7 +476,6 @@ def needs_of(found: ByKind) -> Iterator[tuple[str, nodes.Literal]]:
 
 
 def _annotated(found: ByKind) -> Iterator[list[nodes.Literal]]:
-    """Yield the annotations of labels and of goals."""
     yield from map(labelled, found.of(nodes.Plan))
     yield from (annotations_of(goal.goal) for goal in found.of(nodes.Achieve))
 

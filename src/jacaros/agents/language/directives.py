@@ -512,7 +512,6 @@ class DirectiveProcessor:
             parser.warn("wrong-directive", message, _place(directive), help)
 
     def _namespace(self, parser: ProgramParser, directive: nodes.Literal) -> str | None:
-        """Return the namespace that the directive switches to."""
         local = parser.namespaces.local
         match directive.arguments:
             case (nodes.Literal(name, ()),):

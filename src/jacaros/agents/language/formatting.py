@@ -138,7 +138,6 @@ class _Frame:
     in_label: bool = False
 
     def begin_clause(self) -> None:
-        """Expect a clause."""
         self.at_start, self.column, self.broken = True, self.base, self.spans_lines
 
 
@@ -155,7 +154,6 @@ class _Layout:
         self._wants_line = self._needs_line = self._wants_blank = self._after_operand = False
 
     def run(self, items: list[_Item]) -> str:
-        """Return the program as text."""
         for item in items:
             if item.kind == _COMMENT:
                 self._put_comment(item)

@@ -134,9 +134,7 @@ def parse_trigger(text: str) -> nodes.Trigger:
 
 
 def parse_plans(
-    text: str,
-    functions: Mapping[str, int] | None = None,
-    actions: Mapping[str, Declaration] | None = None,
+    text: str, functions: Mapping[str, int] | None = None, actions: Mapping[str, Declaration] | None = None
 ) -> tuple[nodes.Plan, ...]:
     """Parse the plans in *text*, each with its final '.' (optional after the last one).
 

@@ -409,7 +409,6 @@ def _block(body: Any) -> str:
 
 
 def _named(node: nodes.Variable | nodes.Literal, name: str) -> str:
-    """Format a name with its namespace and negation."""
     namespace = format_term(node.namespace) if isinstance(node.namespace, nodes.Variable) else node.namespace
     return f"{'' if namespace is None else f'{namespace}::'}{'~' if node.negated else ''}{name}"
 

@@ -175,7 +175,6 @@ class _Junction(Node):
 
     @property
     def operands(self) -> tuple[Term, ...]:
-        """Both sides."""
         return self.left, self.right
 
 

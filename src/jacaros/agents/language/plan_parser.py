@@ -515,7 +515,6 @@ class PlanParser(TermParser):
 
 
 def _body_variable(step: nodes.Step) -> nodes.Variable | None:
-    """Return the variable that this step consists of, if it does."""
     if isinstance(step, nodes.ExternalAction) and isinstance(step.action, nodes.Variable):
         return step.action
     return None

@@ -33,7 +33,7 @@ class WrongDirective(Exception):
 
 
 class Directives(Protocol):
-    """Port to the code that runs the directives of a file; it reports errors through the parser."""
+    """Runs the directives of a file (`DirectiveProcessor`, which makes parsers itself); errors go to the parser."""
 
     def apply(self, parser: "ProgramParser", directive: nodes.Literal, section: nodes.Section) -> None:
         """Run ``{ directive }``, which follows the clauses of *section*."""

@@ -51,7 +51,6 @@ def object_of(modules: ProjectModules, written: str) -> Made | None:
 
 
 def _split(written: str) -> tuple[str, tuple[Term, ...]]:
-    """Split a class name from its arguments."""
     name, bracket, rest = written.strip().partition("(")
     if not bracket:
         return name, ()

@@ -21,7 +21,7 @@ P = ParamSpec("P")
 
 
 class Mail(Protocol):
-    """The messages of an agent written in Python."""
+    """The messages of an agent written in Python: keeps agents from importing the run."""
 
     def say(self, receiver: str, performative: str, content: Term) -> None:
         """Send a message; raises `UnknownAgent`."""

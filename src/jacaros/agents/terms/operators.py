@@ -22,7 +22,7 @@ import operator
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple, Protocol
+from typing import Any, Final, NamedTuple
 
 from jacaros.agents.terms.values import (
     ARITHMETIC,
@@ -232,20 +232,10 @@ They are called with the evaluated arguments and return a number, or None while 
 need an agent are called on the agent in `RUNNING`.
 """
 
-
-class Caller(Protocol):
-    """The agent for which terms are evaluated."""
-
-    @property
-    def call_own(self) -> Callable[[Term], Term]:
-        """Returns the value of a call of a function that needs an agent, or None while it has none."""
-
-    def warn_of_operand(self, what: str, value: Term) -> None:
-        """Handle an operand that is not a number: a description of it, and its value."""
-
-
-RUNNING: ContextVar[Caller | None] = ContextVar("RUNNING", default=None)
-"""The agent whose turn it is; systems on other loops and in other threads have their own."""
+RUNNING: ContextVar[Any] = ContextVar("RUNNING", default=None)
+"""The agent whose turn it is (`jacaros.agents.mind.state.circumstance.Circumstance`), or None. Systems on other loops and
+in other threads have their own.
+"""
 
 
 def warn(what: str, value: Term) -> None:

@@ -43,6 +43,7 @@ from weakref import ref
 
 Term = Any
 """Any value of the table above."""
+Annotations = tuple[Term, ...]
 
 NUMBERS: frozenset[Any] = frozenset({float, int})
 """Classes of numbers. One of each is never equal to one of the other."""

@@ -143,7 +143,6 @@ class Act(ArtifactBehaviour):
 
 
 def _written(operation: str, arguments: tuple[object, ...]) -> str:
-    """Format a call."""
     from_tree = FromBlackboard, ToBlackboard
     shown = [str(each) if isinstance(each, from_tree) else text(each, True) for each in arguments]
     return f"{operation}({', '.join(shown)})" if shown else operation

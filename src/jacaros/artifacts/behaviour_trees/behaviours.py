@@ -98,7 +98,6 @@ class ArtifactBehaviour(Behaviour):
 
 
 def _call(name: str, values: Sequence[object]) -> str:
-    """Format a property or signal with its values."""
     return f"{name}({', '.join(text(value, True) for value in values)})" if values else name
 
 

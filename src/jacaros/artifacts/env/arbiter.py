@@ -77,7 +77,7 @@ HOLDING = (ClaimState.HELD, ClaimState.YIELDING)
 
 
 class Claimant(Protocol):
-    """Receives the events of a claim. Each method may call the arbiter."""
+    """Receives the events of a claim: an operation, or the plan of an agent. Each method may call the arbiter."""
 
     @property
     def can_yield(self) -> bool:

@@ -22,7 +22,7 @@ Stop = Callable[[Structure | Atom], None]
 
 
 class Turns(Protocol):
-    """The part of an artifact that an execution needs."""
+    """The part of an artifact that an execution needs: keeps the kernel out of `env`."""
 
     clock: Clock
 

@@ -31,7 +31,7 @@ def ignore_made(artifact_id: ArtifactId | None, outcome: OperationOutcome) -> No
 
 
 class UnderWay(Protocol):
-    """A request that has not ended."""
+    """A request that has not ended, here or in another process."""
 
     def cancel(self) -> None:
         """Cancel it. Its outcome is not reported."""

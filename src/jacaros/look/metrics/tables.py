@@ -51,7 +51,8 @@ def measure_table(programs: Sequence[ProgramMetrics], measure: str) -> Table:
         programs: the rows.
         measure: one of `MEASURES`.
     """
-    columns = [each for each in _COLUMNS if each not in _BASELINES or _has_baseline(programs)]
+    has_baseline = any(program.files.get(Group.BASELINE) for program in programs)
+    columns = [each for each in _COLUMNS if has_baseline or each not in _BASELINES]
     rows = tuple(
         (program.name, *(getattr(_counts(program, column), measure) for column in columns))
         for program in programs
@@ -84,10 +85,6 @@ def file_table(programs: Sequence[ProgramMetrics]) -> Table:
 
 def _counts(program: ProgramMetrics, column: str) -> Counts:
     return program.total if column == _TOTAL else program.counts(Group(column))
-
-
-def _has_baseline(programs: Sequence[ProgramMetrics]) -> bool:
-    return any(program.files.get(Group.BASELINE) for program in programs)
 
 
 def as_text(table: Table) -> str:

@@ -159,7 +159,6 @@ class GraphScene:
             await self._clock.sleep(LOOK_PERIOD)
 
     def _join(self, contents: GraphContents) -> None:
-        """Subscribe to new topics."""
         topics = contents.topics
         found = [name for name, info in sorted(topics.items()) if info.publishers]
         maps = [name for name in found if _GRID in topics[name].types and name.endswith("/map")]

@@ -136,7 +136,6 @@ def _docks(sheet: _Sheet, world: dict[str, Any]) -> Iterator[str]:
 
 
 def _doors(sheet: _Sheet, world: dict[str, Any], state: SceneState) -> Iterator[str]:
-    """Draw the doors in their state at the end."""
     for door in world["doors"]:
         ax, ay, bx, by = door["segment"]
         line = f"M{sheet.x(ax)} {sheet.y(ay)}L{sheet.x(bx)} {sheet.y(by)}"

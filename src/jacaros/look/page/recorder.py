@@ -45,7 +45,7 @@ _BATCH = 64
 
 
 class Format(Protocol):
-    """Converts records to bytes; one object for each file."""
+    """Converts records to bytes, as lines or as MCAP; one object for each file."""
 
     def pack(self, records: Sequence[RecordingLine]) -> bytes:
         """Return records as bytes, so that a file that ends after them is readable."""
@@ -196,11 +196,7 @@ class RecordingFile:
     """
 
     def __init__(
-        self,
-        path: Path,
-        make_format: Callable[[], Format],
-        warn: Callable[[str], None] | None,
-        limit: int,
+        self, path: Path, make_format: Callable[[], Format], warn: Callable[[str], None] | None, limit: int
     ) -> None:
         self._path, self._make_format, self._warn, self._limit = path, make_format, warn, limit
         self._batch = max(1, min(_BATCH, limit // 100_000))

@@ -44,7 +44,7 @@ def _short(value: float) -> float:
 
 
 class Scene(Protocol):
-    """An observed world with robots."""
+    """An observed world with robots: embedded, or on a real graph."""
 
     def drawing(self) -> Mapping[str, Any] | None:
         """The world, as `WorldDescription.drawing` describes it: the same object until something changes, None

@@ -21,7 +21,7 @@ class _Rule(NamedTuple):
 
 _GOAL_ENDS = ("achieved", "failed", "recovered", "dropped", "replaced")
 _RULES: dict[str, _Rule] = {
-    "World": _Rule(()),
+    "WorldLine": _Rule(()),
     "Frame": _Rule(()),
     "run": _Rule(()),
     "source": _Rule(("file",)),

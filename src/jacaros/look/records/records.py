@@ -83,9 +83,8 @@ class EventRecord(Struct, omit_defaults=True):
     kind: ClassVar[str]
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Name the kind."""
         super().__init_subclass__(**options)
-        cls.kind = cls.__name__.lower()
+        cls.kind = cls.__name__.removesuffix("Record").lower()
 
     def plain(self) -> dict[str, Any]:
         """Return plain data for JSON."""

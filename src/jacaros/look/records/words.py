@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, literal_of
+from jacaros.agents.mind.state.triggers import Goal, literal_of
 from jacaros.agents.terms.operators import ArithmeticFault
 from jacaros.agents.terms.substitution import is_flat
 from jacaros.agents.terms.text import excerpt, text
@@ -30,10 +30,10 @@ def shown(term: Term) -> str:
         return "..."
 
 
-def shown_event(goal: Goal, annotations: EventAnnotations = ()) -> str:
+def shown_event(goal: Goal) -> str:
     """Return a goal or event with its operator, such as ``+!go(dock)`` or ``+battery(12)``."""
     kind = goal[0]
-    return f"{kind.operator}{kind.kind}{shown(literal_of(goal, annotations))}"
+    return f"{kind.operator}{kind.kind}{shown(literal_of(goal, ()))}"
 
 
 def named(told: str) -> str:

@@ -66,15 +66,11 @@ class Explanation:
 
 
 def _chain(facts: Iterable[Fact]) -> list[str]:
-    lines = [(each.kind, _time(each.t), each.written()) for each in facts]
+    lines = [(each.kind, "" if each.t is None else seconds(each.t), each.written()) for each in facts]
     if not lines:
         return []
     kinds, times = (max(len(line[column]) for line in lines) for column in (0, 1))
     return ["because:", *(f"  {kind:{kinds}}  {time:>{times}}  {text}" for kind, time, text in lines)]
-
-
-def _time(t: float | None) -> str:
-    return "" if t is None else seconds(t)
 
 
 def seconds(t: float) -> str:

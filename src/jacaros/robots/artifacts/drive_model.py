@@ -536,7 +536,6 @@ class DriveModel:
         return self.delay + self.jitter > LATE
 
     def __str__(self) -> str:
-        """Describe what was measured, for messages."""
         quality = self.quality
         if quality is None:
             return "nothing was measured yet"

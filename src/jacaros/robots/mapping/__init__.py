@@ -11,7 +11,7 @@ file                    content
 `checking`, `manual`    checking a mapping against message types; documentation
 `decoding`, `encoding`  values and rows of values from messages; messages from values
 `artifact`, `host`      the class made from a file; types that the file omits
-`topic_multiplexer`     properties and signals from topics
+`mapped_topic`          properties and signals from topics
 `frames`, `parameters`  properties from tf and from parameters of nodes
 `deriving`              properties derived from others
 `operating`             operations

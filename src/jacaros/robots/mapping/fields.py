@@ -568,7 +568,6 @@ def _full_type(value: object, kind: str) -> str | None:
 
 
 def _wrong_type(value: object, kind: str) -> tuple[str, str]:
-    """Return the problem with a type, and what to write."""
     _, of, example = _KINDS[kind]
     for other, (_, of_other, _) in _KINDS.items():
         if other != kind and isinstance(value, str) and value.count("/") == 2 and _full_type(value, other):

@@ -62,7 +62,6 @@ class _Operation:
         """Prepare what only some operations have."""
 
     def _connect(self, type_name: str) -> None:
-        """Make the publisher or the client."""
         raise NotImplementedError
 
     @property
@@ -71,7 +70,6 @@ class _Operation:
         return self._known
 
     async def ready(self) -> None:
-        """Know the type."""
         if self._known is None:
             self._open(await ask_type(self._host, self.what, self._part.target))
 
@@ -97,7 +95,6 @@ class _ServiceOperation(_Operation):
         self._client = self._host.client(self._host.robot_topic(self._part.target.text), type_name)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Call the service."""
         await self.ready()
         assert self._part.timeout is not None
         response = await self._host.call(self._client, self._part.timeout, **self._fields(inputs))
@@ -105,7 +102,6 @@ class _ServiceOperation(_Operation):
         self._give(response, outs)
 
     async def switch(self) -> None:
-        """Call the service."""
         self._check_success(await self._client.call(self._fields(()), self._part.timeout))
 
     def _check_success(self, response: Any) -> None:
@@ -137,7 +133,6 @@ class _ActionOperation(_Operation):
         self._client = self._host.action_client(self._part.target.text, type_name)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Run a goal to its end."""
         await self.ready()
         for each in self.switches:
             await each.ready()
@@ -213,7 +208,6 @@ class _PublishOperation(_Operation):
             self._motions.watch(host, self._stand, self._halt)
 
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Publish, once or repeatedly."""
         await self.ready()
         if self._part.rate is not None:
             await self._repeat(inputs, self._seconds(inputs), 1.0 / self._part.rate)
@@ -233,7 +227,6 @@ class _PublishOperation(_Operation):
         return self._matching.pauses(always=self._drives)
 
     async def switch(self) -> None:
-        """Publish once."""
         self._send_once(())
 
     def _send_once(self, inputs: Sequence[object]) -> None:
@@ -351,7 +344,6 @@ class _ParameterOperation:
 
 class _SetParameter(_ParameterOperation):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Set the parameter."""
         try:
             await self._host.step(self.switch(inputs))
         except RosError as error:
@@ -361,7 +353,6 @@ class _SetParameter(_ParameterOperation):
         """Do nothing: everything is known."""
 
     async def switch(self, inputs: Sequence[object] = ()) -> None:
-        """Set the parameter."""
         await set_parameter(self._parameters, self._name, self._value(inputs), self._part.timeout)
 
     def _value(self, inputs: Sequence[object]) -> Any:
@@ -382,7 +373,6 @@ class _SetParameter(_ParameterOperation):
 
 class _GetParameter(_ParameterOperation):
     async def run(self, inputs: Sequence[object], outs: Sequence[Out]) -> None:
-        """Give the parameter."""
         field = self._part.outputs[0]
         try:
             value = await self._host.step(self._parameters.get(self._name, self._part.timeout))

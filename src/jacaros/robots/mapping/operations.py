@@ -438,18 +438,8 @@ KEYS: dict[str, dict[str, ReadPart]] = {
         "code": _into("code", _code),
         "aborted": _into("aborted", _outputs),
     },
-    "set_parameter": {
-        "set_parameter": _of_node,
-        "node": _NODE,
-        "value": _value,
-        "timeout": _TIMEOUT,
-    },
-    "get_parameter": {
-        "get_parameter": _of_node,
-        "node": _NODE,
-        "outputs": _output,
-        "timeout": _TIMEOUT,
-    },
+    "set_parameter": {"set_parameter": _of_node, "node": _NODE, "value": _value, "timeout": _TIMEOUT},
+    "get_parameter": {"get_parameter": _of_node, "node": _NODE, "outputs": _output, "timeout": _TIMEOUT},
     "refresh": {"refresh": _properties},
     "read": {"read": _properties},
 }

@@ -74,7 +74,6 @@ class _Parameter:
             self._reading.take((self._convert(value),))
 
     def close(self) -> None:
-        """Stop updating."""
         self._closed = True
 
 

@@ -148,7 +148,7 @@ class ActionPolicy:
 
 
 class ActionServer(Protocol):
-    """Offers an action."""
+    """Offers an action; each driver has one."""
 
     @property
     def name(self) -> str:

@@ -139,7 +139,6 @@ class ActionlibWire:
             self._look()
 
     def _note_server(self) -> None:
-        """Note that a message of the server has arrived."""
         self._quiet = 0
         self._heard = True
         if not self._present:
@@ -323,7 +322,6 @@ class ActionlibServer:
     # Messages to clients:
 
     def _send_feedback(self, goal: _Goal, feedback: Any) -> None:
-        """Send feedback of a goal."""
         goal.feedback_at = self._node.clock.elapsed
         self._feedback.publish(
             self._feedback.message(

@@ -278,7 +278,6 @@ class GraphHeartbeat:
         self._publisher.publish({"data": json.dumps(state)})
 
     def _hear(self, sample: Sample) -> None:
-        """Take the answer of a guard."""
         try:
             message = json.loads(sample.message.data)
             guard, trip = message["guard"], message["trip"]

@@ -266,7 +266,6 @@ class _Process:
         self._take_signals()
 
     def unwatch(self, lifetime: Lifetime) -> None:
-        """Stop watching *lifetime*."""
         with self._lock:
             if lifetime in self._watched:
                 self._watched.remove(lifetime)

@@ -125,7 +125,7 @@ class NodeSettings:
 
 
 class Closable(Protocol):
-    """A part of a node in the graph."""
+    """A part of a node in the graph: a publisher, subscription, service or client of any driver."""
 
     def close(self) -> None:
         """Leave the graph; calling it again has no effect."""

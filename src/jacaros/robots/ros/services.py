@@ -112,7 +112,6 @@ class ServiceClient(Entity[N]):
             settle(answer, None, CallFailed(f"the client of service {self.name} was closed during the call"))
 
     def _new_answer(self) -> asyncio.Future[Any]:
-        """Return the future of a call."""
         answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         self._answers.add(answer)
         answer.add_done_callback(self._answers.discard)

@@ -30,7 +30,6 @@ class _Store:
         self._classes: dict[str, type] = {}
 
     def names(self) -> set[str]:
-        """Return the full names of all types."""
         return {*self._texts, *self._definitions}
 
     def __contains__(self, type_name: str) -> bool:

@@ -119,7 +119,6 @@ class SimNode:
         return problem
 
     def _publish_door(self, name: str) -> None:
-        """Publish the state of a door if it has changed."""
         now = self.world.doors[name]
         if self._published.get(name) is not now:
             self._published[name] = now

@@ -88,7 +88,6 @@ def _find(name: str, folder: Path, unseen: set[Path] | None) -> type[Artifact]:
 
 
 def _types_in(file: Path, unseen: set[Path] | None) -> list[type[Artifact]]:
-    """Return the artifact types of a Python file, in the order of the file."""
     if not is_file(file):
         raise usage_error(f"file not found: `{file}`")
     modules = ProjectModules(file.parent, unseen=unseen)

@@ -91,11 +91,6 @@ def with_options(*options: Callable[[F], F]) -> Callable[[F], F]:
     return add
 
 
-def json_option(what: str = "") -> Callable[[F], F]:
-    """Return the option ``--json``; *what* is printed, such as ``the answer as``."""
-    return option("--json", f"Print {what}JSON.", name="as_json")
-
-
 def settled(
     options: RunOptions, project: str = "", world: str | Path | None = None
 ) -> tuple[RunOptions, list[str]]:

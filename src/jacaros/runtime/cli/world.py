@@ -75,7 +75,6 @@ def show_command(world: str, output: Path | None, width: int) -> None:
 
 
 def _png(svg: str) -> bytes:
-    """Convert an SVG picture to PNG."""
     try:
         from resvg_py import svg_to_bytes  # here: an extra, and only for PNG
     except ImportError:

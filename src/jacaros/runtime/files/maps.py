@@ -107,7 +107,6 @@ def _header(data: bytes) -> tuple[int, int, int, int]:
 
 
 def _written(text: bytes, count: int) -> bytes:
-    """The pixels of an image in text."""
     numbers = re.sub(rb"#[^\r\n]*", b"", text).split()[:count]
     try:
         return bytes(min(WHITE_LEVEL, int(number)) for number in numbers)

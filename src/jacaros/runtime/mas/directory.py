@@ -116,7 +116,6 @@ class Directory:
         return name in self._hosts or self.find_other(name) is not None
 
     def __iter__(self) -> Iterator[AgentHost]:
-        """Iterate over the agents of this run."""
         return iter(list(self._hosts.values()))
 
     def __len__(self) -> int:

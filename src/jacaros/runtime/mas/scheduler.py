@@ -20,7 +20,7 @@ from jacaros.runtime.clock import Clock, real_time, run_context
 
 
 class Runnable(Protocol):
-    """An agent, as the scheduler sees it."""
+    """An agent, as the scheduler sees it: keeps minds out of the scheduler."""
 
     queued: bool
     """Whether it is in the queue. Set by the scheduler."""
@@ -30,7 +30,7 @@ class Runnable(Protocol):
 
 
 class Pauses(Protocol):
-    """What may pause a scheduler in the middle of a turn."""
+    """What may pause a scheduler in the middle of a turn: keeps the debugger out of it."""
 
     def cycles(self, agent: Runnable) -> int:
         """Return the number of reasoning cycles of an agent so far."""

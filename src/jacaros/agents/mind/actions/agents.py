@@ -13,8 +13,8 @@ from typing import Any
 
 from jacaros.agents.mind.actions.internal_action import (
     ActionError,
+    FixedArguments,
     Function,
-    Written,
     WrongArguments,
     characters,
     elements,
@@ -96,7 +96,7 @@ def _nobody(receiver: str) -> ActionError:
     return ActionError(*nobody_there(receiver))
 
 
-def _direct(written: Written) -> Function | None:
+def _direct(written: FixedArguments) -> Function | None:
     """Return a specialised function for a ``.send`` with a constant performative (the usual case), and perhaps a
     constant receiver.
     """
@@ -114,7 +114,6 @@ def _direct(written: Written) -> Function | None:
 
 
 def _known_name(term: Term | None) -> str | None:
-    """Return the name that a term of the program denotes, or None."""
     if term is None or is_list(term) or bare(term).__class__ not in (String, Functor):
         return None
     return _name(term, "")

@@ -193,7 +193,6 @@ def _extreme(ctx: Context, arguments: tuple[Term, ...], pick: Callable[..., Term
 
 
 def _instances(ctx: Context, template: Term, formula: Term) -> list[Term]:
-    """Return the instances of a template among the answers of a formula."""
     mark = len(ctx.trail)
     found = [rename(resolve(template)) for _ in ctx.answers(formula)]
     undo(ctx.trail, mark)

@@ -219,7 +219,6 @@ def drop_future_intention(ctx: Context, goal: Term) -> None:
 
 
 def _goals_in(candidate: Intention) -> Iterator[Term]:
-    """Yield the goals in the body of the top plan."""
     frame = candidate.frames[-1]
     for node in walk(frame[PLAN].node.body):
         if isinstance(node, nodes.Achieve):

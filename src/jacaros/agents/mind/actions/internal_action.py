@@ -27,7 +27,7 @@ from jacaros.agents.terms.values import NUMBERS, String, Term, double, is_list, 
 
 Function = Callable[..., Any]
 F = TypeVar("F", bound=Function)
-Written = tuple[Term | None, ...]
+FixedArguments = tuple[Term | None, ...]
 """The arguments of a call as far as the program fixes them; None for those known only at run time."""
 
 
@@ -79,7 +79,7 @@ class InternalAction(Declaration):
     name: str
     function: Function = _undefined
     backtracks: bool = False
-    direct: Callable[[Written], Function | None] | None = None
+    direct: Callable[[FixedArguments], Function | None] | None = None
     values: Callable[..., Iterable[Term]] | None = None
     collects: bool = False
     by_name: bool = False

@@ -60,13 +60,11 @@ class BodyCompiler:
             _WRITERS[type(step)](self, step, name, next_name)
 
     def _name(self) -> str:
-        """A name for a step function."""
         self._count += 1
         return f"{self.prefix}_{self._count}"
 
     @contextmanager
     def _function(self, name: str, step: nodes.Node) -> Iterator[FunctionBuilder]:
-        """Write the function of a step."""
         fn = FunctionBuilder(self.unit)
         fn.at(step)
         with fn.function(name, "agent", "frame"):

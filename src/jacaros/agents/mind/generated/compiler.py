@@ -30,10 +30,8 @@ from jacaros.agents.terms.substitution import ATOMIC
 from jacaros.agents.terms.unifier import Trail
 from jacaros.agents.terms.values import CONS, NIL, List, String, Term, Var, functor
 
-Function = Callable[..., Any]
 
-
-def executed(made: CompiledUnit) -> Function:
+def executed(made: CompiledUnit) -> Callable[..., Any]:
     """The function of a unit, which is executed; its plans have their steps afterwards."""
     names = made.unit.globals
     for part in made.unit.code():
@@ -42,7 +40,7 @@ def executed(made: CompiledUnit) -> Function:
         plan.goal_condition = names[achieved]
     for body in made.bodies:
         body.install(names)
-    return cast("Function", names.get(made.name))  # None for a body without steps
+    return cast("Callable[..., Any]", names.get(made.name))  # None for a body without steps
 
 
 # Functions that answer questions for a predicate with rules, in the place of its rules asked one by one.

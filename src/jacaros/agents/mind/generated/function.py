@@ -206,11 +206,11 @@ class FunctionBuilder:
             self.asked.add(name)
         return target
 
-    def inner(self, *, depth: str = "d - 1", searching: bool = True) -> "FunctionBuilder":
+    def inner(self, *, searching: bool = True) -> "FunctionBuilder":
         """A builder for a function that this one calls; *searching* the way this one does, or plainly and at once."""
         if not searching:
-            return type(self)(self.unit, depth=depth)
-        return type(self)(self.unit, trampoline=self.trampoline, snapshot=self.snapshot, depth=depth)
+            return type(self)(self.unit, depth="d - 1")
+        return type(self)(self.unit, trampoline=self.trampoline, snapshot=self.snapshot, depth="d - 1")
 
     @contextmanager
     def branch(self) -> Iterator[None]:

@@ -23,9 +23,7 @@ MAX_DEPTH = 50
 """Levels of indentation after which code goes on in another way."""
 
 
-def match(
-    fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool = True
-) -> None:
+def match(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then) -> None:
     """Match one pattern with the value of a local name."""
     if isinstance(pattern, nodes.Variable) and is_plain(pattern):
         _match_variable(fn, pattern, value, then)
@@ -46,7 +44,7 @@ def match(
         rest = tail if len(items) == 1 else nodes.replace(pattern, items=items[1:])
         _match_list(fn, (items[0], rest or nodes.ListTerm(())), value, then)
     else:
-        _match_any(fn, pattern, value, then, pattern_left)
+        _match_any(fn, pattern, value, then)
 
 
 def _open(expected: str, value: str) -> str:
@@ -187,11 +185,8 @@ def _match_together(fn: FunctionBuilder, patterns: list[nodes.Node], values: lis
         then()
 
 
-def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then, pattern_left: bool) -> None:
-    """Build the pattern as a term and unify."""
-    expected = build(fn, pattern)
-    left, right = (expected, value) if pattern_left else (value, expected)
-    with fn.block(f"if unify({left}, {right}, t):"):
+def _match_any(fn: FunctionBuilder, pattern: nodes.Node, value: str, then: Then) -> None:
+    with fn.block(f"if unify({build(fn, pattern)}, {value}, t):"):
         settle_fresh(fn, names_in(pattern))
         then()
 
@@ -547,7 +542,7 @@ def _function(fn: FunctionBuilder, node: nodes.FunctionCall) -> str:
 def _lowered(fn: FunctionBuilder, node: nodes.Node) -> str:
     """A formula, plan, rule or body as a term, which is made as an interpreted step makes it: few programs need many."""
     values = ", ".join(f"{name!r}: {variable(fn, name)}" for name in names_in(node))
-    return f"lower({fn.constant(node)}, Names({{{values}}}).__getitem__)"
+    return f"lower({fn.constant(node)}, Variables({{{values}}}).__getitem__)"
 
 
 _COMPOUND: dict[type, Callable[..., str]] = {

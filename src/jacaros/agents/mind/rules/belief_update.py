@@ -21,6 +21,7 @@ from jacaros.agents.terms.unifier import undo, unify_annotations
 from jacaros.agents.terms.values import (
     BY_SELF,
     SOURCE_PERCEPT,
+    Annotations,
     Functor,
     Term,
     Var,
@@ -31,8 +32,6 @@ from jacaros.agents.terms.values import (
 )
 from jacaros.runtime.errors import InternalError
 from jacaros.runtime.trace import Cause
-
-Annotations = tuple[Term, ...]
 
 _OBSERVABLE_PROPERTY = (functor("percept_type", 1), atom("obs_prop"))
 

@@ -86,7 +86,6 @@ class Step:
         self.place = 0
 
     def __call__(self, agent: Any, frame: Frame) -> object:
-        """Run the step."""
         return _MEANING[type(self.node)](self, self.node, agent, frame)
 
     def go_on_with(self, behind: Next) -> None:
@@ -118,7 +117,6 @@ class Round(Step):
     __slots__ = ()
 
     def __call__(self, agent: Any, frame: Frame) -> None:
-        """Run the step."""
         if isinstance(self.node, nodes.While):
             _while_round(self, self.node, agent, frame)
         elif isinstance(self.node, nodes.For):
@@ -168,7 +166,6 @@ class InterpretedBody:
         return f"step_{self._count}"
 
     def _fill(self, step: Step, node: nodes.Node) -> None:
-        """Make the steps inside a step."""
         if isinstance(node, nodes.If):
             step.names = names_in(node.condition)
             then, otherwise = self._name(), self._name()
@@ -255,7 +252,6 @@ def _test(step: Step, node: nodes.Test, agent: Any, frame: Frame) -> object:
 
 
 def _constraint(step: Step, node: nodes.Constraint, agent: Any, frame: Frame) -> object:
-    """A condition, or an internal action."""
     formula = node.formula
     if isinstance(formula, nodes.InternalAction) and collecting(agent, formula) is None:
         return _internal_action(step, formula, agent, frame)

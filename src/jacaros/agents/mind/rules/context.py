@@ -129,7 +129,7 @@ def _symbol(function: RegisteredFunction) -> Functor:
 @contextmanager
 def evaluating(agent: Circumstance) -> Iterator[None]:
     """Evaluate calls inside terms for this agent within the context."""
-    before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
+    before = RUNNING.set(agent)
     try:
         yield
     finally:
@@ -264,7 +264,7 @@ def reading(agent: Circumstance, steps: int) -> Iterator["ReadOnly"]:
     """
     view = ReadOnly(agent, SearchBudget(steps))
     budget = agent.beliefs.budget
-    running = RUNNING.set(cast("Circumstance", view))  # pyright: ignore[reportArgumentType]
+    running = RUNNING.set(view)
     agent.beliefs.budget = view.beliefs.budget  # for pure actions that search, too
     try:
         yield view
@@ -383,7 +383,6 @@ class _Beliefs:
         return iter(list(self._beliefs))
 
     def items(self) -> Iterator[tuple[Functor, "_Table"]]:
-        """Yield all predicates with their tables."""
         return ((symbol, self[symbol]) for symbol in self)
 
 

@@ -34,7 +34,7 @@ def run(agent: Circumstance, fuel: int) -> bool:  # noqa: C901 - the whole cycle
     counts, incoming, always = agent.counts, agent.incoming, agent.options.percept_interval == 1
     end = counts.cycles + fuel
     # New input need not wake the agent meanwhile, and functions in terms are evaluated for it.
-    before = RUNNING.set(agent)  # pyright: ignore[reportArgumentType]
+    before = RUNNING.set(agent)
     agent.running = True
     try:
         if agent.sleep == "asleep":

@@ -185,7 +185,6 @@ class Place:
         return step_text(self.info.node, self._resolved(excerpt(term)))
 
     def _resolved(self, term: Term) -> Term:
-        """Return the formula, with the values of its variables."""
         assert self.info is not None
         formula = _failed_formula(self.info.node)
         try:

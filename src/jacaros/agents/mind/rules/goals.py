@@ -196,7 +196,6 @@ def drop_all_events(agent: Circumstance, goals_only: bool = False) -> None:
 
 
 def _event_state(agent: Circumstance, event: Event, *states: str) -> None:
-    """Report the state of a goal that is still an event."""
     if agent.features.meta:
         for state in states:
             meta_events.goal_state(agent, event[EVENT_GOAL], event[EVENT_ANNOTATIONS], state)

@@ -18,7 +18,7 @@ from jacaros.runtime.errors import InternalError
 
 
 class Calling(Protocol):
-    """The view that internal actions have of their agent (`context.Context`), as calls need it."""
+    """The view that internal actions have of their agent (`context.Context`), as calls need it: views import this."""
 
     agent: Circumstance
     trail: Trail

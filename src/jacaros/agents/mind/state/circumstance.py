@@ -13,7 +13,6 @@ from jacaros.agents.mind.state.intention import (
     EVENT_GOAL,
     EVENT_INTENTION,
     PLAN,
-    Annotations,
     Event,
     Frame,
     Intention,
@@ -25,7 +24,7 @@ from jacaros.agents.mind.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
 from jacaros.agents.terms.text import text
 from jacaros.agents.terms.unifier import Trail
-from jacaros.agents.terms.values import Term
+from jacaros.agents.terms.values import Annotations, Term
 from jacaros.runtime.trace import Cause
 
 # The port of a mind to what chooses: which message, event, plan and intention goes first.

@@ -140,7 +140,6 @@ class Posted:
 
 Raised = Goal | Posted | None
 """The goal or event that a step raises for its own intention, if any."""
-Annotations = tuple[Term, ...]
 
 
 def event_literal(event: Event) -> Term:

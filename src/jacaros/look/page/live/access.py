@@ -63,7 +63,8 @@ class Access:
         name = found[1].strip("[]").lower()
         if name in _HERE or name == self._address.lower():
             return True
-        return self._is_any() and (_is_number(name) or name == socket.gethostname().lower())
+        is_any = self._address in ("0.0.0.0", "::", "")
+        return is_any and (_is_number(name) or name == socket.gethostname().lower())
 
     def knows_origin(self, given: Sequence[str], host: str) -> bool:
         """Return whether a request comes from our own page, or from a program other than a browser (no Origin)."""
@@ -74,9 +75,6 @@ class Access:
         except ValueError:
             return False
         return len(given) == 1 and parts.scheme in ("http", "https") and parts.netloc.lower() == host.lower()
-
-    def _is_any(self) -> bool:
-        return self._address in ("0.0.0.0", "::", "")
 
 
 def _is_loopback(address: str) -> bool:

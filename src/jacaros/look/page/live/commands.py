@@ -106,7 +106,6 @@ def _fields_of(command: Command) -> type[Struct]:
 
 
 def _values(given: Given, fields: type[Struct]) -> dict[str, Any]:
-    """Return the fields of a command."""
     try:
         values = asdict(convert(given, fields))
     except ValidationError as error:
@@ -297,7 +296,6 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
 
 
 def _value_of(variable: Var, outputs: Outputs) -> str:
-    """Return the value of an output variable, ``_`` for none."""
     found = next((out for each, out in outputs if each is variable), None)
     return value_text(found.value) if found is not None and found.is_set else "_"
 

@@ -38,7 +38,6 @@ class _PageMind(OpenMind):
 
     @property
     def mind(self) -> Mind:
-        """The agent."""
         return self._mind
 
 
@@ -53,7 +52,6 @@ class _You:
         return ()
 
     def find(self, name: str) -> "_You | None":
-        """Find the mailbox."""
         return self if name == YOU else None
 
     def receive(self, message: SpeechAct) -> None:

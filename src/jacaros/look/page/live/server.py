@@ -324,7 +324,6 @@ class _Connection(ServerConnection):
         self._pages_server.idle(self)
 
     def drop(self) -> None:
-        """Abort the connection."""
         self._pages_server.lost(self)
         self._opened_transport.abort()
 
@@ -351,7 +350,6 @@ class _Connection(ServerConnection):
             super().eof_received()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """End the connection."""
         self._pages_server.lost(self)
         if self._is_accepted:
             super().connection_lost(exc)

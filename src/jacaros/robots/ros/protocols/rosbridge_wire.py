@@ -221,7 +221,7 @@ class Requests:
 
     Args:
         send: passes an operation to the link. Returns False if it is lost.
-        ask: sends one and blocks until the answer arrives, as `Link.ask` does.
+        ask: sends one and blocks until the answer arrives, as `RosbridgeLink.ask` does.
     """
 
     def __init__(

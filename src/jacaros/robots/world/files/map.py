@@ -79,7 +79,7 @@ class OccupancyMap:
     def walls(self) -> list[Segment]:
         """Return the boundary of the occupied cells: horizontal segments, then vertical ones, each as long as possible."""
         rows = [self._row(row) for row in range(self.height)]
-        columns = [self._column(column) for column in range(self.width)]
+        columns = [self.cells[column :: self.width].translate(_SOLID) for column in range(self.width)]
         return [
             *(Segment(self._x(a), self._y(row), self._x(b), self._y(row)) for row, a, b in _edges(rows)),
             *(Segment(self._x(at), self._y(a), self._x(at), self._y(b)) for at, a, b in _edges(columns)),
@@ -98,9 +98,6 @@ class OccupancyMap:
 
     def _row(self, row: int) -> bytes:
         return self.cells[row * self.width : (row + 1) * self.width].translate(_SOLID)
-
-    def _column(self, column: int) -> bytes:
-        return self.cells[column :: self.width].translate(_SOLID)
 
     def free_place(self, radius: float) -> tuple[float, float] | None:
         """Find the point nearest to (0, 0), where maps usually begin, with *radius* metres of free cells around."""

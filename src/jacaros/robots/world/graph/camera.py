@@ -70,11 +70,9 @@ class _View:
         self._time = -1.0
 
     def colours(self, at: RobotOnGraph) -> Mapping[str, Any]:
-        """Return the fields of a colour image."""
         return {"encoding": "rgb8", "step": 3 * WIDTH, "data": colours(self._look()), **_SIZE}
 
     def depths(self, at: RobotOnGraph) -> Mapping[str, Any]:
-        """Return the fields of a depth image."""
         return {"encoding": "32FC1", "step": 4 * WIDTH, "data": depths(self._look()), **_SIZE}
 
     def _look(self) -> list[list[Hit]]:

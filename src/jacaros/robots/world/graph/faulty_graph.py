@@ -161,8 +161,6 @@ def _check_name(fault: str, what: str, name: str, known: set[str]) -> None:
 
 
 class _FaultyPublisher:
-    """A publisher whose messages are subject to faults."""
-
     def __init__(self, publisher: Publisher, publish: Callable[[Any], None]) -> None:
         self._publisher = publisher
         self.publish = publish

@@ -21,7 +21,6 @@ from jacaros.robots.world.physics.rendering import FOCAL_LENGTH, WIDTH
 # Fields are assigned one by one: at 20 messages per second this is five times as fast as nested messages made from
 # keywords, which would cost more than the steps of the world.
 def _odometry(at: RobotOnGraph, message: Any) -> None:
-    """The motion of the wheels."""
     robot, odometry = at.robot, at.robot.odometry
     message.child_frame_id = at.frame_prefix + "base_footprint"
     pose, twist = message.pose.pose, message.twist.twist

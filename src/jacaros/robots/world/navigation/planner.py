@@ -89,7 +89,6 @@ class Planner:
         return self._line_cost(a, b, self.weights) < math.inf
 
     def _around(self, obstacles: Iterable[Circle]) -> Sequence[float]:
-        """Return the weights with the obstacles added."""
         weights: Sequence[float] = self.weights
         for x, y, radius in obstacles:
             if weights is self.weights:

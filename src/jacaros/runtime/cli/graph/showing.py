@@ -160,7 +160,7 @@ def as_text(data: dict[str, Any]) -> Iterator[str]:
         yield "  type: not reported by this middleware"
     for key in ("publishers", "subscriptions"):
         if key in data:
-            yield f"  {key}: {_endpoints(data[key])}"
+            yield f"  {key}: {'; '.join(map(_endpoint_text, data[key])) or 'none'}"
     yield from _of_node(data)
     for name, rows in data.get("parts", {}).items():
         yield ""
@@ -189,10 +189,6 @@ def _of_node(data: dict[str, Any]) -> Iterator[str]:
         yield ""
         yield "parameters"
         yield from (f"  {name}: {value!r}" for name, value in data["parameters"].items())
-
-
-def _endpoints(endpoints: list[dict[str, Any]]) -> str:
-    return "; ".join(_endpoint_text(each) for each in endpoints) or "none"
 
 
 def _endpoint_text(endpoint: dict[str, Any]) -> str:

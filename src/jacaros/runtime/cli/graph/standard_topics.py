@@ -51,10 +51,8 @@ _OF_ROS = ("/tf", "/tf_static", "/clock", "/statistics")
 """Topics that agents use in other ways, or not at all."""
 
 
-Body = tuple[str, ...]
-"""Section, comment and lines of an entry."""
 _SIDES = "names: {0: left, 1: center, 2: right}"
-KNOWN: Mapping[str, Body] = {
+KNOWN: Mapping[str, tuple[str, ...]] = {
     "nav_msgs/msg/Odometry": (
         "properties",
         "NAME(X, Y, Yaw): metres, metres, degrees",
@@ -116,7 +114,9 @@ KNOWN: Mapping[str, Body] = {
         "  - {path: state, names: {0: floor, 1: cliff}}",
     ),
 }
-"""Entries of a first mapping file for topics that most robots have; ``NAME`` stands for the name of the entry."""
+"""Section, comment and lines in a first mapping file for topics that most robots have; ``NAME`` stands for the name of
+the entry.
+"""
 
 
 def usual_things(contents: GraphContents) -> list[GraphEntry]:

@@ -10,7 +10,7 @@ from jacaros.robots.ros.backend import TopicInfo
 from jacaros.robots.ros.fields import FieldType
 from jacaros.robots.ros.guarded import VELOCITIES
 from jacaros.robots.ros.names import feedback_type, goal_type, request_type, response_type, result_type
-from jacaros.runtime.cli.graph.standard_topics import KNOWN, Body
+from jacaros.runtime.cli.graph.standard_topics import KNOWN
 from jacaros.runtime.cli.graph.values import (
     HEADER,
     MANY,
@@ -66,7 +66,7 @@ def property_of(types: Interfaces, name: str, topic: str, info: TopicInfo) -> Ma
     )
 
 
-def _property(types: Interfaces, name: str, type_name: str) -> Body:
+def _property(types: Interfaces, name: str, type_name: str) -> tuple[str, ...]:
     if type_name in _BIG:
         comment = f"{name}(Object), for Python code; get_{name} reads the newest message"
         return "properties", comment, "fields: [{path: ., as: object}]", "mode: on_demand"
@@ -89,7 +89,7 @@ def _some(names: Sequence[str]) -> str:
     return f"{', '.join(names[:_MOST_NAMES])}{more}"
 
 
-def _only_lists(types: Interfaces, name: str, type_name: str) -> Body:
+def _only_lists(types: Interfaces, name: str, type_name: str) -> tuple[str, ...]:
     lists = lists_of(types, type_name)
     if not lists:
         return "signals", f"{name}, for each message (the type has no fields)"

@@ -1,11 +1,12 @@
 """The fields of a message: paths with types and units, and the selection of fields for beliefs and parameters."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any
 
 from jacaros.robots.mapping.interfaces import (
+    Fields,
     Interfaces,
     chosen,
     constants,
@@ -222,10 +223,6 @@ def _longer(value: GivenValue, alike: Sequence[GivenValue]) -> GivenValue:
     differ = [len(set(steps)) > 1 for steps in zip_longest(*paths)]
     own = [step for step, is_own in zip(value.path.split(".")[:-1], differ, strict=False) if is_own]
     return replace(value, name="_".join([*own, value.name]).lower())
-
-
-Fields = Callable[[str], Mapping[str, FieldType]]
-"""Returns the fields of a message type, given its full name."""
 
 
 @dataclass(frozen=True, slots=True)

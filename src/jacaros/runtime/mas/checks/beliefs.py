@@ -65,8 +65,6 @@ def check_beliefs(
 
 @dataclass(frozen=True)
 class _BeliefCheck:
-    """The beliefs of a project."""
-
     found: Sequence[Beliefs]
     types: "Callable[[], Sequence[type[Artifact]] | None]"
     folders: tuple[Path, ...]
@@ -216,12 +214,8 @@ def _why_wrong(name: str, is_percept: bool) -> tuple[str, str]:
 
 
 def _never(sign: str, literal: nodes.Literal, why: str, help: str) -> Diagnostic:
-    message = f"event `{sign}{_key(literal)}` never happens: {why}"
+    message = f"event `{sign}{literal.functor}/{len(literal.arguments)}` never happens: {why}"
     return Diagnostic("warning", message, literal.span, help, NEVER)
-
-
-def _key(literal: nodes.Literal) -> str:
-    return f"{literal.functor}/{len(literal.arguments)}"
 
 
 def _is_own(literal: nodes.Literal) -> bool:

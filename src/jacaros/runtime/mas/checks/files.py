@@ -218,7 +218,6 @@ class _Checked:
         return ProjectModules(*self._folders, unseen=self._findings.unseen)
 
     def check_classes(self) -> None:
-        """Check the classes that agents declare."""
         found: dict[str, Diagnostic] = {}  # a class without effect is reported once
         wrong: tuple[Diagnostic, ...] = ()
         try:
@@ -374,7 +373,6 @@ def _check_world_file(
 
 
 def _check_mapping(path: Path, findings: Findings) -> None:
-    """Check a mapping file, once for all artifacts that come from it."""
     if path.resolve() in findings.files:
         return
     from jacaros.runtime.mas.mappings import check_mapping_file  # here: programs are checked without

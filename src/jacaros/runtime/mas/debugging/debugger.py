@@ -8,8 +8,9 @@ from typing import Any, Literal, get_args
 from jacaros.agents.mind.mind import Mind
 from jacaros.agents.mind.rules.cycle import observe_steps
 from jacaros.agents.mind.state.circumstance import Circumstance
-from jacaros.agents.mind.state.intention import PLAN, STEP, Annotations, Event, Intention
+from jacaros.agents.mind.state.intention import PLAN, STEP, Event, Intention
 from jacaros.agents.mind.state.triggers import Goal
+from jacaros.agents.terms.values import Annotations
 from jacaros.robots.ros.guarded import guarded_by
 from jacaros.runtime.clock import Clock, WallClock, outside_run
 from jacaros.runtime.errors import UsageError

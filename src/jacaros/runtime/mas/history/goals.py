@@ -39,7 +39,7 @@ class GoalRecords:
     its ``run``, its operations and the running behaviours of its trees, all on one stack.
 
     Args:
-        tell: takes each `records.Goal`, with ids counted from 1.
+        tell: takes each `records.GoalRecord`, with ids counted from 1.
     """
 
     def __init__(self, tell: RecordSink) -> None:

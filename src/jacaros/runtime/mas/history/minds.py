@@ -11,7 +11,7 @@ from jacaros.agents.mind.state.belief_base import literal
 from jacaros.agents.mind.state.intention import PLAN, Frame, Intention
 from jacaros.agents.mind.state.plan import OpenFact, Plan, Rule
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
-from jacaros.agents.terms.values import Annotated, Functor, Term, atom
+from jacaros.agents.terms.values import Annotated, Annotations, Functor, Term, atom
 from jacaros.look.records import records
 from jacaros.look.records.records import RecordSink
 from jacaros.look.records.words import shown, shown_event
@@ -121,7 +121,6 @@ class MessageRecords:
 MOST_BELIEFS = 1000
 """Maximum number of beliefs of one agent that are recorded when its observation begins."""
 
-Annotations = tuple[Term, ...]
 _NOTHING = atom("nothing")
 
 
@@ -292,7 +291,6 @@ class MindRecords:
     # ---- beliefs
 
     def _record_beliefs(self) -> None:
-        """Record present beliefs."""
         left = MOST_BELIEFS
         for symbol, table in list(self._mind.beliefs.items()):
             for entry, annotations in table.entries()[: max(0, left)]:

@@ -34,7 +34,7 @@ ONLY_ROBOT = {"": "robot"}
 
 
 class ObservedSystem(Protocol):
-    """A running system, as its history and its debugger see it (`jacaros.runtime.mas.system.System`)."""
+    """A running system (`jacaros.runtime.mas.system.System`, which makes them), for its history and debugger."""
 
     clock: Clock
     scheduler: Scheduler

@@ -1,6 +1,6 @@
 """Replay a recorded run against a changed program, to see where it decides differently."""
 
-from jacaros.runtime.mas.replaying.differences import Comparison, Decision
+from jacaros.runtime.mas.replaying.differences import Comparison
 from jacaros.runtime.mas.replaying.rerun import replay_against
 
-__all__ = ["Comparison", "Decision", "replay_against"]
+__all__ = ["Comparison", "replay_against"]

@@ -90,7 +90,6 @@ class _Rerun:
         self._early: list[Input] = []
 
     async def run(self) -> list[Record]:
-        """Return the records of the rerun."""
         found: list[Record] = []
         async with Mas(seed=self._seed, on_print=_ignore, on_log=_ignore) as mas:
             self._clock = mas.system.clock

@@ -137,7 +137,6 @@ class _Requests:
             self._timer = self._node.loop.call_later(again_after, self.send, 2 * again_after)
 
     def close(self) -> None:
-        """End the call."""
         if self._timer is not None:
             self._timer.cancel()
         for future in self._futures:
