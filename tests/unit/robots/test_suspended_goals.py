@@ -237,6 +237,6 @@ async def test_an_operation_with_many_goals_is_notified_of_pauses_once(lab: Lab)
         await lab.sleep(1)
         server.goals[number].end()
     await succeeded(going)
-    pauses = going.execution._pause
+    pauses = going.execution.pauses
     assert pauses is not None
     assert pauses.callbacks == []
