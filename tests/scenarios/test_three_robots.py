@@ -51,21 +51,16 @@ def test_the_checker_sees_robots_that_do_not_help(tmp_path: Path) -> None:
     assert any("helped in only 0 recharges" in each for each in check(result.ground_truth).complaints)
 
 
-def test_the_checker_sees_a_bump() -> None:
+def test_the_checker_sees_a_bump_a_robot_in_the_dock_of_another_and_too_few_recharges() -> None:
     bump = Event(3.0, "robot_2", "collision", 1.6, 0.0, 0.0, {"with": "robot_1", "side": "front"})
     assert check(falsified(truth_of_example(), more=[bump])).complaints == [
         "a robot bumped into something (1 times)"
     ]
 
-
-def test_the_checker_sees_a_robot_in_the_dock_of_another() -> None:
     def moved(event: Event) -> Event:
         if event.kind == "docked" and event.robot == "robot_2":
             return event._replace(data={**event.data, "dock": "dock_1"})
         return event
 
     assert "robot_2 was in dock_1" in check(falsified(truth_of_example(), event=moved)).complaints
-
-
-def test_the_checker_sees_too_few_recharges() -> None:
     assert len(check(truth_of_example(), recharges=3).complaints) == 3
