@@ -61,13 +61,10 @@ def test_the_same_seed_gives_the_same_run(name: str) -> None:
     assert path_of(name, seed=3) != path_of(name, seed=4)
 
 
-def test_random_faults_follow_the_seed() -> None:
+def test_random_faults_follow_the_seed_and_lose_commands() -> None:
     faults = "faults:\n  deaf: {kind: lost, topic: /cmd_vel, share: 0.5, at: 0}\n"
     assert path_of("square", 3, faults) == path_of("square", 3, faults)
     assert path_of("square", 3, faults) != path_of("square", 3)
-
-
-def test_commands_of_a_baseline_are_lost_by_a_fault() -> None:
     faults = "faults:\n  deaf: {kind: dead, topic: /cmd_vel, at: 0}\n"
     result = run_baseline("out_and_back", seconds=20.0, faults=faults)
     assert result.ground_truth.odometer() == 0.0
@@ -100,9 +97,7 @@ def test_a_wrong_fault_file_is_an_error() -> None:
         run_baseline("square", faults="faults:\n  odd: {kind: no_such}\n")
 
 
-def test_the_command_judges_the_run(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_command_judges_the_run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(sys, "argv", ["virtual_run.py", "out_and_back", "--for", "3"])
     assert main() == 1
     lines = capsys.readouterr().out.splitlines()

@@ -62,13 +62,10 @@ def test_a_tree_with_the_agents_policy_outlasts_aborted_goals() -> None:
     assert run_one(Job("house_cleaning", PATIENT, seed)).passed
 
 
-def test_fishers_test_has_the_values_of_its_tables() -> None:
+def test_fishers_and_mcnemars_tests_have_the_values_of_their_tables() -> None:
     assert fisher(3, 4, 1, 4) == pytest.approx(34 / 70)  # Fisher's lady tasting tea, two-sided
     assert fisher(50, 50, 50, 50) == 1.0
     assert fisher(8, 8, 0, 7) == pytest.approx(1 / 6435)
-
-
-def test_mcnemars_test_has_the_values_of_the_binomial() -> None:
     assert mcnemar(10, 0) == pytest.approx(2 / 1024)
     assert mcnemar(0, 0) == 1.0
     assert mcnemar(3, 1) == pytest.approx(10 / 16)

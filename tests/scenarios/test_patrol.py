@@ -25,12 +25,9 @@ def test_ten_recharges_and_no_corner_left_out() -> None:
     assert verdict.measured["recharges"] == 10
 
 
-def test_the_battery_gets_low_on_all_sides_of_the_room() -> None:
+def test_the_lines_of_the_agent_agree_with_what_happened() -> None:
     stops = {line for line in run_of(PROJECT).lines if "battery low" in line}
     assert len(stops) == 4
-
-
-def test_the_report_agrees_with_what_happened() -> None:
     lines = run_of(PROJECT).lines
     verdict = check(truth_of_example())
     corners = int(verdict.measured["corners"])
@@ -107,11 +104,15 @@ def test_the_checker_sees_a_program_that_is_wrong(old: str, new: str, complaint:
     assert any(complaint in each for each in check(result.ground_truth, cycles=1).complaints)
 
 
-def test_the_checker_sees_too_few_recharges() -> None:
+def test_the_checker_sees_too_few_recharges_a_bump_and_an_empty_battery() -> None:
     assert check(truth_of_example(), cycles=11).complaints == ["10 recharges, not 11"]
+    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
+    bump = Event(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
+    assert not check(falsified(truth_of_example(), more=[bump])).passed
 
 
-def test_the_checker_sees_a_corner_left_out() -> None:
+def test_the_checker_sees_a_corner_left_out_and_the_way_driven_backwards() -> None:
     truth = truth_of_example()
     visit = module.visits(truth.path())[5]
 
@@ -121,9 +122,10 @@ def test_the_checker_sees_a_corner_left_out() -> None:
     assert [c.split(" at ")[0] for c in check(falsified(truth, away)).complaints] == [
         "after corner 0 came corner 2"
     ]
+    assert not check(falsified(truth_of_example(), lambda s: s._replace(x=s.y, y=s.x))).passed
 
 
-def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner() -> None:
+def test_the_checker_sees_a_patrol_that_continues_at_the_wrong_corner_or_ends_in_the_dock() -> None:
     truth = truth_of_example()
     stay = module.judge_recharging(module.Verdict(), truth)[0]
 

@@ -65,7 +65,4 @@ def test_the_checker_sees_a_robot_in_the_dock_of_another() -> None:
         return event
 
     assert "robot_2 was in dock_1" in check(falsified(truth_of_example(), event=moved)).complaints
-
-
-def test_the_checker_sees_too_few_recharges() -> None:
     assert len(check(truth_of_example(), recharges=3).complaints) == 3

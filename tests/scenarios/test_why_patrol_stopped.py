@@ -34,14 +34,8 @@ def test_every_record_of_a_run_is_well_formed(records: list[Record]) -> None:
 def test_the_stop_for_the_battery_is_traced_to_its_message(records: list[Record]) -> None:
     answer = explain(records, "why did the robot stop?", at=low_at(records) + 0.5)
     kinds = [fact.kind for fact in answer.because]
-    assert [kind for kind in kinds if kind != "operation"] == [
-        "command",
-        "goal",
-        "act",
-        "event",
-        "property",
-        "sample",
-    ]
+    chain = [kind for kind in kinds if kind != "operation"]
+    assert chain == ["command", "goal", "act", "event", "property", "sample"]
     goal, act, event, prop, sample = answer.because[-5:]
     assert goal.text.startswith("!patrol([1,2,3,4]) with ")
     assert "suspended" in goal.text
@@ -62,13 +56,10 @@ def test_the_command_that_drives_is_traced_to_the_goals(records: list[Record]) -
     assert answer.because[-1].text.startswith("+!start")
 
 
-def test_what_the_suspended_patrol_waits_for(records: list[Record]) -> None:
+def test_what_the_suspended_patrol_and_the_plan_that_charges_wait_for(records: list[Record]) -> None:
     answer = explain(records, "waiting", at=low_at(records) + 1.0)
     assert any("!patrol" in fact.text and "is suspended" in fact.text for fact in answer.facts)
     assert any("driveTo" in fact.text and "waits for" in fact.text for fact in answer.facts)
-
-
-def test_the_plan_that_charges_waits_for_the_wheels(records: list[Record]) -> None:
     answer = explain(records, "waiting", at=low_at(records) + 0.4)
     assert any("!dock_and_charge, waits for the resource wheels" in fact.text for fact in answer.facts)
 
