@@ -32,7 +32,7 @@ class Slow(Reading):
     def note(self, what: Values | str) -> None:
         self.log.append((round(self.lab.clock.elapsed, 6), what))
 
-    def show(self, values: ReadValues, cause: Cause | None) -> None:
+    def show(self, values: Values, cause: Cause | None) -> None:
         self.note(values)
         self.is_behind = True
 
@@ -229,9 +229,9 @@ async def test_a_scan_on_demand_expires_too_and_is_defined_by_the_operation(
 
 
 def test_only_elements_within_reach_of_the_robot_are_in_view() -> None:
-    shown: list[list[ReadValues]] = []
+    shown: list[list[Values]] = []
     view = RangeOfView(2.0, lambda elements, cause: shown.append(elements))
-    cells: list[ReadValues] = [(0, 0, "a"), (2, 0, "b"), (3, 0, "c"), (math.nan, 0, "d")]
+    cells: list[Values] = [(0, 0, "a"), (2, 0, "b"), (3, 0, "c"), (math.nan, 0, "d")]
     view.take(cells)
     assert shown == []
     view.stand(0, 0)
