@@ -106,9 +106,9 @@ def test_the_checker_sees_a_program_that_is_wrong(old: str, new: str, complaint:
 
 def test_the_checker_sees_too_few_recharges_a_bump_and_an_empty_battery() -> None:
     assert check(truth_of_example(), cycles=11).complaints == ["10 recharges, not 11"]
-    empty = Event(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
+    empty = RobotEvent(100.0, "turtlebot", "battery_empty", 0.0, 1.0, 0.0, {"level": 0})
     assert check(falsified(truth_of_example(), more=[empty])).complaints == ["the battery was empty"]
-    bump = Event(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
+    bump = RobotEvent(3.0, "turtlebot", "bump", 1.6, 0.0, 0.0, {"side": "front"})
     assert not check(falsified(truth_of_example(), more=[bump])).passed
 
 

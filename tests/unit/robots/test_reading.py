@@ -7,8 +7,7 @@ import pytest
 from jacaros.artifacts import Atom, Structure
 from jacaros.robots.kit.options import WrongOption, read_arguments
 from jacaros.robots.kit.reading import READING_OPTIONS, Reading
-from jacaros.robots.mapping.decoding import ReadValues
-from jacaros.robots.streams import ReadingPolicy
+from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -17,13 +16,13 @@ class Passed:
 
     def __init__(self, policy: ReadingPolicy) -> None:
         self.clock = VirtualClock()
-        self.log: list[tuple[float, ReadValues]] = []
+        self.log: list[tuple[float, Values]] = []
         self.reading = Reading(policy, self.clock, self.note)
 
-    def note(self, values: ReadValues, cause: object) -> None:
+    def note(self, values: Values, cause: object) -> None:
         self.log.append((round(self.clock.elapsed, 6), values))
 
-    def feed(self, *script: tuple[float, ReadValues]) -> list[tuple[float, ReadValues]]:
+    def feed(self, *script: tuple[float, Values]) -> list[tuple[float, Values]]:
         """Take values at given times; then wait ten seconds."""
 
         async def main() -> None:

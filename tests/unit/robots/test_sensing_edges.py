@@ -12,11 +12,11 @@ from jacaros.robots.kit.faults import BadMessages, Stamps
 from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
-from jacaros.robots.mapping.decoding import ReadValues, converted
+from jacaros.robots.mapping.decoding import converted
 from jacaros.robots.mapping.fields import Conversion, LinearConversion, conversion
 from jacaros.robots.mapping.file import read_mapping
 from jacaros.robots.plane.pose import Pose
-from jacaros.robots.streams import ReadingPolicy
+from jacaros.robots.streams import ReadingPolicy, Values
 from jacaros.runtime.clock import VirtualClock, run
 
 
@@ -54,7 +54,7 @@ def test_values_that_are_confirmed_in_time_do_not_expire() -> None:
 
 def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longest_wait() -> None:
     clock = VirtualClock()
-    delivered: list[tuple[float, ReadValues]] = []
+    delivered: list[tuple[float, Values]] = []
 
     async def main() -> None:
         reading = Reading(
@@ -73,7 +73,7 @@ def test_an_observer_that_never_takes_a_value_up_gets_the_newest_after_the_longe
 
 
 def test_an_element_at_the_edge_of_the_view_is_in_view() -> None:
-    seen: list[list[ReadValues]] = []
+    seen: list[list[Values]] = []
     view = RangeOfView(1.0, lambda elements, cause: seen.append(elements))
     view.stand(0.0, 0.0)
     view.take([(1.0, 0.0), (0.0, -1.0), (1.001, 0.0)])
