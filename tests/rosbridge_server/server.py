@@ -16,6 +16,7 @@ import tempfile
 import threading
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,7 @@ from jacaros.robots.ros.drivers.memory.backend import MemoryBackend
 from jacaros.robots.ros.drivers.memory.graph import MemoryGraph
 from jacaros.robots.ros.handoff import post
 from jacaros.robots.ros.node import NodeSettings
+from jacaros.robots.ros.parameter_services import ParameterCallback, ParameterListeners
 from jacaros.runtime.clock import WallClock, run
 
 DOING = 0.002
@@ -84,7 +86,8 @@ class Bridge:
         self.knows_actions = knows_actions and not ros1
         self.frozen = False
         self.max_message_size = 10_000_000
-        self.graph = _Graph(self)
+        self.graph = MemoryGraph()
+        self.graph.parameter_listeners = _ParameterEvents(self)
         settings = NodeSettings(WallClock(), "rosbridge_websocket", interface_paths=folders)
         self.node = MemoryBackend(settings, self.graph)
         self.goals = SentGoals(self)
@@ -139,13 +142,17 @@ class Bridge:
         return bool(publishers) and all(each.qos.durability == "transient_local" for each in publishers)
 
 
-class _Graph(MemoryGraph):
+class _ParameterEvents(ParameterListeners):
+    """Tells the clients what it tells the nodes of the graph."""
+
     def __init__(self, bridge: Bridge) -> None:
         super().__init__()
         self._bridge = bridge
 
-    def parameters_changed(self, node: str, changed: Mapping[str, Any]) -> None:
-        super().parameters_changed(node, changed)
+    def of(self, node: str) -> list[ParameterCallback]:
+        return [*super().of(node), partial(self._tell, node)]
+
+    def _tell(self, node: str, changed: Mapping[str, Any]) -> None:
         if not self._bridge.ros1:
             for connection in list(self._bridge.connections):
                 connection.tell_parameters(self._bridge.parameters.event(node, changed))

@@ -58,7 +58,7 @@ class SeenRobot:
 
     def hear_odometry(self, sample: Sample) -> bool:
         """Keep the newest message unless it contains NaN or infinity; return whether it was kept."""
-        if not_finite(sample) is not None:
+        if not_finite(sample.message) is not None:
             return False
         self.odometry = sample.message
         return True
