@@ -27,7 +27,7 @@ Maybe = str | None
 # ---- lines of a recording, told apart by their field ``kind``
 
 
-class RecordingLine(Struct, tag_field="kind", tag=str.lower):
+class RecordingLine(Struct, tag_field="kind", tag=lambda name: name.removesuffix("Line").lower()):
     """A line of a recording."""
 
 
@@ -54,7 +54,7 @@ class TextLine(RecordingLine):
     text: str
 
 
-class EventLine(RecordingLine, tag="event"):
+class EventLine(RecordingLine):
     """An event of a kind that `EVENTS` describes."""
 
     t: FiniteNumber
@@ -65,7 +65,7 @@ class EventLine(RecordingLine, tag="event"):
 AnyLine = WorldLine | Frame | TextLine | EventLine
 
 
-class MessageLine(RecordingLine, tag="message"):
+class MessageLine(RecordingLine):
     """A ROS message that had an effect; only in files of MCAP."""
 
     t: FiniteNumber
@@ -78,7 +78,7 @@ class MessageLine(RecordingLine, tag="message"):
 
 
 class EventRecord(Struct, omit_defaults=True):
-    """The data of an event; its ``kind`` is the name of the class."""
+    """The data of an event; its ``kind`` is the name of the class without ``Record``."""
 
     kind: ClassVar[str]
 
