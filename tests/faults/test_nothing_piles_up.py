@@ -7,7 +7,7 @@ from typing import Any
 
 from faults_lab import Lab, in_lab
 
-NOTES = {"Sample", "Moment"}
+NOTES = {"PathSample", "Moment"}
 """Records of the laboratory and the world, which are kept for later analysis."""
 
 

@@ -76,7 +76,7 @@ def test_lists_and_annotations_splice_their_tails():
     )
 
 
-def test_functions_and_namespaces_are_told_by_name():
+def test_functions_and_namespaces_have_names():
     assert isinstance(parse_term(".length(L)"), nodes.FunctionCall)
     assert isinstance(parse_term(".length(L,N)"), nodes.InternalAction)
     assert isinstance(parse_term("system.time"), nodes.FunctionCall)

@@ -216,7 +216,7 @@ class Table:
             del self.late[row]
             self._note_late(row, -1)
             return
-        # The rows are read backwards: at their end no gaps are left, which would have to be passed over at every reading.
+        # The rows are read backwards: at their end no gaps are left, which every reading would have to skip.
         rows = self.rows
         last, value = rows.popitem()
         if last is not row and last != row:
