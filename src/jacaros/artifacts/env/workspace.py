@@ -1,6 +1,6 @@
 """Workspaces: create, find, focus, link, use and dispose artifacts."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from types import MappingProxyType
@@ -459,7 +459,7 @@ class Workspace(ports.Workspace):
         self._making: dict[str, Steps] = {}
         self._indexes: dict[tuple[str, int], OperationIndex] = {}
         self._known: dict[tuple[str, int], tuple[ArtifactId, ...]] = {}
-        self.known = MappingProxyType(self._known)
+        self.known: Mapping[tuple[str, int], tuple[ArtifactId, ...]] = MappingProxyType(self._known)
         self._watchers: dict[object, ArtifactWatcher] = {}
         self._watchers_of_all: dict[object, ArtifactWatcher] = {}
         self._telling: tuple[Iterator[ArtifactWatcher], ArtifactId, bool] | None = None
