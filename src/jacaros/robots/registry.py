@@ -18,6 +18,7 @@ _MODULES = {
     "jacaros.robots.artifacts.battery": "ArtSimBattery",
     "jacaros.robots.artifacts.connection_artifact": "ArtRos",
     "jacaros.robots.artifacts.odometry": "ArtOdometry ArtOdometryOnDemand",
+    "jacaros.robots.artifacts.operator_artifact": "Operator",
     "jacaros.robots.artifacts.sensors": "ArtBaseScan ArtBumper ArtCliff ArtScan",
     "jacaros.robots.artifacts.velocity": "ArtCmdVel ArtCmdVelAndOdometry ArtCmdVelMux ArtCmdVelMuxAndOdometry ArtVelocity",
     "jacaros.robots.artifacts.thesis": "ArtCleaning ArtPerception ArtTutorial",

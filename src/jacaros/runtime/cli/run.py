@@ -35,6 +35,7 @@ from jacaros.runtime.cli.options import (
 from jacaros.runtime.cli.outputs import OUTPUT_GONE, RECORD_LIMIT, RequestedOutputs, has_display, write_output
 from jacaros.runtime.cli.usage import examples, listed, not_found, usage_error
 from jacaros.runtime.files.texts import is_file
+from jacaros.runtime.input import LineInput
 from jacaros.runtime.mas.agents.host import AgentHost
 from jacaros.runtime.mas.console import StandardConsole
 from jacaros.runtime.mas.deployment import Deployment
@@ -202,6 +203,8 @@ def _launch(
     explained: Sequence[str] = (),
 ) -> int:
     def begin(mas: System) -> None:
+        if sys.stdin is not None:  # otherwise the descriptor 0 may be another file
+            mas.input = LineInput()
         if explained:
             from jacaros.look.why.why import Announcer  # here: few runs are explained
 

@@ -29,6 +29,7 @@ from jacaros.runtime.mas.scheduler import Activity, AgentTimer, Idleness, Schedu
 if TYPE_CHECKING:
     from jacaros.artifacts.env.environment import Environment
     from jacaros.look.why.explanation import Explanation
+    from jacaros.runtime.input import LineInput
     from jacaros.runtime.mas.debugging.debugger import Debugger
     from jacaros.runtime.mas.diagnostics import Diagnostics
     from jacaros.runtime.mas.environment import RunEnvironment
@@ -63,6 +64,7 @@ class System:
         lifecycle: creates and ends agents.
         mailboxes: delivers messages between agents.
         deliver, agent_names, create_agent, clone_agent, kill_agent: requests of agents.
+        input: the standard input, from which a person answers questions of agents; None: it is not read.
         lost_goals: number of failed goals without a plan for their failure, and of Python agents that an exception ended.
         exit_code: exit code of the run; None while it is running.
         error: the defect of JaCaROS that ended the run, or None.
@@ -121,6 +123,7 @@ class System:
         )
         self.create_agent, self.clone_agent = self.lifecycle.create, self.lifecycle.clone
         self.kill_agent = self.lifecycle.kill
+        self.input: LineInput | None = None
         self._reserve: mmap.mmap | None = mmap.mmap(-1, RESERVE)
         self._ended: asyncio.Future[int] | None = None
         self.lost_goals = 0
@@ -286,6 +289,7 @@ class System:
                     "ros": self.ros.backend,
                     "console": lambda: self.console.print,
                     "random": lambda: random,
+                    "input": lambda: self.input,
                     "restricted": lambda: self.options.restricted,
                     "stop": lambda: partial(self.stop_system, 0.0, 0),
                 }

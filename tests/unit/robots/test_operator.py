@@ -1,0 +1,187 @@
+"""Questions of agents to a person: answers by agents, over ROS and from lines; refusals, time-outs, withdrawal."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from robot_lab import Lab, Run, Watcher, made
+
+from jacaros.artifacts import ArtifactId, Atom, Out, Structure
+from jacaros.robots.artifacts.operator_artifact import Operator
+from jacaros.robots.ros.qos import LATCHED
+
+STRING, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
+ROOMS = [Atom("kitchen"), Atom("hall")]
+
+pytestmark = made(Operator, Structure("timeout", (60,)))
+
+
+class Questions:
+    """What another node sees of the questions, and its answers."""
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.shown: list[list[dict[str, Any]]] = []
+        self._answers = node.publisher("/operator/answer", STRING)
+        node.subscription("/operator/questions", STRING, self._see, LATCHED)
+
+    def _see(self, sample: Any) -> None:
+        self.shown.append(json.loads(sample.message.data))
+
+    def publish(self, data: str) -> None:
+        self._answers.publish({"data": data})
+
+    async def press(self, service: str) -> Any:
+        return await self.node.client(service, TRIGGER).call({}, 5.0)
+
+
+async def asked(
+    lab: Lab, artifact: ArtifactId, text: str = "Where?", options: Any = ROOMS
+) -> tuple[Run, Out]:
+    answer: Out = Out()
+    return await lab.begun(0.1, artifact, "ask", text, options, answer), answer
+
+
+@pytest.mark.parametrize(
+    ("options", "given", "answer"),
+    [
+        (ROOMS, "kitchen", Atom("kitchen")),
+        (ROOMS, Atom("hall"), Atom("hall")),
+        (ROOMS, 2, Atom("hall")),
+        (ROOMS, " 1 ", Atom("kitchen")),
+        ([3, 1], 1, 1),
+        ([Structure("go", (1, 2))], "go(1,2)", Structure("go", (1, 2))),
+        ([], "in the shed", "in the shed"),
+    ],
+)
+async def test_an_answer_is_an_option_by_text_or_number(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher, options: Any, given: Any, answer: Any
+) -> None:
+    run, out = await asked(lab, artifact, options=options)
+    assert watcher.holds("question") == [(1, "Where?", options)]
+    await lab.do(artifact, "answer", 1, given)
+    await lab.sleep(0.1)
+    assert (run.ok, out.value, type(out.value)) == (True, answer, type(answer))
+    assert watcher.holds("question") == []
+    assert watcher.signals == [("answered", (1, answer, "tester"))]
+
+
+@pytest.mark.parametrize(
+    ("number", "given", "reason"),
+    [
+        (1, "garage", 'no_option("garage")'),
+        (1, 3, "no_option(3)"),
+        (1, 0, "no_option(0)"),
+        (2, "hall", "no_question(2)"),
+    ],
+)
+async def test_a_refused_answer_leaves_the_question_open(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher, number: int, given: Any, reason: str
+) -> None:
+    run, _ = await asked(lab, artifact)
+    refused = await lab.call(artifact, "answer", number, given)
+    assert refused.reason == reason
+    assert (run.outcome, watcher.signals, len(watcher.holds("question"))) == (None, [], 1)
+
+
+async def test_no_answer_in_time_fails_the_operation(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    run, _ = await asked(lab, artifact)
+    await lab.sleep(59.8)
+    assert run.outcome is None
+    await lab.sleep(0.2)
+    assert (run.reason, run.message) == ("no_answer(60)", "no answer within 60 s: Where?")
+    assert watcher.holds("question") == []
+
+
+@made(Operator, Structure("timeout", (60,)), Structure("default", (Atom("hall"),)))
+async def test_the_default_answers_questions_that_have_it(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    first, where = await asked(lab, artifact)
+    second, _ = await asked(lab, artifact, "Again?", [Atom("yes"), Atom("no")])
+    await lab.sleep(60)
+    assert (first.ok, where.value, second.reason) == (True, "hall", "no_answer(60)")
+    assert watcher.signals == [("answered", (1, "hall", "default"))]
+
+
+async def test_a_dropped_question_is_withdrawn_everywhere(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    seen = Questions(await lab.node("panel"))
+    run, _ = await asked(lab, artifact)
+    await asked(lab, artifact, "And where is the box?")
+    await run.drop(0.1)
+    assert watcher.holds("question") == [(2, "And where is the box?", ROOMS)]
+    assert [each["question"] for each in seen.shown[-1]] == [2]
+
+
+async def test_a_node_that_comes_late_sees_and_answers(
+    lab: Lab, artifact: ArtifactId, watcher: Watcher
+) -> None:
+    run, out = await asked(lab, artifact)
+    seen = Questions(await lab.node("panel"))
+    await lab.sleep(0.1)
+    services = ["/operator/question_1/option_1", "/operator/question_1/option_2"]
+    question = {"question": 1, "agent": "tester", "text": "Where?", "options": ["kitchen", "hall"]}
+    assert seen.shown == [[{**question, "services": services}]]
+    seen.publish('{"question": 1, "answer": "garage"}')
+    await lab.sleep(0.1)
+    assert seen.shown[-1][0]["refused"] == "`garage` is not an answer to question 1: expected kitchen, hall"
+    seen.publish('{"question": 1, "answer": "kitchen"}')
+    await lab.sleep(0.1)
+    assert (run.ok, out.value, seen.shown[-1]) == (True, "kitchen", [])
+    assert watcher.signals == [("answered", (1, "kitchen", "ros"))]
+
+
+async def test_a_service_answers_and_then_refuses(lab: Lab, artifact: ArtifactId) -> None:
+    run, out = await asked(lab, artifact)
+    seen = Questions(await lab.node("panel"))
+    reply = await seen.press("/operator/question_1/option_2")
+    assert (reply.success, reply.message, run.ok, out.value) == (True, "hall", True, "hall")
+    late = await seen.press("/operator/question_1/option_1")
+    assert (late.success, late.message) == (False, "question 1 is not open")
+    await lab.sleep(2)
+    assert not [name for name in (await lab.backend.contents()).services if "question" in name]
+
+
+@pytest.mark.parametrize("data", ["", "[]", "{}", '{"question": null, "answer": "hall"}', "[" * 100_000])
+async def test_an_unreadable_message_is_logged(lab: Lab, artifact: ArtifactId, data: str) -> None:
+    run, _ = await asked(lab, artifact)
+    Questions(await lab.node("panel")).publish(data)
+    await lab.sleep(0.1)
+    assert run.outcome is None
+    assert "answer refused: expected JSON" in lab.logged[-1]
+
+
+class Typed:
+    """Lines as a terminal has them."""
+
+    def __init__(self, *lines: str | None) -> None:
+        self.lines = list(lines)
+        self.waiting: list[Callable[[str | None], None]] = []
+
+    def next_line(self, callback: Callable[[str | None], None]) -> None:
+        self.waiting.append(callback)
+
+    async def type(self, lab: Lab, line: str | None) -> None:
+        self.waiting.pop(0)(line)
+        await lab.sleep(0.1)
+
+
+async def test_a_line_answers_the_oldest_question(lab: Lab, artifact: ArtifactId, watcher: Watcher) -> None:
+    typed = Typed()
+    lab.environment.resources["input"] = typed  # type: ignore[index]  # a dict in this laboratory
+    (first, where), (second, again) = await asked(lab, artifact), await asked(lab, artifact, "Again?")
+    for line in ("", "garage", "2", "kitchen"):
+        assert len(typed.waiting) == 1
+        await typed.type(lab, line)
+    assert (first.ok, where.value, second.ok, again.value) == (True, "hall", True, "kitchen")
+    assert watcher.signals[0] == ("answered", (1, "hall", "terminal"))
+    assert typed.waiting == []
+    third, _ = await asked(lab, artifact)
+    await typed.type(lab, None)
+    await asked(lab, artifact)
+    assert (typed.waiting, third.outcome) == ([], None)  # the end of the input: nothing more is read
