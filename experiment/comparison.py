@@ -1,4 +1,4 @@
-"""Agents beside the baseline, run by run: who passed, whether it can be chance, and how runs that failed ended."""
+"""Agents beside the baseline, run by run: who passed, whether it can be chance, and how all ended."""
 
 import re
 from collections import Counter
@@ -7,8 +7,9 @@ from math import comb
 from typing import NamedTuple
 
 from disturbances import faults_for
-from disturbed_runs import AGENTS, AS_IF_DONE, BASELINE, ENDS, HUNG, OVER_NAV2, PATIENT, Outcome
+from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
 from jacaros.look.metrics import Table
+from outcomes import AS_IF_DONE, ENDS, HUNG
 from scenarios import SCENARIOS
 
 SIGNIFICANT = 0.05
@@ -111,12 +112,12 @@ def comparison_table(outcomes: Sequence[Outcome], side: str = BASELINE) -> Table
 
 
 def ends_table(outcomes: Sequence[Outcome]) -> Table:
-    """A row for each side: how its failing runs ended."""
+    """A row for each side: how its runs ended, and the share of its failing runs that report nothing."""
     rows: list[tuple[str | int, ...]] = []
     for side in (AGENTS, OVER_NAV2, BASELINE):
-        ends = Counter(each.end for each in outcomes if each.job.side == side and not each.passed)
+        ends = Counter(each.end for each in outcomes if each.job.side == side)
         rows.append((side, ends.total(), *(ends[end] for end in ENDS), _silent(outcomes, side)))
-    return Table("How failing runs end", ("side", "failed", *ENDS, "in silence, in all"), tuple(rows))
+    return Table("How runs end", ("side", "runs", *ENDS, "in silence, of the failing"), tuple(rows))
 
 
 def _silent(outcomes: Iterable[Outcome], side: str) -> str:

@@ -52,6 +52,14 @@ def kind_of(scenario: str, seed: int) -> str:
     return kinds[seed % len(kinds)]
 
 
+def held_out(scenario: str, seed: int) -> bool:
+    """Whether a seed is kept out of what the programs were tuned with.
+
+    Every second turn of all kinds is: the parity of the seed itself would keep out whole kinds.
+    """
+    return seed // len(kinds_for(scenario)) % 2 == 1
+
+
 def faults_for(scenario: str, seed: int) -> str:
     """The text of the fault file for one run."""
     kind = kind_of(scenario, seed)

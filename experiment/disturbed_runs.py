@@ -11,16 +11,14 @@ from typing import NamedTuple
 import jacaros.robots.world
 from disturbances import faults_for, kind_of
 from jacaros.testing import RunResult, run_project
+from outcomes import Damage, damage, disturbed_at, end_of, told_at
 from scenarios import FOLDER, SCENARIOS
 from virtual_run import run_baseline
 
 AGENTS, OVER_NAV2, BASELINE = "agents", "agents over Nav2", "baseline"
 PATIENT = "baseline, 20 attempts"
 """The baseline with the policy of the agents over Nav2: as many attempts, with the same pause between them."""
-
-SAID, WARNED, HUNG, AS_IF_DONE = "say that they failed", "warn only", "hang in silence", "end as if done"
-ENDS = (SAID, WARNED, HUNG, AS_IF_DONE)
-"""How runs that fail end."""
+SIDES = (AGENTS, OVER_NAV2, BASELINE, PATIENT)
 
 HOUSE = Path(jacaros.robots.world.__file__).parent / "worlds" / "house.yaml"
 
@@ -86,7 +84,9 @@ class Outcome(NamedTuple):
         passed: whether the checker of the example was content.
         seconds: of the virtual clock that it took.
         complaint: the first complaint of the checker, or "".
-        end: how a run that failed ended: one of `ENDS`; or "".
+        end: how it ended: one of `ENDS`.
+        silence: seconds from the disturbance until the program said that it failed; None if it did not.
+        damage: after the disturbance.
     """
 
     job: Job
@@ -94,7 +94,9 @@ class Outcome(NamedTuple):
     passed: bool
     seconds: float
     complaint: str
-    end: str = ""
+    end: str
+    silence: float | None = None
+    damage: Damage = Damage(0, False, 0)
 
 
 def sides_of(scenario: str) -> list[str]:
@@ -118,8 +120,11 @@ def run_all(wanted: list[Job], workers: int | None = None) -> list[Outcome]:
 
 def run_one(job: Job) -> Outcome:
     """Make one run, and judge it."""
-    with tempfile.TemporaryDirectory() as folder:
-        result = _run(job, Path(folder))
+    return judged(job, run(job))
+
+
+def judged(job: Job, result: RunResult) -> Outcome:
+    """Judge a run."""
     limits = {"cycles": CYCLES, "near": NEAR} if job.scenario == "patrol" else {}
     complaints = SCENARIOS[job.scenario].judge(result, **limits).complaints
     return Outcome(
@@ -128,8 +133,21 @@ def run_one(job: Job) -> Outcome:
         not complaints,
         round(result.seconds, 1),
         next(iter(complaints), ""),
-        _end_of(result, LIMITS[job.scenario]) if complaints else "",
+        end_of(result, not complaints, LIMITS[job.scenario]),
+        _silence(result),
+        damage(result.ground_truth),
     )
+
+
+def _silence(result: RunResult) -> float | None:
+    told, begin = told_at(result), disturbed_at(result.ground_truth)
+    return None if told is None or begin is None else round(max(0.0, told - begin), 1)
+
+
+def run(job: Job) -> RunResult:
+    """Make one run."""
+    with tempfile.TemporaryDirectory() as folder:
+        return _run(job, Path(folder))
 
 
 def _run(job: Job, folder: Path) -> RunResult:
@@ -145,15 +163,6 @@ def _run(job: Job, folder: Path) -> RunResult:
         _changed(project.with_name("robot.asl"), changes, folder)
         project = Path(shutil.copy(project, folder))
     return run_project(project, world=str(world), seconds=limit, seed=job.seed, faults=faults)
-
-
-def _end_of(result: RunResult, limit: float) -> str:
-    """How a run that failed ended, as a person at the terminal sees it."""
-    if result.exit_code or any("failed" in line for line in result.errors):
-        return SAID
-    if result.errors:
-        return WARNED
-    return HUNG if result.seconds >= limit else AS_IF_DONE
 
 
 def _changed(program: Path, changes: Mapping[str, str], folder: Path) -> Path:

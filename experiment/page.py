@@ -57,6 +57,8 @@ def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]
         "compared": lambda: comparison.comparison_table(outcomes),
         "equal": lambda: comparison.comparison_table(outcomes, PATIENT),
         "ends": lambda: comparison.ends_table(outcomes),
+        "outcomes": lambda: success.outcome_table(outcomes),
+        "halves": lambda: success.halves_table(outcomes),
         "patrol_by_kind": lambda: success.kind_table(outcomes, "patrol"),
         "house_cleaning_by_kind": lambda: success.kind_table(outcomes, "house_cleaning"),
     }

@@ -12,6 +12,7 @@ from typing import Any
 
 import sizes
 from disturbed_runs import Job, Outcome, jobs, run_all
+from outcomes import Damage
 from page import page, summary
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -72,14 +73,14 @@ def check() -> int:
 
 def as_json(outcomes: Sequence[Outcome]) -> str:
     """The record of runs: one line for each."""
-    rows = [json.dumps([*each.job, *each[1:]]) for each in outcomes]
+    rows = [json.dumps([each.job, each[1:-1], each.damage]) for each in outcomes]
     return "[\n" + ",\n".join(rows) + "\n]\n"
 
 
 def from_json(text: str) -> list[Outcome]:
     """The runs of a record."""
     rows: list[list[Any]] = json.loads(text)
-    return [Outcome(Job(*row[:3]), *row[3:]) for row in rows]
+    return [Outcome(Job(*job), *how)._replace(damage=Damage(*harm)) for job, how, harm in rows]
 
 
 if __name__ == "__main__":

@@ -1,17 +1,19 @@
-"""Tables of the disturbed runs: how many passed, and how long they took."""
+"""Tables of the disturbed runs: how many passed and how long they took, how they ended, and the damage."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-from disturbances import KINDS
-from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
+from disturbances import KINDS, held_out
+from disturbed_runs import SIDES, Outcome
 from jacaros.look.metrics import Table
+from outcomes import ENDS
 from scenarios import SCENARIOS
 
-SIDES = (AGENTS, OVER_NAV2, BASELINE, PATIENT)
+Runs = Sequence[Outcome]
 
 
-def success_table(outcomes: Sequence[Outcome]) -> Table:
+def success_table(outcomes: Runs) -> Table:
     """A row for each scenario: runs that passed, of all, and the median of their seconds."""
     rows = []
     for name in SCENARIOS:
@@ -20,7 +22,7 @@ def success_table(outcomes: Sequence[Outcome]) -> Table:
     return Table("Runs that passed", ("scenario", *SIDES), tuple(rows))
 
 
-def kind_table(outcomes: Sequence[Outcome], scenario: str) -> Table:
+def kind_table(outcomes: Runs, scenario: str) -> Table:
     """A row for each kind of disturbance in a scenario."""
     of_scenario = [each for each in outcomes if each.job.scenario == scenario]
     sides = [side for side in SIDES if any(each.job.side == side for each in of_scenario)]
@@ -36,6 +38,44 @@ def kind_table(outcomes: Sequence[Outcome], scenario: str) -> Table:
         for kind in kinds
     )
     return Table(scenario, ("disturbance", *sides), rows)
+
+
+def outcome_table(outcomes: Runs) -> Table:
+    """A row for each side of each scenario: how its runs ended, and the damage after the disturbance."""
+    rows: list[tuple[str | int, ...]] = []
+    for name, side, runs in _by_side(outcomes):
+        told = [each.silence for each in runs if not each.passed and each.silence is not None]
+        harm = [each.damage for each in runs]
+        until = f"{median(told):.0f} s" if told else ""
+        bumps, empty, elsewhere = map(sum, zip(*harm, strict=True))
+        rows.append((name, side, *_ends(runs), until, bumps, empty, elsewhere))
+    damage = ("until told", "bumps", "batteries empty", "tasks in wrong room")
+    return Table("Outcomes", ("scenario", "side", *ENDS, *damage), tuple(rows))
+
+
+def halves_table(outcomes: Runs) -> Table:
+    """A row for each side of each scenario: how its runs ended, by the half that their seeds belong to."""
+    rows = []
+    for name, side, runs in _by_side(outcomes):
+        halves: dict[bool, list[Outcome]] = {False: [], True: []}
+        for each in runs:
+            halves[held_out(name, each.job.seed)].append(each)
+        rows.append((name, side, *(" / ".join(map(str, _ends(half))) for half in halves.values())))
+    return Table("Halves", ("scenario", "side", "seeds to tune with", "seeds held out"), tuple(rows))
+
+
+def _by_side(outcomes: Runs) -> Iterable[tuple[str, str, Runs]]:
+    for name in SCENARIOS:
+        for side in SIDES:
+            runs = [each for each in outcomes if each.job[:2] == (name, side)]
+            if runs:
+                yield name, side, runs
+
+
+def _ends(runs: Runs) -> list[int]:
+    """How many runs ended in each of `ENDS`."""
+    counts = Counter(each.end for each in runs)
+    return [counts[end] for end in ENDS]
 
 
 def _cell(found: Iterable[Outcome]) -> str:

@@ -58,7 +58,8 @@ def run_baseline(
     scenario = SCENARIOS[name] if isinstance(name, str) else name
     made = World.load(scenario.world if world is None else world, seed, faults)
     made.ground_truth.keep = None
-    clock, result = VirtualClock(), RunResult()
+    clock = VirtualClock()
+    result = RunResult(now=lambda: clock.elapsed)
     with asyncio.Runner(loop_factory=partial(new_event_loop, clock)) as runner:
         given = scenario.parameters if parameters is None else parameters
         graph = VirtualGraph(clock, runner.get_loop(), given, result.print, result.log)

@@ -6,26 +6,17 @@ from pathlib import Path
 import pytest
 from examples_lab import EXAMPLES
 
+from jacaros.robots.world import World
 from jacaros.robots.world.files.faults import read_faults
 from jacaros.robots.world.files.world import load_world
+from jacaros.testing import RunResult
 
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 
 from comparison import after_the_end, compared, ends_table, fewer, fisher, mcnemar, significance
-from disturbances import KINDS, faults_for, kind_of, kinds_for
-from disturbed_runs import (
-    AGENTS,
-    AS_IF_DONE,
-    BASELINE,
-    HUNG,
-    PATIENCE,
-    PATIENT,
-    SAID,
-    Job,
-    Outcome,
-    run_one,
-    world_of,
-)
+from disturbances import KINDS, faults_for, held_out, kind_of, kinds_for
+from disturbed_runs import AGENTS, BASELINE, PATIENCE, PATIENT, Job, Outcome, run_one, world_of
+from outcomes import AS_IF_DONE, DONE, HUNG, TOLD, damage, end_of, told_at
 from scenarios import SCENARIOS
 
 
@@ -41,6 +32,15 @@ def test_every_kind_occurs_and_takes_its_turn() -> None:
     for name in SCENARIOS:
         kinds = kinds_for(name)
         assert [kind_of(name, seed) for seed in range(len(kinds))] == kinds
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_each_half_of_the_seeds_has_all_kinds(name: str) -> None:
+    halves: dict[bool, list[str]] = {False: [], True: []}
+    for seed in range(1, 51):
+        halves[held_out(name, seed)].append(kind_of(name, seed))
+    assert set(halves[False]) == set(halves[True]) == set(kinds_for(name))
+    assert abs(len(halves[False]) - len(halves[True])) <= len(kinds_for(name))
 
 
 def test_a_seed_gives_the_same_faults_and_another_seed_others() -> None:
@@ -72,6 +72,7 @@ def test_fishers_and_mcnemars_tests_have_the_values_of_their_tables() -> None:
 
 
 def outcome(seed: int, side: str, passed: bool, seconds: float = 100.0, end: str = "") -> Outcome:
+    end = end or (DONE if passed else AS_IF_DONE)
     return Outcome(Job("square", side, seed), kind_of("square", seed), passed, seconds, "", end)
 
 
@@ -97,8 +98,36 @@ def test_sentences_follow_the_figures() -> None:
     assert fewer(apart).endswith("in square (0 : 10 of 10).")
 
 
-def test_failing_runs_are_counted_by_how_they_end() -> None:
-    runs = [outcome(each, BASELINE, False, end=end) for each, end in enumerate((SAID, HUNG, AS_IF_DONE))]
+def test_runs_are_counted_by_how_they_end() -> None:
+    runs = [outcome(each, BASELINE, False, end=end) for each, end in enumerate((TOLD, HUNG, AS_IF_DONE))]
     rows = {str(row[0]): row[1:] for row in ends_table([*runs, outcome(9, AGENTS, True)]).rows}
-    assert rows[BASELINE] == (3, 1, 0, 1, 1, "67 %")
-    assert rows[AGENTS] == (0, 0, 0, 0, 0, "0 %")
+    assert rows[BASELINE] == (3, 0, 1, 1, 1, "67 %")
+    assert rows[AGENTS] == (1, 1, 0, 0, 0, "0 %")
+
+
+@pytest.mark.parametrize(
+    ("output", "exit_code", "seconds", "told", "end"),
+    [
+        ([(3.0, "[robot] I need help: stuck")], 0, 100.0, 3.0, TOLD),
+        ([(3.0, "[robot] driving"), (4.0, "[robot] goal !go failed: blocked")], 0, 50.0, 4.0, TOLD),
+        ([], 1, 60.0, 60.0, TOLD),
+        ([(3.0, "[robot] 650 mm from where I started")], 0, 60.0, None, AS_IF_DONE),
+        ([(3.0, "  = help: did you mean `go`?")], 0, 100.0, None, HUNG),
+    ],
+)
+def test_a_failing_run_has_told_or_not(
+    output: list[tuple[float, str]], exit_code: int, seconds: float, told: float | None, end: str
+) -> None:
+    result = RunResult(timed=output, exit_code=exit_code, seconds=seconds)
+    assert told_at(result) == told
+    assert end_of(result, False, 100.0) == end
+    assert end_of(result, True, 100.0) == DONE
+
+
+def test_damage_counts_from_the_disturbance() -> None:
+    world = World.load("house", faults="faults:\n  f: {kind: battery_drop, to: 0, at: 1}\n")
+    world.log_task(world.robot().name, "mop floor kitchen")  # it is in the hallway
+    world.run(2.0)
+    assert damage(world.ground_truth) == (0, True, 0)
+    world.log_task(world.robot().name, "mop floor kitchen")
+    assert damage(world.ground_truth) == (0, True, 1)

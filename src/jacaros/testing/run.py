@@ -22,6 +22,7 @@ class RunResult:
     Attributes:
         lines: output of agents, as ``[agent] text``.
         errors: other output: errors, warnings and log lines.
+        timed: both, in order, each with its seconds on the clock of the run.
         exit_code: exit code that the ``jacaros`` command would return.
         seconds: duration on the clock of the run.
         ground_truth: ground truth of the embedded world (`jacaros.robots.world.GroundTruth`); None without a world.
@@ -29,9 +30,11 @@ class RunResult:
 
     lines: list[str] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
+    timed: list[tuple[float, str]] = field(default_factory=list)
     exit_code: int = 0
     seconds: float = 0.0
     ground_truth: Any = None
+    now: Callable[[], float] = field(default=lambda: 0.0, repr=False, compare=False)
 
     def of(self, agent: str) -> list[str]:
         """Return the output of one agent, without its name."""
@@ -43,10 +46,12 @@ class RunResult:
     def print(self, agent: str, text: str) -> None:
         """Record a line of an agent's output."""
         self.lines.append(f"[{agent}] {text}")
+        self.timed.append((self.now(), self.lines[-1]))
 
     def log(self, text: str, level: str = "info") -> None:
         """Record a log line."""
         self.errors.append(text)
+        self.timed.append((self.now(), text))
 
 
 def run_project(
@@ -75,7 +80,9 @@ def run_project(
     held: list[tuple[System, float]] = []
 
     def started(mas: System) -> None:
-        held.append((mas, mas.clock.now()))
+        began = mas.clock.now()
+        held.append((mas, began))
+        result.now = lambda: mas.clock.now() - began
         if when_started is not None:
             when_started(mas)
 
