@@ -57,6 +57,17 @@ async def test_closing_takes_the_nearest_object_in_reach_that_fits(lab: Lab) -> 
     assert (await hand.grip(0.0)).stalled, "it is still between the fingers"
 
 
+@pytest.mark.world(TABLE, None, "faults:\n  f: {kind: missed_grasp, at: 0, for: 5}\n")
+async def test_a_missed_grasp_closes_on_nothing(lab: Lab) -> None:
+    hand = hand_without(lab, "crate")
+    result = await hand.grip(0.0)
+    assert (result.stalled, result.reached_goal, result.position) == (False, True, 0.0)
+    await hand.grip(0.1)
+    await lab.clock.sleep(5.0)
+    assert hand.events() == []
+    assert (await hand.grip(0.0)).stalled
+
+
 async def test_an_object_that_is_too_wide_is_not_taken(lab: Lab) -> None:
     hand = hand_without(lab, "cup")
     result = await hand.grip(0.0)

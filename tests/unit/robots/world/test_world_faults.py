@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from navigation_lab import Lab, in_world, pose
 
+from jacaros.robots.plane.pose import Placement
 from jacaros.robots.world import GroundTruth, World
 from jacaros.robots.world.process import GroundTruthFile
 from jacaros.runtime.errors import UsageError
@@ -94,6 +95,58 @@ def test_a_battery_drops_and_a_dead_dock_does_not_charge() -> None:
     assert not world.robot().battery.charging
     world.run(2.0)
     assert world.robot().battery.charging
+
+
+def test_a_dirty_contact_comes_and_goes_alike_in_each_run() -> None:
+    def charging() -> list[bool]:
+        world = world_with("{kind: dirty_contact, dock: dock, at: 0, for: 10}")
+        found = []
+        for _ in range(12):
+            world.run(0.98)  # before the end of each second
+            found.append(world.robot().fed)
+            world.run(0.02)
+        return found
+
+    found = charging()
+    assert set(found[:9]) == {True, False}
+    assert found[11], "clean again"
+    assert found == charging()
+
+
+def test_a_wrong_dock_takes_the_robot_without_charging_it() -> None:
+    world = world_with("{kind: wrong_dock, to: {x: 0.1}, at: 1, for: 2}")
+    world.run(2.0)
+    robot = world.robot()
+    assert [dock.name for dock in (robot.dock, world.visible_dock(robot)) if dock] == ["f", "dock"]
+    assert not robot.battery.charging
+    world.run(2.0)
+    assert robot.battery.charging
+    docked = [
+        (event.kind, event.data["dock"]) for event in world.ground_truth.events_of("docked", "undocked")
+    ]
+    assert docked == [
+        ("docked", "dock"),
+        ("undocked", "dock"),
+        ("docked", "f"),
+        ("undocked", "f"),
+        ("docked", "dock"),
+    ]
+
+
+def test_a_person_stands_in_the_way_of_the_robot_wherever_it_is() -> None:
+    world = world_with("{kind: person_in_the_way, gap: 0.4, at: 1, for: 60}")
+    drive(world, 1.5, turn_rate=1.0)
+    person, robot = world.people["f"], world.robot()
+    ahead = Placement.at(*robot.pose).local(person.x, person.y)
+    assert math.hypot(*ahead) == pytest.approx(0.4 + 0.17 + 0.25, abs=0.2)
+    drive(world, 62.0, speed=0.0)
+    assert world.people == {}
+
+
+def test_nobody_stands_in_a_wall() -> None:
+    world = world_with("{kind: person_in_the_way}")
+    world.robot().x = 2.0
+    assert "a wall is in the way" in str(world.faults.begin("f"))
 
 
 def test_a_door_closes_and_opens_unless_it_is_blocked() -> None:
@@ -295,6 +348,18 @@ async def test_a_kidnapped_robot_is_lost_until_it_receives_its_pose(lab: Lab) ->
     lab.say("/initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped", **told)
     await lab.clock.sleep(2.0)
     assert lab.backend.tf_lookup("map", "base_link").translation[:2] == pytest.approx((1, -2), abs=0.01)
+
+
+@faulty("{kind: lost_localisation, to: {x: 2, y: -2, yaw_degrees: 90}, at: 0}")
+async def test_a_lost_robot_believes_in_another_pose_and_moves_from_there(lab: Lab) -> None:
+    lab.backend.tf_listen()
+    await lab.clock.sleep(1.0)
+    assert lab.backend.tf_lookup("map", "base_link").translation[:2] == pytest.approx((2, -2), abs=0.01)
+    await lab.drive(2.0, 0.3)
+    x, y, _ = lab.backend.tf_lookup("map", "base_link").translation
+    assert (x, y) == pytest.approx((2, -2 + lab.world.robot().odometry.x), abs=0.05)
+    assert lab.world.robot().y == 0.0
+    assert not lab.world.ground_truth.events_of("robot_placed")
 
 
 def test_a_fault_that_starts_with_the_world_is_in_the_file(tmp_path: Path) -> None:

@@ -39,11 +39,16 @@ KINDS: Final[Mapping[str, FaultKind]] = {
     "wheel_slip": FaultKind(("share",), True),
     "blocked_wheel": FaultKind(("wheel",), True),
     "kidnapped_robot": FaultKind(("to",), True, lasts=False),
+    "lost_localisation": FaultKind(("to",), True, lasts=False),
     "battery_drop": FaultKind(("to",), True, lasts=False),
     "dead_dock": FaultKind(("dock",)),
+    "dirty_contact": FaultKind(("dock", "share", "period")),
+    "wrong_dock": FaultKind(("to",)),
     "closed_door": FaultKind(("door",)),
     "stuck_door": FaultKind(("door", "share")),
     "person": FaultKind(("path", "radius", "speed", "loop", "careless")),
+    "person_in_the_way": FaultKind(("gap", "radius"), True),
+    "missed_grasp": FaultKind(("share",), True),
     **MESSAGES,
     "aborted_action": FaultKind(("action", "share"), True),
 }
@@ -65,9 +70,11 @@ class Fault:
         robot: name of the affected robot, "" for none.
         topic, action: absolute names.
         door, dock: names.
-        share: mean loss of slipping wheels, or of messages, goals or requests; 0 to 1.
+        share: mean loss of slipping wheels or of a contact, or of messages, goals, grasps or requests; 0 to 1.
+        period: seconds after which a dirty contact can change.
+        gap: metres between a robot and the person in its way.
         wheel: ``left``, ``right`` or ``both``.
-        pose: new pose of a kidnapped robot.
+        pose: new pose of a kidnapped robot, pose that a lost robot believes in, or pose of a wrong dock.
         level: remaining charge of the battery, in percent.
         person: person who appears.
         seconds, jitter: delay of messages, and maximum of its random part, in seconds.
@@ -84,6 +91,8 @@ class Fault:
     door: Annotated[str, FieldSpec("text", "name of a door")] = ""
     dock: Annotated[str, FieldSpec("text", "name of a dock")] = ""
     share: Annotated[float, number(0.0, 1.0, help="mean loss")] = 1.0
+    period: Annotated[float, number(0.1, math.inf, "s", "after which a dirty contact can change")] = 1.0
+    gap: Annotated[float, number(0.05, 5.0, "m", "between the robot and the person in its way")] = 0.5
     wheel: Annotated[str, choice("both", "left", "right", help="blocked wheel")] = "both"
     pose: Pose = ORIGIN
     level: float = 0.0
@@ -95,6 +104,10 @@ class Fault:
     def draw(self, seed: int, purpose: str) -> Callable[[], float]:
         """Return random numbers from 0 to 1 for a world with that seed: the same ones in each run."""
         return random.Random(f"{seed}/{self.name}/{purpose}").random
+
+    def connects(self, seed: int, time: float) -> bool:
+        """Return whether a dirty contact conducts at *time* (seconds of the world)."""
+        return self.draw(seed, f"contact {time // self.period:.0f}")() >= self.share
 
     def chance(self, seed: int) -> Callable[[], bool]:
         """Return a function that decides each time whether the fault happens, with the probability ``share``."""

@@ -22,9 +22,11 @@ _REQUIRED = {
     "door": "add 'door: NAME'",
     "dock": "add 'dock: NAME'",
     "path": "add 'path: [[1, 0]]', in metres",
-    "to": "add the remaining percent, 'to: 15', or the new place, 'to: {x: 1, y: 2, yaw_degrees: 90}'",
+    "to": "add the remaining percent, 'to: 15', or a place, 'to: {x: 1, y: 2, yaw_degrees: 90}'",
 }
 """Keys without a default, and how to add them."""
+_SHARES = {"wheel_slip": 0.3, "dirty_contact": 0.5}
+"""Defaults of ``share`` other than 1."""
 
 
 def read_faults(source: str | Path, world: WorldDescription) -> tuple[Fault, ...]:
@@ -90,7 +92,7 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
         name,
         str(word),
         robot=_robot(node, entries.get("robot"), str(word), kind, world),
-        share=0.3 if word == "wheel_slip" else 1.0,
+        share=_SHARES.get(str(word), 1.0),
     )
     prefix = _prefix(usual.robot, world)
     fault = replace(
@@ -104,13 +106,17 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
             dock=_one_of("dock", world and world.docks),
         ),
     )
-    if word == "person":
+    if word == "missed_grasp":
+        _check_gripper(node, fault.robot, world)
+    if word in ("person", "person_in_the_way"):
         person = PersonDescription(name, ((0.0, 0.0),))
         return replace(fault, person=replace(person, **values(entries, person, path=read_path)))
     if word == "battery_drop" and "to" in entries:
         return replace(fault, level=entries["to"].number(0.0, 100.0))
     if word == "kidnapped_robot" and "to" in entries:
         return replace(fault, pose=_landing(entries["to"], fault.robot, world))
+    if word in ("lost_localisation", "wrong_dock") and "to" in entries:
+        return replace(fault, pose=_inside(entries["to"], world))
     return fault
 
 
@@ -147,8 +153,10 @@ def _one_of(what: str, things: Any) -> ReadValue:
     def read(node: YamlNode, _: object) -> str:
         name = node.text()
         names = None if things is None else [each.name for each in things]
-        if names is not None and name not in names:
-            node.wrong(f"unknown {what} '{name}'", f"{what}s of the world: {', '.join(names) or 'none'}")
+        if names == []:
+            node.wrong(f"the world has no {what}", f"add '{what}s:' to the world, or remove the fault")
+        elif names is not None and name not in names:
+            node.wrong(f"unknown {what} '{name}'", f"{what}s of the world: {', '.join(names)}")
         return name
 
     return read
@@ -166,3 +174,19 @@ def _landing(node: YamlNode, name: str, world: WorldDescription | None) -> Pose:
                 where = f"it puts the robot '{name}' at [{pose.x:g}, {pose.y:g}], {problem}"
                 node.wrong(where, help or "write another place under 'to'")
     return pose
+
+
+def _inside(node: YamlNode, world: WorldDescription | None) -> Pose:
+    """Read a pose inside the world."""
+    pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
+    if world is not None and not world.bounds.contains(pose.x, pose.y):
+        node.wrong(f"[{pose.x:g}, {pose.y:g}] is outside the world", "write another place under 'to'")
+    return pose
+
+
+def _check_gripper(node: YamlNode, name: str, world: WorldDescription | None) -> None:
+    robots = () if world is None else world.robots
+    if any(each.name == name and not each.gripper_reach for each in robots):
+        node.wrong(
+            f"the robot '{name}' has no gripper", "add 'gripper: true' to the robot, or remove the fault"
+        )

@@ -95,7 +95,7 @@ class _View:
 
     def _discs(self) -> Iterator[tuple[Circle, Look]]:
         world = self._world
-        for dock in world.description.docks:
+        for dock in world.docks:
             yield (dock.pose.x, dock.pose.y, _DOCK_RADIUS), _DOCK
         for robot in world.robots.values():
             if robot is not self._at.robot:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
+from jacaros.robots.plane.pose import Placement, Pose
 from jacaros.robots.ros.backend import Backend, Sample
 from jacaros.robots.ros.errors import MessageMismatch, UnknownInterface
 from jacaros.robots.ros.message import plain, to_seconds
@@ -53,9 +54,17 @@ class RobotNode(RobotOnGraph):
 
     def publish(self) -> None:
         """Publish the sensors that are due at this 20 Hz tick, after the world has caught up."""
+        if self.robot.misled is not None:
+            self._mislead(self.robot.misled)
         for sensor in self._sensors:
             sensor(self._ticks)
         self._ticks += 1
+
+    def _mislead(self, pose: Pose) -> None:
+        """Let the estimated pose jump to another; as after a robot was put down, nothing tells the robot."""
+        self.robot.misled = None
+        self.localisation.map_to_odom = Placement.at(*pose).then(self.robot.odometry.placement.inverse())
+        self.robot.put_downs += 1
 
     def _add(self, each_added: Iterable[Added], add: Callable[[Added, str], None]) -> None:
         for added in each_added:
@@ -147,10 +156,12 @@ class _Gripper:
     def __init__(self, at: RobotOnGraph) -> None:
         self._at, self._objects = at, at.time.world.objects
         self._opening = OPENING
+        self._misses = False
 
     async def move(self, goal: ActiveGoal) -> Mapping[str, Any]:
         wanted = min(max(float(goal.request.command.position), 0.0), OPENING)
-        stalled = False
+        stalled, misses = False, self._at.robot.misses
+        self._misses = wanted < self._opening and misses is not None and misses()
         while not stalled and self._opening != wanted:
             await self._at.time.clock.sleep(_PERIOD)
             self._at.time.catch_up()
@@ -181,7 +192,7 @@ class _Gripper:
 
     def _between(self, opening: float) -> Thing | None:
         """Return the object that the closing fingers meet on their way to *opening*."""
-        if opening >= self._opening:
+        if opening >= self._opening or self._misses:
             return None
         found = self._objects.before(self._at.robot)
         return found if found is not None and opening <= found.width <= self._opening else None

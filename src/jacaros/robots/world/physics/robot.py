@@ -3,7 +3,6 @@
 import math
 import random
 from collections.abc import Callable
-from collections.abc import Set as AbstractSet
 from typing import Any
 
 from jacaros.robots.plane.contact import Push, WallIndex, push_apart, push_out, push_out_rectangle
@@ -98,7 +97,9 @@ class Robot:
         fallen: whether it has fallen down a cliff, after which it does not move.
         grip: returns the fraction of the wheel motion that moves the robot, from 0 to 1, for each step; None for full grip.
         blocked_wheel: ``left``, ``right`` or ``both``; "" for none.
-        dead_docks: names of docks without charging current.
+        has_current: returns whether a dock gives charging current.
+        misses: returns, for each grasp, whether its gripper misses; None if it does not.
+        misled: pose that its localisation jumps to at the next message; None for none.
         put_downs: number of times it was put down elsewhere.
         touching: names of what it touches: ``wall`` or other robots. contacts: the side of each contact, by name.
     """
@@ -117,7 +118,9 @@ class Robot:
         self.fallen = False
         self.grip: Callable[[], float] | None = None
         self.blocked_wheel = ""
-        self.dead_docks: AbstractSet[str] = frozenset()
+        self.has_current: Callable[[Dock], bool] = lambda dock: True
+        self.misses: Callable[[], bool] | None = None
+        self.misled: Pose | None = None
         self.put_downs = 0
         self.touching: frozenset[str] = frozenset()
         self.contacts: dict[str, str] = {}
@@ -143,7 +146,7 @@ class Robot:
     @property
     def fed(self) -> bool:
         """Whether a dock supplies it with current."""
-        return self.dock is not None and self.dock.name not in self.dead_docks
+        return self.dock is not None and self.has_current(self.dock)
 
     @property
     def moving(self) -> bool:

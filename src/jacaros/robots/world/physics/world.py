@@ -51,7 +51,8 @@ class World:
         obstacles: round obstacles put on the floor during the run, by name.
         objects: objects that grippers can carry.
         faults: faults of the fault file.
-        dead_docks: names of docks without charging current.
+        docks: docks that robots detect and dock in, those of another make first.
+        currents: for each fault of a dock, the dock's name, and a function that returns whether it gives current.
         stuck_doors: stuck doors, and whether the next request to move each fails.
     """
 
@@ -65,10 +66,11 @@ class World:
             robot.name: Robot(robot, self.description.seed, self._note) for robot in description.robots
         }
         self._row = tuple(self.robots.values())
-        self.dead_docks: set[str] = set()
+        self.docks = description.docks
+        self.currents: dict[str, tuple[str, Callable[[], bool]]] = {}
         self.stuck_doors: dict[str, Callable[[], bool]] = {}
         for robot in self._row:
-            robot.dead_docks = self.dead_docks
+            robot.has_current = self._has_current
         self.doors = {door.name: door.open for door in description.doors}
         self.lasers = {
             name: Laser(robot.description.laser, f"{self.description.seed}/{name}/laser")
@@ -218,13 +220,16 @@ class World:
     def visible_dock(self, robot: Robot) -> Dock | None:
         """Return the nearest dock that a robot detects: within 2 m, and not behind a wall."""
         seen = []
-        for dock in self.description.docks:
+        for dock in self.docks:
             dx, dy = robot.x - dock.pose.x, robot.y - dock.pose.y
             apart = math.sqrt(dx * dx + dy * dy)
             way = Segment(robot.x, robot.y, dock.pose.x, dock.pose.y)
             if apart <= DOCK_SEEN_FROM and not way.crosses(*self.segments):
                 seen.append((apart, dock))
         return min(seen, key=lambda pair: pair[0])[1] if seen else None
+
+    def _has_current(self, dock: Dock) -> bool:
+        return all(gives() for name, gives in self.currents.values() if name == dock.name)
 
     def add_person(self, description: PersonDescription) -> Person:
         """Add a person at the first point of the path.
@@ -339,7 +344,7 @@ class World:
                 robot.settle_fall(self.description.cliffs)
         for robot in self._row:
             robot.settle_contacts()
-            robot.settle_dock(self.description.docks)
+            robot.settle_dock(self.docks)
             self._watch_battery(robot)
         if self.time >= self._next_sample:
             self._sample_robots(all_of_them=False)
@@ -420,9 +425,10 @@ class World:
             case "battery_drop":
                 battery = self.robot(fault.robot).battery
                 battery.level = min(battery.level, fault.level)
-            case "dead_dock":
-                self.dead_docks.add(fault.dock)
-                return partial(self.dead_docks.discard, fault.dock)
+            case "lost_localisation":
+                self.robot(fault.robot).misled = fault.pose
+            case "dead_dock" | "dirty_contact" | "wrong_dock":
+                return self._spoil_dock(fault)
             case "closed_door":
                 if not self.doors[fault.door]:
                     return lambda: None
@@ -433,11 +439,42 @@ class World:
             case "stuck_door":
                 self.stuck_doors[fault.door] = fault.chance(seed)
                 return partial(self.stuck_doors.pop, fault.door, None)
-            case "person":
-                assert fault.person is not None
-                self.add_person(fault.person)
+            case "person" | "person_in_the_way":
+                self.add_person(self._person_of(fault))
                 return partial(self.remove_person, fault.name)
+            case "missed_grasp":
+                robot = self.robot(fault.robot)
+                robot.misses = fault.chance(seed)
+                return partial(setattr, robot, "misses", None)
         return None
+
+    def _spoil_dock(self, fault: Fault) -> Undo:
+        """Take the current from a dock, always or now and then, or add a dock that has none."""
+        dirty, wrong = fault.kind == "dirty_contact", Dock(fault.name, fault.pose)
+        if fault.kind == "wrong_dock":
+            if any(dock.name == fault.name for dock in self.docks):
+                raise UsageError(f"a dock has the name '{fault.name}'")
+            self.docks = (wrong, *self.docks)
+        seed = self.description.seed
+        self.currents[fault.name] = (
+            fault.dock or fault.name,
+            lambda: dirty and fault.connects(seed, self.time),
+        )
+
+        def end() -> None:
+            self.docks = tuple(dock for dock in self.docks if dock is not wrong)
+            del self.currents[fault.name]
+
+        return end
+
+    def _person_of(self, fault: Fault) -> PersonDescription:
+        assert fault.person is not None
+        if fault.kind == "person":
+            return fault.person
+        robot, radius = self.robot(fault.robot), fault.person.radius
+        place = robot.placement.point(robot.description.radius + fault.gap + radius, 0.0)
+        self.check_room(*place, radius)
+        return replace(fault.person, path=(place,))
 
     def _note_fault(self, name: str, data: dict[str, Any]) -> None:
         if name:
