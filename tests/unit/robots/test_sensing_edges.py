@@ -8,8 +8,7 @@ from navigator import Navigator, failed, succeeded, suspended
 from robot_lab import Lab
 
 from jacaros.artifacts import Out, Structure
-from jacaros.robots.kit.faults import BadMessages, Stamps
-from jacaros.robots.kit.reading import LONGEST_WAIT, RangeOfView, Reading
+from jacaros.robots.kit.reading import LONGEST_WAIT, BadMessages, RangeOfView, Reading, Stamps
 from jacaros.robots.map.cells import HIT, OBSTACLE, OccupancyCells
 from jacaros.robots.map.mapper import Localisation
 from jacaros.robots.mapping.decoding import converted

@@ -13,6 +13,7 @@ from typing import ClassVar, NoReturn, Self
 from weakref import WeakKeyDictionary
 
 from jacaros.artifacts.env.arbiter import HOLDING, WHEELS
+from jacaros.artifacts.env.artifact import operation
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.robots.artifacts.approach import PERIOD, NotMoving, Outlook, TimedCommand, Unsettled
 from jacaros.robots.artifacts.drive_model import (
@@ -681,6 +682,14 @@ class WheeledArtifact(RosArtifact):
         twist = self._commands.new()
         twist.linear.x, twist.angular.z = velocity.linear, velocity.angular
         self._commands.publish(twist)
+
+    @operation(name="abortMoving")
+    def abort_moving(self) -> None:
+        """Stop the robot immediately: the motion that drives it and those that wait fail as aborted.
+
+        Suspended motions are not affected. Without a motion it has no effect.
+        """
+        self.motions.abort()
 
     def show(self, motion: Motion, state: str | None) -> None:
         """Show in ``moving`` the state of *motion*; None: it has ended."""

@@ -8,9 +8,8 @@ from weakref import WeakSet
 
 from jacaros.artifacts.env.artifact import Out, operation
 from jacaros.robots.artifacts.drive_model import Velocity
-from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import text
-from jacaros.robots.kit.reading import READING_OPTIONS, Reading
+from jacaros.robots.kit.reading import READING_OPTIONS, Reading, Stamps
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.plane.pose import Pose, normalised
 from jacaros.robots.ros.backend import Backend

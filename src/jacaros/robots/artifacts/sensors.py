@@ -7,9 +7,8 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.artifacts.env.values import Atom
-from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import positive, text
-from jacaros.robots.kit.reading import READING_OPTIONS, Reading, not_finite
+from jacaros.robots.kit.reading import READING_OPTIONS, Reading, Stamps, not_finite
 from jacaros.robots.kit.ros_artifact import RosArtifact
 from jacaros.robots.ros.backend import Sample
 from jacaros.robots.ros.message import to_seconds

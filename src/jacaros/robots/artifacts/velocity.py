@@ -116,14 +116,6 @@ class ArtCmdVel(WheeledArtifact):
         self._finite(x, y, heading)
         await self.perform(go_to(x, y, math.radians(heading)))
 
-    @operation(name="abortMoving")
-    def abort_moving(self) -> None:
-        """Stop the robot immediately: the motion that drives it and those that wait fail as aborted.
-
-        Suspended motions are not affected. Without a motion it has no effect.
-        """
-        self.motions.abort()
-
     @operation(name="getCurrentPose")
     async def get_current_pose(self, x: Out, y: Out, heading: Out) -> None:
         """Give the pose in odometry: metres, metres, degrees; fails with ``no_odometry(5)`` if none arrives within 5

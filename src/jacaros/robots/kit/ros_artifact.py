@@ -20,9 +20,8 @@ from jacaros.robots.kit.connection import (
     OtherPublishers,
     PublisherConnection,
 )
-from jacaros.robots.kit.faults import BadMessages, MessageCallback
 from jacaros.robots.kit.options import ReadOption, WrongOption, read_arguments, text, watching
-from jacaros.robots.kit.reading import Reading
+from jacaros.robots.kit.reading import BadMessages, MessageCallback, Reading
 from jacaros.robots.kit.services import ServedOperation, failure_reason, refusal, succeeded
 from jacaros.robots.ros.action import ActionPolicy, ActionServer
 from jacaros.robots.ros.action_client import ActionClient

@@ -6,9 +6,8 @@ from typing import ClassVar
 
 from jacaros.artifacts.env.artifact import Out, internal_operation, operation
 from jacaros.robots.artifacts.odometry import Odometer, Odometry
-from jacaros.robots.kit.faults import Stamps
 from jacaros.robots.kit.options import not_negative, number, one_of, positive, text, yes_or_no
-from jacaros.robots.kit.reading import Reading
+from jacaros.robots.kit.reading import Reading, Stamps
 from jacaros.robots.map.cells import Cell, LabelledCells, OccupancyCells
 from jacaros.robots.map.map_files import OccupancyGrid
 from jacaros.robots.map.mapper import Mapper, ScanOptions

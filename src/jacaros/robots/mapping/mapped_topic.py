@@ -10,8 +10,7 @@ from functools import partial
 from typing import Any
 
 from jacaros.artifacts.env.values import Structure
-from jacaros.robots.kit.faults import BadMessages, Stamps
-from jacaros.robots.kit.reading import RangeOfView, Reading
+from jacaros.robots.kit.reading import BadMessages, RangeOfView, Reading, Stamps
 from jacaros.robots.mapping.decoding import Extract, Unshowable, ValueRow, extractor, perceived
 from jacaros.robots.mapping.deriving import stamp_of
 from jacaros.robots.mapping.host import LOOK, MappingHost, type_in

@@ -3,8 +3,9 @@
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.robots.ros.backend import Backend
 from jacaros.robots.ros.node import Publisher
@@ -44,16 +45,16 @@ class Guarded:
 
     Attributes:
         on_change: called after an addition or removal.
-        on_drive: called before the first command that moves the robot after it stood.
         found: of each guard, the number of receivers that it has found, by the name of the topic or action.
     """
 
     def __init__(self) -> None:
         self.on_change: Callable[[], None] = lambda: None
-        self.on_drive: Callable[[], None] = lambda: None
         self.found: dict[str, Mapping[str, int]] = {}
         self._topics: Counter[GuardedName] = Counter()
         self._actions: Counter[GuardedName] = Counter()
+        self._on_drive: Callable[[], None] | None = None
+        self._publishers: WeakSet[Publisher] = WeakSet()
         self._moving: set[str] = set()
         self._goals = 0
         self._motions: list[Callable[[], None]] = []
@@ -87,26 +88,36 @@ class Guarded:
     def goal(self) -> Iterator[None]:
         """Note that a goal is running."""
         self._goals += 1
-        self.on_drive()
+        if self._on_drive is not None:
+            self._on_drive()
         try:
             yield
         finally:
             self._goals -= 1
 
+    def announce(self, on_drive: Callable[[], None] | None) -> None:
+        """Call *on_drive* before the first command that moves the robot after it stood; None: no longer.
+
+        Only then are the velocities noted that the robot is sent, so `driving` is not known before.
+        """
+        self._on_drive = on_drive
+        for publisher in self._publishers:
+            self.watch(publisher)
+
     def watch(self, publisher: Publisher) -> None:
-        """Note the velocities that *publisher* sends."""
+        """Note the velocities that *publisher* sends, from the first call of `announce` on."""
+        self._publishers.add(publisher)
+        publisher.watcher = self._on_drive and partial(self._note, publisher.topic, self._on_drive)
 
-        def note(message: Any) -> None:
-            twist = getattr(message, "twist", message)
-            ahead, turn = twist.linear, twist.angular
-            # NaN is true, too.
-            if not (ahead.x or ahead.y or ahead.z or turn.x or turn.y or turn.z):
-                self._moving.discard(publisher.topic)
-            elif publisher.topic not in self._moving:
-                self._moving.add(publisher.topic)
-                self.on_drive()
-
-        publisher.watcher = note
+    def _note(self, topic: str, on_drive: Callable[[], None], message: Any) -> None:
+        twist = getattr(message, "twist", message)
+        ahead, turn = twist.linear, twist.angular
+        # NaN is true, too.
+        if not (ahead.x or ahead.y or ahead.z or turn.x or turn.y or turn.z):
+            self._moving.discard(topic)
+        elif topic not in self._moving:
+            self._moving.add(topic)
+            on_drive()
 
     def add_topic(self, name: str, type_name: str) -> Callable[[], None]:
         """Add a velocity topic. Return a function that removes it."""

@@ -240,7 +240,7 @@ class GraphHeartbeat:
         heartbeat, answer = topics_of(backend.node_name)
         self._publisher = backend.publisher(heartbeat, TEXT, NEWEST)
         backend.subscription(answer, TEXT, self._hear, NEWEST)
-        self._guarded.on_drive = self._publish
+        self._guarded.announce(self._publish)
         self._beat()
 
     async def wait_for_answer(self) -> None:
@@ -257,7 +257,7 @@ class GraphHeartbeat:
     def close(self) -> None:
         """Stop the heartbeat. The topics end with the node."""
         self._timer.cancel()
-        self._guarded.on_drive = lambda: None
+        self._guarded.announce(None)
 
     def _beat(self) -> None:
         loop = asyncio.get_running_loop()

@@ -165,12 +165,12 @@ async def test_a_guard_without_agents_stops_nothing(lab: Lab) -> None:
 async def test_the_first_motion_is_announced_before_its_command() -> None:
     order: list[str] = []
     guarded = Guarded()
-    guarded.on_drive = lambda: order.append("announced")
     backend = open_backend("memory", WallClock(), "agents", log=lambda text: None)
     await backend.start()
     backend.subscription("/cmd_vel", TWIST, lambda sample: order.append("sent"))
     wheels = backend.publisher("/cmd_vel", TWIST)
     guarded.watch(wheels)
+    guarded.announce(lambda: order.append("announced"))
     for speed in (0.0, 0.3, 0.3, 0.0):
         wheels.publish({"linear": {"x": speed}})
         order.append(f"driving {guarded.driving}")

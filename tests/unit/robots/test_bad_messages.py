@@ -12,7 +12,7 @@ from jacaros.robots.artifacts.odometry import ArtOdometry
 from jacaros.robots.artifacts.sensors import ArtBaseScan
 from jacaros.robots.artifacts.thesis import ArtTutorial
 from jacaros.robots.artifacts.velocity import ArtCmdVel
-from jacaros.robots.kit.faults import FAR, SILENCE, BadMessages, Stamps
+from jacaros.robots.kit.reading import FAR, SILENCE, BadMessages, Stamps
 from jacaros.runtime.clock import VirtualClock
 
 ODOMETRY = "nav_msgs/msg/Odometry"
