@@ -22,7 +22,7 @@ COLOURS = {
 
 
 def layers() -> list[list[str]]:
-    """Return the packages of each layer, from above."""
+    """Return the boxes of each layer, from above; packages that import each other (``:``) share one."""
     contracts = ConfigParser()
     contracts.read(ROOT / ".importlinter")
     told = contracts["importlinter:contract:layers"]["layers"].split("\n")
@@ -51,7 +51,7 @@ def drawing() -> Iterator[str]:
                 f'<rect x="{left:.1f}" y="{top}" width="{width:.1f}" height="{HEIGHT}" rx="5" '
                 f'fill="{COLOURS[name.partition(".")[0]]}" stroke="#55606b"/>'
             )
-            text = name.replace(".", "/")
+            text = name.replace(" : ", ", ").replace("jacaros.", "").replace(".", "/")
             yield f'<text x="{left + width / 2:.1f}" y="{top + HEIGHT / 2 + 5:.0f}" fill="#1c2329">{text}</text>'
     yield "</svg>"
 
