@@ -36,9 +36,9 @@ from jacaros.agents.mind.state.pending import ACTION, Need, Waiting, Wanted
 from jacaros.agents.mind.state.plan import FAILED, SUSPENDED, Engine, Fail, Failure, OpenFact, Rule
 from jacaros.agents.mind.state.plan_library import ProgramPlans
 from jacaros.agents.mind.state.triggers import (
-    EventAnnotations,
     Goal,
     Trigger,
+    annotations_of_event,
     apart,
     own_annotations,
     trigger,
@@ -370,13 +370,14 @@ class Mind(Circumstance):
 
     def post_separate(self, goal: Goal | Posted) -> None:
         """``!!g``: adopt a new intention that shares no variables with this one."""
-        annotations: EventAnnotations = BY_SELF
-        if isinstance(goal, Posted):
-            annotations, goal = goal.annotations, goal.goal
         current = self.current
         cause = self.cause_now() or (current.cause if current else None)
-        adopt = meta_events.post_new_goal if annotations is BY_SELF else deadlines.adopt
-        adopt(self, (apart(goal), None, annotations, cause))
+        if isinstance(goal, Posted):
+            kind, *own = apart((*goal.goal, *annotations_of_event(goal.annotations)))
+            arity = len(goal.goal) - 1
+            deadlines.adopt(self, ((kind, *own[:arity]), None, tuple(own[arity:]), cause))
+        else:
+            meta_events.post_new_goal(self, (apart(goal), None, BY_SELF, cause))
 
     def begin_act(
         self, symbol: Functor, arguments: tuple[Term, ...], annotations: tuple[Term, ...], next_step: NextStep

@@ -359,7 +359,7 @@ def _refuse_changes(data: bytes) -> None:
 # conditions that Python code awaits, and opaque objects in terms.
 
 
-FORMAT = 8
+FORMAT = 9
 """Version of the format."""
 
 _FIELDS = (

@@ -1,6 +1,7 @@
 """Goals leave the stack: finished plans (rule ClrInt), those whose goal condition holds, and those cut from outside."""
 
 from jacaros.agents.mind.rules import failure, meta_events
+from jacaros.agents.mind.rules.achieving import is_achieved
 from jacaros.agents.mind.rules.forks import leave
 from jacaros.agents.mind.rules.supervision import end_above
 from jacaros.agents.mind.state.circumstance import Circumstance
@@ -30,21 +31,30 @@ def pop_finished(agent: Circumstance, intention: Intention) -> bool:
         if frame[PLAN].special and frame[PLAN].goal_condition is not None and not _is_achieved(agent, frame):
             Waiting(intention, GOAL_CONDITION).attach(frame, None)
             return False
-        state = "achieved"
+        if agent.features.ends and not _leaves(agent, intention, frame):
+            return frame[STEP] is not None
         if handlers and frame[GOAL][0].failing:
-            state, index = "recovered", handlers.pop()
-            frame = frames[index]
-            del frames[index:]
+            del frames[handlers.pop() :]
         else:
             frames.pop()
-        if agent.features.meta and frame[GOAL][0].kind:
-            meta_events.observe(agent, intention, frame, state)
-            meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "achieved")
-            meta_events.frame_state(agent, intention, frame, "finished")
         if agent.atomic is intention and not intention.is_atomic():
             agent.atomic_over = True
     agent.finish(intention)
     return False
+
+
+def _leaves(agent: Circumstance, intention: Intention, frame: Frame) -> bool:
+    """Return whether a plan that has ended has achieved what it was to achieve; report then that its goal is over."""
+    if not is_achieved(agent, intention):
+        return False
+    state, handlers = "achieved", intention.handlers
+    if handlers and frame[GOAL][0].failing:
+        state, frame = "recovered", intention.frames[handlers[-1]]
+    if agent.features.meta and frame[GOAL][0].kind:
+        meta_events.observe(agent, intention, frame, state)
+        meta_events.goal_state(agent, frame[GOAL], frame[ANNOTATIONS], "achieved")
+        meta_events.frame_state(agent, intention, frame, "finished")
+    return True
 
 
 def end_achieved_goals(agent: Circumstance) -> None:

@@ -11,13 +11,13 @@ from math import ceil, floor
 
 from jacaros.agents.language.lowering import Variables, lower
 from jacaros.agents.mind.rules import failure, meta_events
+from jacaros.agents.mind.rules.achieving import both, clean_up, log_fault
 from jacaros.agents.mind.rules.body_steps import interpreted
 from jacaros.agents.mind.rules.clr_int import cut_out, pop_finished
 from jacaros.agents.mind.rules.failure import error_terms, fail_intention, step_failure, told
 from jacaros.agents.mind.rules.failure_reason import ERROR, ERROR_MSG, FailureReason, nowhere
 from jacaros.agents.mind.rules.pending import cancel, is_true, now, set_alarm, watch
 from jacaros.agents.mind.rules.supervision import end, pause, post_again, supervising
-from jacaros.agents.mind.state.belief_base import parts
 from jacaros.agents.mind.state.circumstance import Circumstance
 from jacaros.agents.mind.state.intention import (
     ANNOTATIONS,
@@ -33,7 +33,9 @@ from jacaros.agents.mind.state.intention import (
     variables_of,
 )
 from jacaros.agents.mind.state.pending import (
+    CONDITION,
     SUPERVISION,
+    WRITTEN,
     AnswerWait,
     CoroutineWait,
     Pending,
@@ -43,14 +45,12 @@ from jacaros.agents.mind.state.pending import (
     is_pause,
     is_supervision,
 )
-from jacaros.agents.mind.state.plan import SUSPENDED, Failure
+from jacaros.agents.mind.state.plan import ACHIEVES, SUSPENDED, Failure
 from jacaros.agents.mind.state.triggers import (
     EventAnnotations,
     Goal,
     apart,
     literal_of,
-    own_annotations,
-    trigger,
 )
 from jacaros.agents.terms.substitution import rename, resolve
 from jacaros.agents.terms.text import text
@@ -63,7 +63,6 @@ from jacaros.agents.terms.values import (
     atom,
     bare,
     functor,
-    functor_of,
     structure,
 )
 from jacaros.runtime.files.texts import is_worth_a_line
@@ -71,7 +70,7 @@ from jacaros.runtime.files.texts import is_worth_a_line
 WITHIN, HARD_DEADLINE, EVERY = functor("within", 1), functor("hard_deadline", 1), functor("every", 1)
 RETRY, RETRY_AFTER = functor("retry", 1), functor("retry", 2)
 ACTING: frozenset[Functor] = frozenset({WITHIN, HARD_DEADLINE, EVERY, RETRY, RETRY_AFTER})
-"""The annotations of goals that have an effect."""
+"""The annotations of goals that have an effect, and numbers."""
 _NOT = functor("not", 1, kind=LOGIC)
 _EXACT = 1e-5
 """Tolerance for inaccurate clocks, in seconds."""
@@ -83,12 +82,16 @@ _EXACT = 1e-5
 def supervision_of(goal: Goal, annotations: tuple[Term, ...]) -> Supervision | None:
     """Return the supervision of a goal, or None if its annotations ask for none. Invalid annotations have no effect."""
     found = Supervision(goal[0])
+    conditions = []
     for inner in map(bare, annotations):
-        if inner.__class__ is tuple and inner[0] in ACTING:
-            numbers = inner[1:]
-            if all(number.__class__ is float for number in numbers):
-                _take(found, inner[0], numbers)
-    acts = found.within is not None or found.retries or found.period is not None
+        if inner.__class__ is not tuple:
+            continue
+        if inner[0] in ACTING and all(number.__class__ is float for number in inner[1:]):
+            _take(found, inner[0], inner[1:])
+        elif inner[0].name == ACHIEVES and 1 <= inner[0].arity <= 2:
+            conditions.append(list(inner[1:]))
+    found.achieves, found.settle = both(conditions)
+    acts = found.within is not None or found.retries or found.period is not None or conditions
     return found if acts and goal[0].kind == "!" else None
 
 
@@ -114,7 +117,7 @@ def supervised(
         return goal
     supervision.began = now(agent)
     intention.frames.append(supervising(agent, supervision, _ended, annotations, goal[1:]))
-    return _begin(agent, supervision, goal)
+    return _begin(agent, intention.frames[-1], goal)
 
 
 def adopt(agent: Circumstance, event: Event) -> None:
@@ -129,12 +132,16 @@ def adopt(agent: Circumstance, event: Event) -> None:
     meta_events.post_new_goal(agent, event)
 
 
-def _begin(agent: Circumstance, supervision: Supervision, goal: Goal) -> Goal:
+def _begin(agent: Circumstance, holder: Frame, goal: Goal) -> Goal:
     """Begin the goal or one period; return the goal to post, with new variables in each period."""
+    supervision: Supervision = holder[SUPERVISION]
     supervision.failed = 0
     if supervision.within is not None:
         _set_deadline(agent, supervision, supervision.within)
-    return goal if supervision.period is None else apart(goal)
+    if supervision.period is None:
+        return goal
+    *posted, holder[CONDITION] = apart((*goal, holder[WRITTEN]))
+    return tuple(posted)
 
 
 def _ended(agent: Circumstance, frame: Frame) -> object:
@@ -158,13 +165,14 @@ def _next_period(agent: Circumstance, frame: Frame) -> Posted:
     """The step behind the pause between two periods."""
     posted = post_again(agent, frame)
     assert agent.current is not None
-    supervision: Supervision = agent.current.frames[-1][SUPERVISION]
+    holder = agent.current.frames[-1]
+    supervision: Supervision = holder[SUPERVISION]
     assert supervision.period is not None
     passed = floor((now(agent) - supervision.began + _EXACT) / supervision.period)
     # The intention may have been suspended, or the mind stored, when the period began.
     _skip_to(agent, supervision, passed - 1, posted.goal, posted.annotations)
     supervision.number += 1
-    return Posted(_begin(agent, supervision, posted.goal), posted.annotations)
+    return Posted(_begin(agent, holder, posted.goal), posted.annotations)
 
 
 def _skip_to(
@@ -199,7 +207,7 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
     frame[STEP] = plan.first
     guards = _guards(frame)
     supervision = Supervision()
-    supervision.cleanup = guards.get("cleanup")
+    supervision.cleanup, supervision.achieves = guards.get("cleanup"), guards.get(ACHIEVES)
     intention.frames.insert(len(intention.frames) - 1, supervising(agent, supervision, _ended))
     within, condition = guards.get("within"), guards.get("while")
     if isinstance(within, float):
@@ -208,8 +216,8 @@ def begin_guarded(agent: Circumstance, frame: Frame) -> object:
         return None
     lost, fault = is_true(agent, (_NOT, condition))
     if lost:
-        _log_fault(agent, fault, condition)
-        return _clean_up(agent, intention, supervision, frame, nowhere(*_lost(condition))) or SUSPENDED
+        log_fault(agent, fault, condition)
+        return clean_up(agent, intention, supervision, frame, nowhere(*_lost(condition))) or SUSPENDED
     supervision.pending.append(
         watch(agent, (_NOT, condition), _lose, supervision, supervision.pending, condition)
     )
@@ -233,14 +241,8 @@ def _lose(
     condition: Term,
 ) -> None:
     """Interrupt a plan whose condition no longer holds. One that cannot be evaluated does not hold."""
-    _log_fault(agent, fault, condition)
+    log_fault(agent, fault, condition)
     _interrupt(agent, supervision, pending, _lost(condition))
-
-
-def _log_fault(agent: Circumstance, fault: Exception | None, condition: Term) -> None:
-    if fault is not None:
-        told = f"cannot evaluate the condition {text(condition)}: {failure.told(fault)}"
-        agent.architecture.log("error", told)
 
 
 def _lost(condition: Term) -> tuple[Term, ...]:
@@ -248,28 +250,6 @@ def _lost(condition: Term) -> tuple[Term, ...]:
     message = f"the condition {text(condition)} of the plan no longer holds"
     lost = structure("condition_lost", condition)
     return (ERROR, atom("condition_lost")), (ERROR_MSG, String(message)), lost
-
-
-def _clean_up(
-    agent: Circumstance, intention: Intention, supervision: Supervision, frame: Frame, reason: FailureReason
-) -> Posted | None:
-    """Post the clean-up goal of a plan, after which the plan fails; without one it fails immediately."""
-    end(agent, supervision)
-    symbol = functor_of(supervision.cleanup)
-    if symbol is None or symbol.kind:
-        return failure.fail_intention(agent, intention, reason)
-    supervision.lost, frame[STEP] = reason, fail_lost
-    _, arguments, annotations = parts(supervision.cleanup)
-    return Posted((trigger("+", "!", symbol), *arguments), own_annotations(annotations))
-
-
-def fail_lost(agent: Circumstance, frame: Frame) -> object:
-    """The step after the clean-up goal of a plan: the plan fails."""
-    intention = agent.current
-    assert intention is not None
-    supervision: Supervision = intention.frames[-2][SUPERVISION]
-    reason, supervision.lost = supervision.lost, None
-    return failure.fail_intention(agent, intention, reason) or SUSPENDED
 
 
 # --- interruptions -----------------------------------------------------------------------------------------
@@ -330,14 +310,14 @@ def _stop(agent: Circumstance, intention: Intention, index: int, reason: Failure
         agent.post_for(intention, failure.fail_goal(agent, intention, goal, annotations, reason, number))
     elif stopped:
         cut_out(agent, intention, place + 1)
-        agent.post_for(intention, _clean_up(agent, intention, holder[SUPERVISION], stopped[0], reason))
+        agent.post_for(intention, clean_up(agent, intention, holder[SUPERVISION], stopped[0], reason))
 
 
 def _goal_of(frame: Frame) -> tuple[int, Goal, tuple[Term, ...]]:
     """Return the number by which observers know a supervised goal (-1 if it has no plan), and the goal, of a frame."""
     if not is_supervision(frame):
         return -1 if is_pause(frame) else frame[SERIAL], frame[GOAL], frame[ANNOTATIONS]
-    return -1, (frame[SUPERVISION].kind, *frame[SUPERVISION + 1 :]), frame[ANNOTATIONS]
+    return -1, (frame[SUPERVISION].kind, *frame[WRITTEN + 1 :]), frame[ANNOTATIONS]
 
 
 # What follows when a wait ends, or its intention is dropped, suspended or resumed: one function each.

@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from jacaros.agents.language import nodes
 from jacaros.agents.language.diagnostics import Span
@@ -148,7 +148,7 @@ class FailureReason:
 
 @dataclass(slots=True, eq=False)
 class Place:
-    """Where a goal failed: at the formula of a step, at the call of a goal without plan, or nowhere.
+    """Where a goal failed: at the formula of a step, at the call of a goal without plan, at the end of a plan, or nowhere.
 
     Attributes:
         frame: of the step, or of the plan that called the goal; None if something from outside ended the goal.
@@ -201,11 +201,13 @@ class Place:
         return Var(name) if value is None else value
 
     def span(self) -> Span | None:
-        """Return the place of the formula that failed, or of the call of the goal without plan, if there is one."""
+        """Return the place of the formula that failed, the call of the goal without plan, or the plan; if there is one."""
         if self.info is not None:
             return _failed_formula(self.info.node).span
-        if self.frame is None or self.unplanned is None:
+        if self.frame is None:
             return None
+        if self.unplanned is None:
+            return cast("Plan", self.frame[PLAN]).node.span
         return place_of_call(self.frame, self.unplanned[0][0].functor)
 
     def where(self) -> str:

@@ -139,7 +139,7 @@ def observe_goals(agent: Circumstance, observer: GoalObserver) -> None:
     branches of a fork.
     """
     agent.observers.goal = observer
-    agent.features.meta = True
+    agent.features.meta = agent.features.ends = True
     agent.look_at_observers()
 
 

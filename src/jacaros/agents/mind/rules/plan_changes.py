@@ -47,6 +47,7 @@ def look_at_plans(agent: Circumstance) -> None:
     """Update what the mind needs to know of all its plans."""
     agent.features.meta_plans = agent.library.has_meta_plans()
     agent.features.meta = agent.observers.goal is not None or agent.features.meta_plans
+    agent.features.ends = agent.features.ends or agent.features.meta
     agent.incoming.called = True
     agent.features.edges = agent.may_handle(SLEEPING) or agent.may_handle(AWAKING)
     if not agent.features.edges:

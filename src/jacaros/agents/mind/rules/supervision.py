@@ -33,7 +33,10 @@ def supervising(
     arguments: tuple[Term, ...] = (),
 ) -> Frame:
     """Make the frame of a supervision; *behind* is its step when the goal or plan has ended."""
-    return [behind, (SUPERVISED,), annotations, agent.trail.serial + 1, _SUPERVISING, supervision, *arguments]
+    written = supervision.achieves
+    agent.features.ends = agent.features.ends or written is not None
+    holder = [behind, (SUPERVISED,), annotations, agent.trail.serial + 1, _SUPERVISING]
+    return [*holder, supervision, written, written, *arguments]
 
 
 def end(agent: Circumstance, supervision: Supervision) -> None:

@@ -18,7 +18,7 @@ from jacaros.agents.mind.state.intention import (
     Intention,
     Posted,
 )
-from jacaros.agents.mind.state.pending import Waiting, Waits, Wanted
+from jacaros.agents.mind.state.pending import CONDITION, Waiting, Waits, Wanted, is_supervision
 from jacaros.agents.mind.state.plan import Engine, Plan
 from jacaros.agents.mind.state.plan_library import PlanLibrary, ProgramPlans
 from jacaros.agents.mind.state.triggers import EventAnnotations, Goal, Trigger
@@ -216,11 +216,13 @@ class Features:
     Attributes:
         meta: plans or an observer react to changes of goal states.
         meta_plans: plans do.
+        ends: something is to be done when a plan has ended: states are reported, or conditions are tested.
         edges: there may be plans for falling asleep and awaking.
     """
 
     meta: bool = False
     meta_plans: bool = False
+    ends: bool = False
     edges: bool = False
 
 
@@ -352,6 +354,8 @@ class Circumstance(_Rules):
         for frame in intention.frames:
             if frame[PLAN].special:
                 self.note_plan(intention, frame[PLAN])
+            elif is_supervision(frame) and frame[CONDITION] is not None:
+                self.features.ends = True
 
     def make_ready(self, intention: Intention) -> None:
         """Let an intention take part in the next cycles; a suspended one once it is resumed."""

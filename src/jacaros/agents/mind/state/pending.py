@@ -269,13 +269,14 @@ SUPERVISED = trigger("+", "", functor("supervised", 0, namespace="jacaros"))
 """The trigger of frames that hold a supervision."""
 PAUSE = functor("pause", 0, namespace="jacaros")
 """The label of the plan of a frame that represents a goal between two of its plans."""
-SUPERVISION = FIRST_SLOT
-"""The place of the supervision in such a frame; the arguments of a supervised goal follow."""
+SUPERVISION, CONDITION, WRITTEN = range(FIRST_SLOT, FIRST_SLOT + 3)
+"""Places in such a frame: the supervision, what is to be tested at the end (None once it held), and that as it was
+written, with the variables of the goal; the arguments of a supervised goal follow."""
 
 
 @dataclass(slots=True, eq=False)
 class Supervision:
-    """Supervises a goal, ``!g[within(Ms), retry(N, Ms), every(Ms)]``, or a plan, ``@p[while(C), within(Ms), cleanup(G)]``.
+    """Supervises a goal, ``!g[within(Ms), retry(N, Ms), every(Ms), achieves(C, Ms)]``, or a plan, ``@p[while(C), ..]``.
 
     Attributes:
         kind: of the goal; None for a plan.
@@ -289,7 +290,9 @@ class Supervision:
         began: when period 0 began, in the time of the agent.
         number: of the present period.
         missed: number of missed periods.
-        cleanup: the goal that is pursued when a plan is interrupted, or None.
+        achieves, settle: the condition that must hold at the end, or None, and for how many seconds to wait for it (of a
+            plan both are computed at its end).
+        cleanup: the goal that is pursued when a plan is interrupted, or has not achieved its condition; or None.
         lost: why a plan is about to fail (`FailureReason`), once it has been interrupted.
     """
 
@@ -304,6 +307,8 @@ class Supervision:
     began: float = 0.0
     number: int = 0
     missed: int = 0
+    achieves: Term = None
+    settle: float = 0.0
     cleanup: Term = None
     lost: Any = None
 
@@ -323,10 +328,15 @@ def caller_of(intention: Intention) -> Frame | None:
     return next((frame for frame in reversed(intention.frames) if not is_supervision(frame)), None)
 
 
-def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
-    """Return the supervisions of the frame at *index*, or of the goal that is about to get a frame there."""
-    found: list[Supervision] = []
+def holders_below(intention: Intention, index: int) -> list[Frame]:
+    """Return the frames of the supervisions of the frame at *index*, or of the goal that is about to get a frame there."""
+    found: list[Frame] = []
     while index and is_supervision(frame := intention.frames[index - 1]):
-        found.append(frame[SUPERVISION])
+        found.append(frame)
         index -= 1
     return found
+
+
+def supervisions_below(intention: Intention, index: int) -> list[Supervision]:
+    """Return these supervisions, the innermost first."""
+    return [frame[SUPERVISION] for frame in holders_below(intention, index)]

@@ -140,7 +140,8 @@ Entry = tuple[Term, ...] | Rule | OpenFact
 ALL_UNIFIERS, ATOMIC_LABEL = atom("all_unifs"), atom("atomic")
 URL = functor("url", 1)
 URGENCY = functor("urgency", 1)
-GUARDS = frozenset({"while", "within", "cleanup"})
+ACHIEVES = "achieves"
+GUARDS = frozenset({"while", "within", "cleanup", ACHIEVES})
 
 
 @dataclass
@@ -181,8 +182,9 @@ class Plan:
             condition or sub-plans.
         nested: its goals may be for sub-plans: its own, or those around it.
         replaceable: nothing is left to do once its last formula has called a goal: it has neither goal condition nor
-            sub-plans, and it holds no resources.
-        guards: what its label says of the time while it runs: ``while(Condition)``, ``within(Ms)``, ``cleanup(Goal)``.
+            sub-plans, it holds no resources, and it is not checked at its end.
+        guards: what its label says of the time while it runs and of its end: ``while(Condition)``, ``within(Ms)``,
+            ``cleanup(Goal)``, ``achieves(Condition, Ms)``.
         goal_condition: tells of a frame whether its goal is achieved though the body has not ended; or None.
         subplans: plans for what happens while this one is pursued.
         subselects: their select functions by event kind, made at the first event.
@@ -220,7 +222,8 @@ class Plan:
             self.urgency = _urgency(self.annotations)
             self.guards = guards_of(node)
             self.needs = wanted_in(self.annotations)
-        self.replaceable = node.goal_condition is None and not node.subplans and self.needs is None
+        is_checked = any(guard.functor == ACHIEVES for guard in self.guards)
+        self.replaceable = not (node.goal_condition or node.subplans or self.needs or is_checked)
         self.special = self.atomic or not self.replaceable
         self.nested = bool(node.subplans)
 
@@ -299,7 +302,9 @@ def guards_of(node: nodes.Plan) -> tuple[nodes.Literal, ...]:
     return tuple(
         item
         for item in (() if annotations is None else annotations.items)
-        if isinstance(item, nodes.Literal) and item.functor in GUARDS and len(item.arguments) == 1
+        if isinstance(item, nodes.Literal)
+        and item.functor in GUARDS
+        and 1 <= len(item.arguments) <= 1 + (item.functor == ACHIEVES)
     )
 
 
