@@ -162,6 +162,7 @@ class Writer:
             f"while(b({found}) & {found} > {self._number()})",
             f"while(not c({found})), cleanup(inner(X0))",
             f"within({self._random.randint(1, 9)})",
+            f"achieves({self._formula(1)}, {self._random.randint(0, 3)}), cleanup(inner(X0))",
         )
 
     def _end_of_plan(self, number: int) -> str:
@@ -211,6 +212,8 @@ class Writer:
             f"[within({milliseconds})]",
             f"[retry(2, {milliseconds})]",
             f"[every({100 * milliseconds}), within(4)]",
+            f"[achieves({self._formula(1)})]",
+            f"[achieves({self._formula(1)}, 2), retry(2, {milliseconds}), within(9)]",
             f"[needs({self._pick('arm', 'base')})]",
         )
 

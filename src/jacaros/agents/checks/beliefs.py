@@ -82,7 +82,7 @@ def beliefs_of(program: nodes.Program, actions: Mapping[str, Declaration]) -> Be
             found.facts.setdefault(_name(belief), []).append(belief)
             _note(belief, found)
     asked: set[int] = set()
-    for clause in clauses(program):
+    for clause in (*clauses(program), *program.goals):
         for node, is_asked in in_order(clause):
             if isinstance(node, nodes.InternalAction):
                 _look_at_call(node, actions.get(node.name, UNDECLARED), asked, found)

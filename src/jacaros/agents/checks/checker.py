@@ -194,7 +194,8 @@ def _holds_any(span: Span | None, wrong: Mapping[int, Sequence[int]]) -> bool:
 
 # Check for plans that can never be selected, and for handlers that drop more than you may expect.
 
-_LABEL_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy", "within", "cleanup")
+_OWN_WORDS: Final = ("atomic", "breakpoint", "all_unifs", "urgency", "needs", "policy")
+"""Annotations that have a meaning in labels, besides those that supervise."""
 
 
 def never_selected(program: nodes.Program, found: ByKind, known: KnownActions) -> Iterator[Diagnostic]:
@@ -336,17 +337,21 @@ def narrow_handlers(program: nodes.Program) -> Iterator[Diagnostic]:
 def wrong_labels(found: ByKind) -> Iterator[Diagnostic]:
     """Warn of misspelt annotations of labels, and of an ``urgency`` that is not a non-negative integer."""
     for item in chain.from_iterable(map(labelled, found.of(nodes.Plan))):
-        meant = [word for word in _LABEL_WORDS if is_slip_of(item.functor, word)]
-        if meant:
-            message = f"label annotation `{item.functor}` has no meaning"
-            yield problem("misspelt-annotation", message, item.span, did_you_mean(meant[:1]))
-        elif item.functor == "urgency" and not _is_urgency(item):
+        yield from _misspelt(item, "label", (*_OWN_WORDS, *_OF_LABELS))
+        if item.functor == "urgency" and not _is_urgency(item):
             yield problem(
                 "wrong-urgency",
                 "urgency must be a non-negative integer; this one has no effect",
                 item.span,
                 "write a number, such as `urgency(10)`; the greatest goes first",
             )
+
+
+def _misspelt(item: nodes.Literal, what: str, words: Sequence[str]) -> Iterator[Diagnostic]:
+    meant = [word for word in words if is_slip_of(item.functor, word)]
+    if meant:
+        message = f"{what} annotation `{item.functor}` has no meaning"
+        yield problem("misspelt-annotation", message, item.span, did_you_mean(meant[:1]))
 
 
 def _is_urgency(item: nodes.Literal) -> bool:
@@ -359,7 +364,7 @@ def _is_urgency(item: nodes.Literal) -> bool:
     return isinstance(argument, nodes.Arithmetic)
 
 
-# Check annotations of goals and labels that supervise: deadlines, attempts, periods and guard conditions.
+# Check annotations of goals and labels that supervise: deadlines, attempts, periods and conditions.
 
 
 _Check = Callable[[tuple[nodes.Term, ...]], bool]
@@ -370,6 +375,8 @@ _HELP: Final = {
     "retry": "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`",
     "while": "write one condition, such as `while(battery(B) & B > 20)`",
     "cleanup": "write one goal, such as `cleanup(park)`",
+    "achieves": "write a condition and a time in milliseconds, such as `achieves(docked(true))` or "
+    "`achieves(docked(true), 2000)`",
 }
 
 
@@ -398,17 +405,31 @@ def _is_goal(arguments: tuple[nodes.Term, ...]) -> bool:
     return len(arguments) == 1 and isinstance(arguments[0], nodes.Literal | nodes.Variable)
 
 
+def _is_achieved(arguments: tuple[nodes.Term, ...]) -> bool:
+    """Return whether there is a condition, and optionally a time."""
+    value = nodes.Number | nodes.String | nodes.ListTerm
+    return (
+        1 <= len(arguments) <= 2
+        and not isinstance(arguments[0], value)
+        and all(_number(time, 0) for time in arguments[1:])
+    )
+
+
 _CHECKS: Final[dict[str, _Check]] = {
     **dict.fromkeys(("within", "hard_deadline", "every"), _is_time),
     "retry": _is_retry,
     "while": lambda arguments: len(arguments) == 1,
     "cleanup": _is_goal,
+    "achieves": _is_achieved,
 }
-_OF_GOALS: Final = ("within", "hard_deadline", "every", "retry")
-_OF_LABELS: Final = ("within", "while", "cleanup")
+_OF_GOALS: Final = ("within", "hard_deadline", "every", "retry", "achieves")
+_OF_LABELS: Final = ("within", "while", "cleanup", "achieves")
 _MISPLACED: Final = {
     "goals": (("while",), "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
-    "test goals": (("within", "every", "retry"), "write it at a goal that asks: `!ask[within(5000)]`"),
+    "test goals": (
+        ("within", "every", "retry", "achieves"),
+        "write it at a goal that asks: `!ask[within(5000)]`",
+    ),
     "plans": (("every", "retry", "hard_deadline"), "write it at the goal: `!g[{}]`"),
 }
 """Annotations that have no effect on these, and where they belong."""
@@ -430,17 +451,20 @@ def _wrong_of(items: Sequence[nodes.Literal], valid: Sequence[str], where: str) 
         word = item.functor
         if word in valid and not _CHECKS[word](item.arguments):
             yield problem("wrong-supervision", f"invalid `{word}`", item.span, _HELP[word])
-        elif word in valid and word == "while":
-            yield from _never_true(item)
+        elif word in valid and word in ("while", "achieves"):
+            yield from _never_true(item, where)
         elif word in misplaced and item.arguments:
             message = f"`{word}` has no effect on {where}"
             yield problem("wrong-supervision", message, item.span, help.format(_example(word)))
 
+        elif where == "goals" and item.arguments:
+            yield from _misspelt(item, "goal", valid)
 
-def _never_true(item: nodes.Literal) -> Iterator[Diagnostic]:
+
+def _never_true(item: nodes.Literal, where: str) -> Iterator[Diagnostic]:
     why = contradiction(item.arguments[0])
     if why is not None:
-        yield problem("context-never-true", f"this plan always fails: {why}", item.span)
+        yield problem("context-never-true", f"this {where[:-1]} always fails: {why}", item.span)
 
 
 def _example(word: str) -> str:

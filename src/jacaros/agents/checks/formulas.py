@@ -38,11 +38,11 @@ CONDITIONED: Final[tuple[type[Any], ...]] = (
     nodes.For,
     nodes.Test,
 )
-"""The kinds of nodes that have conditions, besides labels with ``while``."""
+"""The kinds of nodes that have conditions, besides labels and goals with ``while`` and ``achieves``."""
 
 
 def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
-    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, ``while`` of labels."""
+    """Yield the conditions of *node* itself: contexts, tests, conditions of statements, rules, annotations."""
     if isinstance(node, nodes.Plan):
         if node.context is not None:
             yield node.context
@@ -54,8 +54,8 @@ def conditions(node: nodes.Node) -> Iterator[nodes.Term]:
         yield node.formula
     elif isinstance(node, nodes.Rule):
         yield node.body
-    elif isinstance(node, nodes.Literal) and node.functor == "while" and len(node.arguments) == 1:
-        yield node.arguments[0]
+    elif isinstance(node, nodes.Literal) and node.functor in ("while", "achieves"):
+        yield from node.arguments[:1]
 
 
 def labelled(plan: nodes.Plan) -> list[nodes.Literal]:

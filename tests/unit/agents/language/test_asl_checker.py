@@ -286,6 +286,10 @@ def test_slips_are_recognised(written, meant, like):
 
 
 RETRY = "write the number of retries and a delay in milliseconds, such as `retry(3)` or `retry(3, 500)`"
+ACHIEVES = (
+    "write a condition and a time in milliseconds, such as `achieves(docked(true))` or "
+    "`achieves(docked(true), 2000)`"
+)
 
 
 @pytest.mark.parametrize(
@@ -303,6 +307,11 @@ RETRY = "write the number of retries and a delay in milliseconds, such as `retry
         ("+!g <- !g[while(g)].", "write it in the label of a plan: `@p[while(ready)] +!g <- ...`"),
         ("@p[cleanup(3)] +!g.", "write one goal, such as `cleanup(park)`"),
         ("@p[while(a, b)] +!g.", "write one condition, such as `while(battery(B) & B > 20)`"),
+        ("+!g <- !g[achieves].", ACHIEVES),
+        ("+!g <- !g[achieves(ok, soon)].", ACHIEVES),
+        ("+!g <- !!g[achieves(ok, -1)].", ACHIEVES),
+        ("@p[achieves(5)] +!g.", ACHIEVES),
+        ("+!g <- ?g[achieves(ok)].", "write it at a goal that asks: `!ask[within(5000)]`"),
     ],
 )
 def test_annotations_that_act_are_valid_and_at_their_places(text, help_):
@@ -316,6 +325,9 @@ def test_labels_are_looked_at_and_valid_annotations_that_act_are_not_reported():
     assert codes("@p[while(a & not a)] +!g.") == ["context-never-true"]
     assert codes("@p[while(a), cleanup(park)] +!g.") == ["unknown-goal"]
     assert codes("@p[while(at(Room))] +!g(Room).") == []
+    assert codes("@p[achieves(at(R) & not b(3), 100)] +!g(R) <- !g(3)[achieves(ok | b(T), T)].") == []
+    assert codes("!g[achieves(a & not a)]. +!g <- !g[achieves(false)].") == ["context-never-true"] * 2
+    assert codes("+!g <- !g[achives(ok)].") == codes("@p[achives(ok)] +!g.") == ["misspelt-annotation"]
 
 
 @pytest.mark.parametrize(

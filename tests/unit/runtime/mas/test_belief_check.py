@@ -83,6 +83,9 @@ def never(folder: Path, program: str) -> list[str]:
         "+!go <- .findall(D, obstacel(D), L); .print(L).",
         "+!go <- .wait({+obstacel(D)}); .print(D).",
         "@p[while(obstacel(D) & D > 1)] +!go <- .print(a).",
+        "@p[achieves(not obstacel(D) | D > 1, 500)] +!go <- .print(a).",
+        "+!go <- !go[achieves(obstacel(D) & D > 1)].",
+        "!go[achieves(not obstacel(_))]. +!go.",
     ],
 )
 def test_each_place_where_a_property_is_queried(folder: Path, use: str) -> None:
