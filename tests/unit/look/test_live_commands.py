@@ -15,6 +15,7 @@ from jacaros.look.page.live import run_view
 from jacaros.look.records.records import Record
 from jacaros.look.why.explanation import Explanation
 from jacaros.look.why.why import explain
+from jacaros.robots.artifacts.operator_artifact import Operator
 from played import played
 
 WORLD = """
@@ -231,6 +232,22 @@ async def test_an_operation_is_executed(page) -> None:
     assert "unknown artifact" in await page.refused("operate", artifact="clock", text="count(1, X)")
 
 
+@played(commanding)
+async def test_a_question_to_a_person_is_answered(page) -> None:
+    await page.mas.make_artifact("operator", Operator)
+    page.mas.add_agent("eve", '!ask. +!ask <- ask("Where?", [kitchen, hall], Place); +found(Place).')
+    await page.event("property", artifact="/main/operator", values=[1, "Where?", ["kitchen", "hall"]])
+    answer = {"artifact": "operator", "question": 1}
+    refused = "`attic` is not an answer to question 1: expected kitchen, hall"
+    assert await page.refused("answer", **answer, text="attic") == refused
+    await page.done("answer", **answer, text="2")
+    await page.mas.agent("eve").until("found(hall)")
+    await page.event("intervention", what="operator: answer to question 1: 2")
+    await page.event("signal", signal="answered(1,hall,page)")
+    await page.event("operation", operation='answer(1,"2")', agent="page", state="done")
+    assert await page.refused("answer", **answer, text="1") == "question 1 is not open"
+
+
 @pytest.mark.parametrize(
     ("command", "why"),
     [
@@ -252,7 +269,7 @@ async def test_incomplete_commands_are_refused(page, command: dict[str, object],
 
 @played(commanding)
 async def test_only_available_commands_are_offered(page) -> None:
-    assert {"belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
+    assert {"answer", "belief", "console", "goal", "message", "operate"} <= set(page.hello["can"])
     assert not {"move_robot", "door", "obstacle", "person", "battery", "fault"} & set(page.hello["can"])
 
 

@@ -55,6 +55,8 @@ def cut(told: str) -> str:
 
 LONGEST_VALUE = 200
 """Maximum number of characters of a recorded value or message."""
+LONGEST_TEXT = 1000
+"""Maximum number of characters of a recorded string: a question to a person must be readable."""
 _FIELDS = 12
 """Maximum number of fields of a message."""
 _LARGEST = 10**15
@@ -66,7 +68,7 @@ def limited(words: str) -> str:
 
 
 def json_value(value: object) -> object:
-    """Return a plain value of the environment as JSON data: numbers, Booleans and strings unchanged, others as text."""
+    """Return a plain value of the environment as JSON data: numbers, Booleans, strings and short lists; others as text."""
     kind = type(value)
     if kind is float:
         return value if math.isfinite(value) else str(value)  # type: ignore[arg-type]
@@ -74,7 +76,10 @@ def json_value(value: object) -> object:
         return value
     if kind is int and -_LARGEST < value < _LARGEST:  # type: ignore[operator]
         return value
-    return limited(_value_text(value))
+    words = _value_text(value)
+    if kind is list and len(words) <= LONGEST_VALUE:
+        return json_values(value)  # type: ignore[arg-type]
+    return words[:LONGEST_TEXT] if isinstance(value, str) else limited(words)
 
 
 def json_values(values: Iterable[object]) -> list[object]:

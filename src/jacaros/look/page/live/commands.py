@@ -34,6 +34,8 @@ LONGEST = 2_000
 """Maximum number of characters of a text in a command: parsing it takes about 10 ms."""
 YOU = "you"
 """Caller of operations and sender of messages of the page."""
+PAGE = "page"
+"""Caller of ``answer``: the place where a person answered a question."""
 RADIUS = 0.2
 """Default radius of an obstacle, in metres."""
 
@@ -123,6 +125,7 @@ _SAID = {
     "message": "{performative} to {agent}: {text}",
     "console": "{agent}: {text}",
     "operate": "{artifact}: {text}",
+    "answer": "{artifact}: answer to question {question}: {text}",
     "move_robot": "{robot} moved to ({x}, {y})",
     "battery": "battery of {robot}: {level} %",
     "door": "door {name} open: {open}",
@@ -261,24 +264,39 @@ def _refuse(why: str | None) -> None:
 
 
 def artifact_commands(system: System) -> Mapping[str, Command]:
-    """Return the command that calls an operation of an artifact."""
+    """Return the commands that call operations of artifacts."""
 
-    async def operate(artifact: Text, text: Text) -> str:
+    def environment() -> Environment:
         if system.environment is None:
             raise Refused("this run has no artifacts")
-        return await _operate(system.environment, artifact, text)
+        return system.environment
 
-    return {"operate": operate}
+    async def operate(artifact: Text, text: Text) -> str:
+        return await _operate(environment(), artifact, text)
+
+    async def answer(artifact: Text, question: int, text: Text) -> None:
+        await _call(environment(), artifact, "answer", (question, text), PAGE)
+
+    return {"operate": operate, "answer": answer}
 
 
 async def _operate(environment: Environment, artifact: str, written: str) -> str:
     """Call an operation such as ``moveForward(1)``, wait for its end, and return its results as text."""
-    target = _find(environment, artifact)
     names = Variables()
     outputs: Outputs = []
     term: Any = bare(lower_value(parse_literal(written), names.__getitem__))
     name, *arguments = term if term.__class__ is tuple else (term,)
     values = tuple(to_value(each, outputs) for each in arguments)
+    await _call(environment, artifact, name.name, values, YOU)
+    results = ((name, _value_of(variable, outputs)) for name, variable in names.items())
+    return ", ".join(f"{name} = {value}" for name, value in results)
+
+
+async def _call(
+    environment: Environment, artifact: str, name: str, values: tuple[object, ...], caller: str
+) -> None:
+    """Call an operation, and wait for its end."""
+    target = _find(environment, artifact)
     ended: asyncio.Future[OperationOutcome] = asyncio.get_running_loop().create_future()
 
     def done(outcome: OperationOutcome) -> None:
@@ -286,13 +304,11 @@ async def _operate(environment: Environment, artifact: str, written: str) -> str
             ended.set_result(outcome)
 
     with of_run():
-        environment.execute(OperationRequest(target, name.name, values, YOU, None, done, None))
+        environment.execute(OperationRequest(target, name, values, caller, None, done, None))
     outcome = await ended
     if not outcome.ok:
         why = outcome.message or (value_text(outcome.reason) if outcome.reason is not None else "it failed")
         raise Refused(why)
-    results = ((name, _value_of(variable, outputs)) for name, variable in names.items())
-    return ", ".join(f"{name} = {value}" for name, value in results)
 
 
 def _value_of(variable: Var, outputs: Outputs) -> str:

@@ -131,7 +131,8 @@ export function propertyText({ name, values }) {
   return values.length ? `${name}(${values.map(valueText).join(", ")})` : name;
 }
 
-function valueText(value) {
+/** A value of a property as text. */
+export function valueText(value) {
   if (Array.isArray(value)) return `[${value.map(valueText).join(", ")}]`;
   if (typeof value === "number" && !Number.isInteger(value)) return String(Number(value.toFixed(3)));
   return typeof value === "object" && value !== null ? JSON.stringify(value) : String(value);

@@ -19,6 +19,7 @@ import { Messages } from "./messages.js";
 import { MessagesView } from "./messages_view.js";
 import { Minds } from "./minds.js";
 import { ProgramView } from "./program_view.js";
+import { QuestionsView } from "./questions_view.js";
 import { RobotsView } from "./robots_view.js";
 import { Run } from "./run.js";
 import { Selection } from "./selection.js";
@@ -63,6 +64,7 @@ export function startPage({ live, commands }) {
   const tools = new WorldTools(at("tools"), context, world);
   const map = new MapView(at("map"), context, world, links, tools);
   const beside = [
+    [at("questions"), new QuestionsView(at("questions"), context, environment)],
     [at("tools"), tools],
     [at("controls"), new ControlsView(at("controls"), context, { debugging, minds })],
     [at("robots"), new RobotsView(at("robots"), context, world, links)],
