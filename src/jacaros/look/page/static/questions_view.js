@@ -9,7 +9,7 @@ const CUT = 150;  // characters of a question by which its operation is found
 export class QuestionsView {
   constructor(root, context, environment) {
     Object.assign(this, { root, context, environment, showsAlways: true });
-    this.cards = new Map();  // by artifact and number: what somebody types must stay when another question comes
+    this.cards = new Map();  // by artifact and number: typed text must stay when another question comes
   }
 
   show(t) {
