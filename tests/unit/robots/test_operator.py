@@ -118,6 +118,15 @@ async def test_a_dropped_question_is_withdrawn_everywhere(
     assert [each["question"] for each in seen.shown[-1]] == [2]
 
 
+async def test_disposing_the_artifact_ends_its_questions(lab: Lab, artifact: ArtifactId) -> None:
+    seen = Questions(await lab.node("panel"))
+    run, _ = await asked(lab, artifact)
+    lab.workspace.dispose_artifact(artifact)
+    await lab.sleep(0.1)
+    assert (run.ok, seen.shown[-1], lab.logged[1:]) == (False, [], [])  # the first line is the question
+    assert not [name for name in (await lab.backend.contents()).services if "question" in name]
+
+
 async def test_a_node_that_comes_late_sees_and_answers(
     lab: Lab, artifact: ArtifactId, watcher: Watcher
 ) -> None:

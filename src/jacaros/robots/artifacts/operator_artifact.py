@@ -187,13 +187,13 @@ class Operator(RosArtifact):
         if chosen is None:
             options = ", ".join(map(text_of, asked.options)) or "a text"
             self.fail(
-                f"`{text_of(answer)}` is not an answer to question {number}: expected {options}",
+                f"`{text_of(answer):.100}` is not an answer to question {number}: expected {options}",
                 "no_option",
                 answer,
             )
         self._withdraw(asked)
         self.signal("answered", number, chosen, by)
-        self.log(f"question {number} answered by {by}: {text_of(chosen)}")
+        self.log(f"question {number} answered by {by}: {text_of(chosen):.200}")
         asked.answer.set_result(chosen)
 
     def _withdraw(self, asked: _Question) -> None:
