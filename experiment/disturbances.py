@@ -6,6 +6,12 @@ from typing import NamedTuple
 
 Draw = random.Random
 
+FURTHER = 1000
+"""Seeds above this have one of the further kinds of disturbances."""
+
+DOCK = (1.0, 1.0)
+"""Where the dock is in the worlds in which robots recharge, in metres."""
+
 COMMANDS = ("/cmd_vel", "/cmd_vel_mux/input/navi")
 SENSORS = ("/odom", "/tf", "/battery_state")
 
@@ -19,6 +25,8 @@ class Surroundings(NamedTuple):
         doors: names of the doors that can close.
         recharges: whether the robot goes to its dock when the battery is low.
         navigates: whether some side sends goals to Nav2.
+        drives: whether the robot drives.
+        grips: whether the robot has a gripper.
     """
 
     seconds: float
@@ -26,30 +34,40 @@ class Surroundings(NamedTuple):
     doors: tuple[str, ...] = ()
     recharges: bool = False
     navigates: bool = False
+    drives: bool = True
+    grips: bool = False
 
 
 SURROUNDINGS: Mapping[str, Surroundings] = {
     "out_and_back": Surroundings(20.0, (-1.0, -1.0, 1.0, 1.0)),
     "square": Surroundings(35.0, (-0.5, -0.5, 1.5, 1.5)),
-    "fake_battery": Surroundings(200.0, (-1.0, -1.0, 1.0, 1.0)),
+    "fake_battery": Surroundings(200.0, (-1.0, -1.0, 1.0, 1.0), drives=False),
     "patrol": Surroundings(140.0, (0.0, 0.0, 2.0, 2.0), recharges=True, navigates=True),
     "house_cleaning": Surroundings(
         190.0, (0.0, 0.0, 2.0, 2.0), ("living_room", "bathroom"), recharges=True, navigates=True
     ),
+    "fetch": Surroundings(40.0, (-2.0, -1.0, 2.0, 1.0), grips=True),
 }
 
 
-def kinds_for(scenario: str) -> list[str]:
-    """The kinds of disturbances that can happen in a scenario."""
+def kinds_for(scenario: str, seed: int = 0) -> list[str]:
+    """The kinds of disturbances that can happen in a scenario, in the series of a seed."""
     where = SURROUNDINGS[scenario]
+    if is_further(seed):
+        docks, drives = (
+            dict.fromkeys(("dead_dock", "wrong_dock", "dirty_contact"), where.recharges),
+            where.drives,
+        )
+        needs = {**docks, "missed_grasp": where.grips}
+        return [kind for kind in FURTHER_KINDS if needs.get(kind, drives)]
     possible = {"door": bool(where.doors), "battery": where.recharges, "aborted": where.navigates}
     return [kind for kind in KINDS if possible.get(kind, True)]
 
 
 def kind_of(scenario: str, seed: int) -> str:
     """The kind of disturbance that a run with a seed has: all kinds take turns."""
-    kinds = kinds_for(scenario)
-    return kinds[seed % len(kinds)]
+    kinds = kinds_for(scenario, seed)
+    return kinds[seed % FURTHER % len(kinds)]
 
 
 def held_out(scenario: str, seed: int) -> bool:
@@ -57,14 +75,19 @@ def held_out(scenario: str, seed: int) -> bool:
 
     Every second turn of all kinds is: the parity of the seed itself would keep out whole kinds.
     """
-    return seed // len(kinds_for(scenario)) % 2 == 1
+    return seed % FURTHER // len(kinds_for(scenario, seed)) % 2 == 1
+
+
+def is_further(seed: int) -> bool:
+    """Whether a run with a seed has one of the further kinds of disturbances."""
+    return seed > FURTHER
 
 
 def faults_for(scenario: str, seed: int) -> str:
     """The text of the fault file for one run."""
     kind = kind_of(scenario, seed)
     draw = Draw(f"{scenario}/{kind}/{seed}")
-    faults = KINDS[kind](draw, SURROUNDINGS[scenario])
+    faults = {**KINDS, **FURTHER_KINDS}[kind](draw, SURROUNDINGS[scenario])
     return "\n".join(["faults:", *(f"  f{number}: {{{fault}}}" for number, fault in enumerate(faults)), ""])
 
 
@@ -112,11 +135,58 @@ def _aborted(draw: Draw, where: Surroundings) -> list[str]:
 
 def _carried(draw: Draw, where: Surroundings) -> list[str]:
     """Lift the robot and put it down elsewhere."""
+    return [f"kind: kidnapped_robot, to: {_pose(draw, where)}, {_at(draw, where)}"]
+
+
+def _pose(draw: Draw, where: Surroundings) -> str:
     x0, y0, x1, y1 = where.area
     x, y, yaw = draw.uniform(x0, x1), draw.uniform(y0, y1), draw.uniform(-180, 180)
+    return f"{{x: {x:.2f}, y: {y:.2f}, yaw_degrees: {yaw:.0f}}}"
+
+
+def _dead_dock(draw: Draw, where: Surroundings) -> list[str]:
+    """The dock has no current for some time, twice."""
     return [
-        f"kind: kidnapped_robot, to: {{x: {x:.2f}, y: {y:.2f}, yaw_degrees: {yaw:.0f}}}, {_at(draw, where)}"
+        f"kind: dead_dock, dock: dock, {_soon(draw, where)}, for: {draw.uniform(30, 90):.1f}"
+        for _ in range(2)
     ]
+
+
+def _wrong_dock(draw: Draw, where: Surroundings) -> list[str]:
+    """Another robot's dock, without current for this one, is in the place of the dock for some time, twice."""
+    to = f"to: {{x: {DOCK[0]:g}, y: {DOCK[1]:g}}}"
+    return [
+        f"kind: wrong_dock, {to}, {_soon(draw, where)}, for: {draw.uniform(30, 90):.1f}" for _ in range(2)
+    ]
+
+
+def _dirty_contact(draw: Draw, where: Surroundings) -> list[str]:
+    """The current of the dock comes and goes, all the time."""
+    share, period = draw.uniform(0.2, 0.6), draw.uniform(0.5, 3.0)
+    return [f"kind: dirty_contact, dock: dock, share: {share:.2f}, period: {period:.1f}, at: 0"]
+
+
+def _lost_localisation(draw: Draw, where: Surroundings) -> list[str]:
+    """The robot believes to be elsewhere."""
+    return [f"kind: lost_localisation, to: {_pose(draw, where)}, {_soon(draw, where)}"]
+
+
+def _person_in_the_way(draw: Draw, where: Surroundings) -> list[str]:
+    """A person stands in front of the robot for a minute, twice."""
+    return [
+        f"kind: person_in_the_way, gap: {draw.uniform(0.4, 0.8):.2f}, {_soon(draw, where)}, for: 60"
+        for _ in range(2)
+    ]
+
+
+def _missed_grasp(draw: Draw, where: Surroundings) -> list[str]:
+    """The gripper closes on nothing, now and then."""
+    return [f"kind: missed_grasp, share: {draw.uniform(0.3, 1):.2f}, at: 0"]
+
+
+def _soon(draw: Draw, where: Surroundings) -> str:
+    """Within half of the run, so that quick programs are disturbed, too."""
+    return f"at: {draw.uniform(0.05, 0.5) * where.seconds:.1f}"
 
 
 def _at(draw: Draw, where: Surroundings) -> str:
@@ -132,3 +202,13 @@ KINDS: Mapping[str, Callable[[Draw, Surroundings], list[str]]] = {
     "aborted": _aborted,
     "carried": _carried,
 }
+
+FURTHER_KINDS: Mapping[str, Callable[[Draw, Surroundings], list[str]]] = {
+    "dead_dock": _dead_dock,
+    "wrong_dock": _wrong_dock,
+    "dirty_contact": _dirty_contact,
+    "lost_localisation": _lost_localisation,
+    "person_in_the_way": _person_in_the_way,
+    "missed_grasp": _missed_grasp,
+}
+"""The kinds of the further runs, by the names of their faults."""

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import jacaros.robots.world
-from disturbances import faults_for, kind_of
+from disturbances import FURTHER, faults_for, kind_of
 from jacaros.testing import RunResult, run_project
 from outcomes import Damage, damage, disturbed_at, end_of, told_at
-from scenarios import FOLDER, SCENARIOS
+from scenarios import FETCH, FOLDER, FURTHER_SCENARIOS, SCENARIOS
 from virtual_run import run_baseline
 
 AGENTS, OVER_NAV2, BASELINE = "agents", "agents over Nav2", "baseline"
@@ -63,6 +63,7 @@ LIMITS: Mapping[str, float] = {
     "fake_battery": 400.0,
     "patrol": 500.0,
     "house_cleaning": 900.0,
+    "fetch": 400.0,
 }
 """Seconds of the virtual clock after which a run is ended."""
 
@@ -99,8 +100,14 @@ class Outcome(NamedTuple):
     damage: Damage = Damage(0, False, 0)
 
 
+ALL = {**SCENARIOS, "fetch": FETCH}
+"""All scenarios by name."""
+
+
 def sides_of(scenario: str) -> list[str]:
     """The sides that a scenario has."""
+    if scenario == "fetch":
+        return [AGENTS]
     over_nav2 = _over_nav2(scenario).exists()
     return [AGENTS, OVER_NAV2, BASELINE, PATIENT] if over_nav2 else [AGENTS, BASELINE]
 
@@ -110,6 +117,12 @@ def jobs(seeds: Iterable[int], scenarios: Iterable[str] = SCENARIOS) -> list[Job
     return [
         Job(scenario, side, seed) for scenario in scenarios for side in sides_of(scenario) for seed in seeds
     ]
+
+
+def further_jobs(runs: int) -> list[Job]:
+    """That number of runs of each side of the scenarios with the further kinds of disturbances."""
+    every = jobs(range(FURTHER + 1, FURTHER + runs + 1), FURTHER_SCENARIOS)
+    return [job for job in every if job.side != PATIENT]
 
 
 def run_all(wanted: list[Job], workers: int | None = None) -> list[Outcome]:
@@ -126,7 +139,7 @@ def run_one(job: Job) -> Outcome:
 def judged(job: Job, result: RunResult) -> Outcome:
     """Judge a run."""
     limits = {"cycles": CYCLES, "near": NEAR} if job.scenario == "patrol" else {}
-    complaints = SCENARIOS[job.scenario].judge(result, **limits).complaints
+    complaints = ALL[job.scenario].judge(result, **limits).complaints
     return Outcome(
         job,
         kind_of(job.scenario, job.seed),
@@ -152,7 +165,7 @@ def run(job: Job) -> RunResult:
 
 def _run(job: Job, folder: Path) -> RunResult:
     faults, limit = faults_for(job.scenario, job.seed), LIMITS[job.scenario]
-    scenario, world = SCENARIOS[job.scenario], world_of(job.scenario, folder)
+    scenario, world = ALL[job.scenario], world_of(job.scenario, folder)
     changes = SHIFTS if job.scenario == "patrol" else {}
     if job.side in (BASELINE, PATIENT):
         changes = {**changes, **PATIENCE} if job.side == PATIENT else changes
@@ -182,7 +195,7 @@ def _over_nav2(scenario: str) -> Path:
 def world_of(scenario: str, folder: Path) -> str | Path:
     """The world of a scenario; for the house a file in *folder*, as it gets doors."""
     if scenario != "house_cleaning":
-        return SCENARIOS[scenario].world
+        return ALL[scenario].world
     path = folder / "house.yaml"
     path.write_text(HOUSE.read_text(encoding="utf-8") + DOORS, encoding="utf-8")
     return path

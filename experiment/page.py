@@ -2,13 +2,14 @@
 
 import re
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import change_requests
 import comparison
 import sizes
 import success
+from disturbances import is_further
 from disturbed_runs import AGENTS, BASELINE, OVER_NAV2, PATIENT, Outcome
 from jacaros.look.metrics import Group, ProgramMetrics, Table, as_markdown
 from scenarios import FOLDER, SCENARIOS
@@ -27,9 +28,10 @@ SENTENCES = (
 """What the figures decide, by the names of the functions."""
 
 
-def page(outcomes: Sequence[Outcome]) -> str:
-    """The text of ``docs/experiment.md``."""
-    tables = all_tables(outcomes)
+def page(record: Sequence[Outcome]) -> str:
+    """The text of ``docs/experiment.md``, from all recorded runs."""
+    outcomes, further = split(record)
+    tables = all_tables(outcomes) | further_tables(further)
     words = (FOLDER / "page.md").read_text(encoding="utf-8")
     sentences = {each.__name__: each(outcomes) for each in SENTENCES}
 
@@ -43,8 +45,24 @@ def page(outcomes: Sequence[Outcome]) -> str:
     return "\n".join(map(filled, words.split("\n")))
 
 
-def all_tables(outcomes: Sequence[Outcome]) -> Mapping[str, Callable[[], Table]]:
-    """The tables of the page, by the marks that they replace."""
+def split(record: Sequence[Outcome]) -> tuple[Sequence[Outcome], Sequence[Outcome]]:
+    """The runs of the comparison, and those with the further kinds of disturbances."""
+    further = [each for each in record if is_further(each.job.seed)]
+    return [each for each in record if not is_further(each.job.seed)], further
+
+
+def further_tables(further: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
+    """The tables of the runs with the further kinds of disturbances."""
+    return {
+        "further": lambda: success.further_table(further),
+        "further_ends": lambda: comparison.ends_table(further),
+        "further_outcomes": lambda: success.outcome_table(further),
+        "further_halves": lambda: success.halves_table(further),
+    }
+
+
+def all_tables(outcomes: Sequence[Outcome]) -> dict[str, Callable[[], Table]]:
+    """The other tables of the page, by the marks that they replace."""
     examples, over_nav2 = sizes.examples(), sizes.over_nav2()
     kinds = ("identifiers", "names", "lines", "code_lines", "gzip_bytes")
     return {
@@ -97,8 +115,9 @@ def changes_table() -> Table:
     return Table("Changed code lines", ("request", "agents", BASELINE), rows)
 
 
-def summary(outcomes: Sequence[Outcome]) -> str:
+def summary(record: Sequence[Outcome]) -> str:
     """The table of the front page, and its conditions: code lines, and runs that passed under disturbances."""
+    outcomes, _ = split(record)
     agents = {each.name.partition("_")[2]: each for each in sizes.examples()}
     nav2 = {each.name: each for each in sizes.over_nav2()}
     rows: list[tuple[str | int, ...]] = []

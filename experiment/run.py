@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import sizes
-from disturbed_runs import Job, Outcome, jobs, run_all
+from disturbed_runs import Job, Outcome, further_jobs, jobs, run_all
 from outcomes import Damage
 from page import page, summary
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, RECORD, IMAGES = DOCS / "experiment.md", DOCS / "experiment.json", DOCS / "images"
 README = DOCS.parent / "README.md"
-RUNS, QUICK_RUNS = 50, 2
+RUNS, FURTHER_RUNS, QUICK_RUNS = 50, 20, 2
 
 
 def main() -> int:
@@ -29,11 +29,13 @@ def main() -> int:
     )
     parser.add_argument("--page", action="store_true", help="write the page anew from the recorded runs")
     parser.add_argument("--runs", type=int, default=RUNS, help=f"runs of each side (default {RUNS})")
+    parser.add_argument("--workers", type=int, help="runs at the same time (default: the processors)")
     given = parser.parse_args()
     if given.quick:
         return check()
     if not given.page:
-        RECORD.write_text(as_json(run_all(jobs(range(1, given.runs + 1)))), encoding="utf-8")
+        wanted = jobs(range(1, given.runs + 1)) + further_jobs(FURTHER_RUNS)
+        RECORD.write_text(as_json(run_all(wanted, given.workers)), encoding="utf-8")
     return write(from_json(RECORD.read_text(encoding="utf-8")))
 
 
@@ -52,7 +54,7 @@ def check() -> int:
     known = {each.job: each for each in recorded}
     problems = [
         f"{' '.join(map(str, new.job))}: {new[1:]}, recorded: {known[new.job][1:]}"
-        for new in run_all(jobs(range(1, QUICK_RUNS + 1)))
+        for new in run_all(jobs(range(1, QUICK_RUNS + 1)) + further_jobs(1))
         if new != known[new.job]
     ]
     if PAGE.read_text(encoding="utf-8") != page(recorded):

@@ -19,18 +19,22 @@ class Scenario(NamedTuple):
         baseline: Python program that does the same.
         world: world file, or name of a shipped world; the project names the same.
         parameters: of the baseline's node.
+        goal: what the checker is asked for, if it knows several.
     """
 
     project: Path
     baseline: Path
     world: str | Path
     parameters: Mapping[str, Any] = {}
+    goal: str = ""
 
     def judge(self, result: RunResult, **limits: float) -> Verdict:
         """Judge a run of either side by the checker of the example, with limits that it takes."""
-        check = runpy.run_path(str(self.project.parent / "check.py"))["check"]
+        folder = self.project.parents[1] if self.goal else self.project.parent
+        checker = runpy.run_path(str(folder / "check.py"))
         output = () if self.world != WEAK_BATTERY else (result.lines,)
-        verdict: Verdict = check(*output, result.ground_truth, **limits)
+        goal = (checker["GOALS"][self.goal],) if self.goal else ()
+        verdict: Verdict = checker["check"](*output, result.ground_truth, *goal, **limits)
         return verdict
 
 
@@ -54,3 +58,13 @@ SCENARIOS = dict(
     ]
 )
 """The scenarios by the names of their baselines."""
+
+WORKSHOP = FOLDER / "workshop"
+FETCH = Scenario(WORKSHOP / "1_fetch" / "fetch.jcm", FOLDER, WORKSHOP / "building.yaml", goal="1_fetch")
+"""A setting of the workshop, with a gripper; it has no baseline."""
+
+FURTHER_SCENARIOS = {
+    **{name: each for name, each in SCENARIOS.items() if name != "fake_battery"},
+    "fetch": FETCH,
+}
+"""The scenarios of the further runs: the robot drives."""

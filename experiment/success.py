@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-from disturbances import KINDS, held_out
+from disturbances import FURTHER_KINDS, KINDS, held_out
 from disturbed_runs import SIDES, Outcome
 from jacaros.look.metrics import Table
 from outcomes import ENDS
-from scenarios import SCENARIOS
+from scenarios import FURTHER_SCENARIOS, SCENARIOS
 
 Runs = Sequence[Outcome]
 
@@ -60,12 +60,30 @@ def halves_table(outcomes: Runs) -> Table:
         halves: dict[bool, list[Outcome]] = {False: [], True: []}
         for each in runs:
             halves[held_out(name, each.job.seed)].append(each)
-        rows.append((name, side, *(" / ".join(map(str, _ends(half))) for half in halves.values())))
+        rows.append((name, side, *map(ends_of, halves.values())))
     return Table("Halves", ("scenario", "side", "seeds to tune with", "seeds held out"), tuple(rows))
 
 
+def further_table(outcomes: Runs) -> Table:
+    """A row for each further kind of disturbance in each scenario: how the runs of each side ended."""
+    sides = [side for side in SIDES if any(each.job.side == side for each in outcomes)]
+    rows = []
+    for name in FURTHER_SCENARIOS:
+        for kind in FURTHER_KINDS:
+            runs = [each for each in outcomes if (each.job.scenario, each.kind) == (name, kind)]
+            if runs:
+                cells = (ends_of([each for each in runs if each.job.side == side]) for side in sides)
+                rows.append((name, kind, *cells))
+    return Table("Further disturbances", ("scenario", "disturbance", *sides), tuple(rows))
+
+
+def ends_of(runs: Runs) -> str:
+    """How many runs ended in each of `ENDS`, in one cell; nothing without runs."""
+    return " / ".join(map(str, _ends(runs))) if runs else ""
+
+
 def _by_side(outcomes: Runs) -> Iterable[tuple[str, str, Runs]]:
-    for name in SCENARIOS:
+    for name in {**SCENARIOS, **FURTHER_SCENARIOS}:
         for side in SIDES:
             runs = [each for each in outcomes if each.job[:2] == (name, side)]
             if runs:

@@ -10,9 +10,8 @@ import os
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 
-from disturbances import KINDS, faults_for, held_out, kind_of
-from disturbed_runs import AGENTS, SIDES, Job, Outcome, judged, run
-from scenarios import SCENARIOS
+from disturbances import FURTHER, FURTHER_KINDS, KINDS, faults_for, held_out, kind_of
+from disturbed_runs import AGENTS, ALL, SIDES, Job, Outcome, judged, run
 
 
 def main() -> None:
@@ -20,20 +19,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description="Make disturbed runs of one scenario, and print how each ended."
     )
-    parser.add_argument("scenario", choices=SCENARIOS)
+    parser.add_argument("scenario", choices=ALL)
     parser.add_argument("--side", choices=SIDES, default=AGENTS)
-    parser.add_argument("--runs", type=int, default=50, help="use the seeds from 1 to this (default 50)")
+    parser.add_argument("--runs", type=int, default=50, help="number of seeds to choose from (default 50)")
     parser.add_argument("--seed", type=int, action="append", help="only this seed; repeatable")
-    parser.add_argument("--kind", choices=KINDS, action="append", help="only this disturbance; repeatable")
+    parser.add_argument(
+        "--kind", choices=[*KINDS, *FURTHER_KINDS], action="append", help="only this disturbance; repeatable"
+    )
+    parser.add_argument(
+        "--further", action="store_true", help=f"the further kinds of disturbances: seeds from {FURTHER + 1}"
+    )
     parser.add_argument("--held-out", action="store_true", help="with the seeds that are held out")
     parser.add_argument(
         "--lines", type=int, default=3, help="last lines of output to print (default 3; 0 for all)"
     )
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="runs at the same time")
     given = parser.parse_args()
+    first = FURTHER + 1 if given.further else 1
     wanted = [
         Job(given.scenario, given.side, seed)
-        for seed in given.seed or range(1, given.runs + 1)
+        for seed in given.seed or range(first, first + given.runs)
         if given.held_out or given.seed or not held_out(given.scenario, seed)
         if not given.kind or kind_of(given.scenario, seed) in given.kind
     ]

@@ -14,10 +14,11 @@ from jacaros.testing import RunResult
 sys.path.insert(0, str(EXAMPLES.parent / "experiment"))
 
 from comparison import after_the_end, compared, ends_table, fewer, fisher, mcnemar, significance
-from disturbances import KINDS, faults_for, held_out, kind_of, kinds_for
+from disturbances import FURTHER, FURTHER_KINDS, KINDS, faults_for, held_out, kind_of, kinds_for
 from disturbed_runs import AGENTS, BASELINE, PATIENCE, PATIENT, Job, Outcome, run_one, world_of
 from outcomes import AS_IF_DONE, DONE, HUNG, TOLD, damage, end_of, told_at
-from scenarios import SCENARIOS
+from scenarios import FURTHER_SCENARIOS, SCENARIOS
+from success import further_table, halves_table
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
@@ -25,6 +26,21 @@ def test_all_faults_fit_the_world(name: str, tmp_path: Path) -> None:
     description = load_world(world_of(name, tmp_path))
     for seed in range(50):
         assert read_faults(faults_for(name, seed), description)
+
+
+@pytest.mark.parametrize("name", FURTHER_SCENARIOS)
+def test_all_further_faults_fit_the_world(name: str, tmp_path: Path) -> None:
+    description = load_world(world_of(name, tmp_path))
+    for seed in range(FURTHER + 1, FURTHER + 21):
+        faults = read_faults(faults_for(name, seed), description)
+        assert {fault.kind for fault in faults} == {kind_of(name, seed)}
+    assert {kind_of(name, seed) for seed in range(FURTHER + 1, FURTHER + 21)} == set(
+        kinds_for(name, FURTHER + 1)
+    )
+
+
+def test_every_further_kind_occurs() -> None:
+    assert {kind for name in FURTHER_SCENARIOS for kind in kinds_for(name, FURTHER + 1)} == set(FURTHER_KINDS)
 
 
 def test_every_kind_occurs_and_takes_its_turn() -> None:
@@ -131,3 +147,20 @@ def test_damage_counts_from_the_disturbance() -> None:
     assert damage(world.ground_truth) == (0, True, 0)
     world.log_task(world.robot().name, "mop floor kitchen")
     assert damage(world.ground_truth) == (0, True, 1)
+
+
+def test_further_runs_are_counted_by_kind_and_by_half() -> None:
+    seeds = [FURTHER + each for each in range(1, 5)]
+    runs = [outcome(each, AGENTS, each % 2 == 0) for each in seeds]
+    assert further_table(runs).rows == (
+        ("square", "lost_localisation", "2 / 0 / 0 / 0"),
+        ("square", "person_in_the_way", "0 / 0 / 2 / 0"),
+    )
+    assert halves_table(runs).rows == (("square", AGENTS, "1 / 0 / 1 / 0", "1 / 0 / 1 / 0"),)
+
+
+@pytest.mark.slow
+def test_a_missed_grasp_is_no_fetched_tea() -> None:
+    found = [run_one(Job("fetch", AGENTS, seed)) for seed in (FURTHER + 2, FURTHER + 5)]
+    assert {each.kind for each in found} == {"missed_grasp"}
+    assert all(each.end in (DONE, TOLD) for each in found)

@@ -188,7 +188,8 @@ def _dockings(truth: GroundTruth, robot: str) -> Iterator[Stay]:
             case "docked":
                 begin, level, charged = event.time, None, False
             case "charging":
-                level = float(event.data["level"])
+                # A contact that comes and goes begins charging more than once.
+                level = float(event.data["level"]) if level is None else level
             case "charged":
                 charged = True
             case _:

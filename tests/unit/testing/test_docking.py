@@ -50,6 +50,13 @@ def test_turning_in_the_dock_does_not_make_two_stays_of_one() -> None:
     assert stay.end is None
 
 
+def test_a_stay_with_a_dirty_contact_has_the_level_at_its_begin() -> None:
+    faults = "faults:\n  f: {kind: dirty_contact, dock: dock, at: 0}\n"
+    (stay,) = stays(visit(World.load(WORLD, faults=faults), 20))
+    assert stay.level < 15
+    assert stay.charged
+
+
 def test_leaving_too_early_is_a_complaint() -> None:
     verdict = Verdict()
     judge_recharging(verdict, visit(World.load(WORLD), 2))
