@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         resolve_path,
     )
     from jacaros.artifacts.env.execution import OperationExecution
+    from jacaros.artifacts.env.expectation import Expect
     from jacaros.artifacts.env.manual import Manual, describe
     from jacaros.artifacts.env.operation import (
         OperationOutcome,
@@ -44,6 +45,7 @@ __all__ = [
     "ArtifactId",
     "Atom",
     "Environment",
+    "Expect",
     "InvalidArtifact",
     "Manual",
     "ObservableProperty",
@@ -83,6 +85,7 @@ _MODULES = {
     "jacaros.artifacts.env.errors": "ArtifactId InvalidArtifact OperationFailed UnknownArtifact "
     "UnknownArtifactType UnknownProperty UnknownWorkspace WorkspaceError resolve_path",
     "jacaros.artifacts.env.execution": "OperationExecution",
+    "jacaros.artifacts.env.expectation": "Expect",
     "jacaros.artifacts.env.manual": "Manual describe",
     "jacaros.artifacts.env.operation": "OperationOutcome OperationRequest initializer "
     "internal_operation link operation",

@@ -21,6 +21,7 @@ from jacaros.artifacts.env.property import ObservableProperty, plain_annotations
 from jacaros.artifacts.env.values import Atom, Out, Structure, plain
 from jacaros.artifacts.kernel.declaration import UsageInterface, declare_function, interface_of
 from jacaros.artifacts.kernel.faults import text_of
+from jacaros.artifacts.kernel.publication import Publication
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.runtime.clock import Clock
 from jacaros.runtime.trace import Cause
@@ -38,6 +39,9 @@ class ArtifactHost(Workspace, Protocol):
 
     def execute_linked(self, request: OperationRequest) -> UnderWay:
         """Run a linked operation."""
+
+    def of_same_robot(self, artifact_id: ArtifactId) -> list[Publication]:
+        """Return the artifacts of the same robot in this workspace, *artifact_id* first, as observers see them."""
 
     def operations_changed(self, artifact_id: ArtifactId) -> None:
         """Update the operations that an artifact offers."""

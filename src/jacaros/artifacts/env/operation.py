@@ -7,6 +7,7 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 from jacaros.artifacts.env.arbiter import Claim, Policy
 from jacaros.artifacts.env.errors import ArtifactId, OperationFailed
+from jacaros.artifacts.env.expectation import Expect
 from jacaros.artifacts.env.values import Atom, Structure
 from jacaros.runtime.trace import Cause
 
@@ -110,6 +111,8 @@ class Mark:
     common: bool = False
     uses: Uses = ()
     when_preempted: WhenPreempted | None = None
+    expect: Expect | tuple[Expect, ...] = ()
+    meanwhile: Expect | tuple[Expect, ...] = ()
 
 
 _MARKS = "__jacaros_operations__"
@@ -134,6 +137,8 @@ class OperationOptions(StartedOptions, total=False):
     pausable: bool
     uses: Uses
     when_preempted: WhenPreempted | None
+    expect: Expect | tuple[Expect, ...]
+    meanwhile: Expect | tuple[Expect, ...]
 
 
 def _marked(function: F, mark: Mark) -> F:
@@ -164,6 +169,9 @@ def operation(function: F | None = None, /, **options: Unpack[OperationOptions])
             when_preempted: what it does when a more urgent claim takes them away: ``pause`` and continue later (the
                 default if it is pausable), ``cancel`` (it fails with ``preempted(Resource)``), or ``finish`` first (the
                 default otherwise).
+            expect: effects on properties: when the method has returned, the operation succeeds as soon as they show, and
+                fails if they do not (see `Expect`).
+            meanwhile: must hold while the method runs; otherwise it is cancelled and the operation fails.
 
     Raises:
         InvalidArtifact: (when the class is created) the declaration is invalid.

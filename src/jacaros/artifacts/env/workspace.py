@@ -32,7 +32,7 @@ from jacaros.artifacts.env.values import Structure
 from jacaros.artifacts.kernel import faults
 from jacaros.artifacts.kernel.declaration import NOTHING, DeclaredOperation, UsageInterface, interface_of
 from jacaros.artifacts.kernel.faults import error_text, is_interruption
-from jacaros.artifacts.kernel.publication import Setting, mistakes_in
+from jacaros.artifacts.kernel.publication import Publication, Setting, mistakes_in
 from jacaros.artifacts.kernel.registry import Registry
 from jacaros.artifacts.kernel.steps import Steps
 from jacaros.runtime.errors import InternalError
@@ -696,6 +696,13 @@ class Workspace(ports.Workspace):
             UnknownArtifact: it is gone.
         """
         return self._steps_of(artifact_id).publication.committed()
+
+    def of_same_robot(self, artifact_id: ArtifactId) -> list[Publication]:
+        """Return the artifacts of the same robot in this workspace, *artifact_id* first, as observers see them."""
+        own = self._steps_of(artifact_id)
+        made = [self._registry.made(each) for each in self._artifacts.values()]
+        others = [each for each in made if each is not None and each is not own and each.robot == own.robot]
+        return [each.publication for each in (own, *others)]
 
     def observers(self, artifact_id: ArtifactId) -> tuple[Observer, ...]:
         """Return the observers that focus an artifact, in the order of focusing.

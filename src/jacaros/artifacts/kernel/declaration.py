@@ -12,9 +12,11 @@ from typing import Any, Final, NamedTuple
 
 from jacaros.artifacts.env.arbiter import read_uses
 from jacaros.artifacts.env.errors import InvalidArtifact
+from jacaros.artifacts.env.expectation import Expect, mistake_in
 from jacaros.artifacts.env.operation import INIT, INTERNAL, LINK, OPERATION, Mark, WhenPreempted, marks_of
 from jacaros.artifacts.env.values import Atom, Out, Structure
 from jacaros.artifacts.kernel.acceptance import AcceptValue, Unsuitable, kind_of, shown
+from jacaros.artifacts.kernel.effects import expecting
 from jacaros.runtime.files.texts import aside
 
 # The parameters of an operation: the number of arguments, their kinds, and the outputs.
@@ -314,6 +316,14 @@ def _declare(
     depth: int,
 ) -> DeclaredOperation:
     uses, when_preempted = _uses(mark, source)
+    effects, conditions = (_expected(each, signature, source) for each in (mark.expect, mark.meanwhile))
+    if any(each.signal for each in effects):
+        raise InvalidArtifact(
+            f"{name_of(source)}: expected a property in expect, found a signal; use meanwhile"
+        )
+    if expects := bool(effects or conditions):
+        names = [each.name for each in signature.parameters]
+        function = expecting(function, names, effects, conditions)
     return DeclaredOperation(
         name,
         mark.kind,
@@ -322,12 +332,24 @@ def _declare(
         signature,
         guard,
         mark.pausable,
-        inspect.iscoroutinefunction(source),
+        expects or inspect.iscoroutinefunction(source),
         depth,
         mark.common,
         uses,
         when_preempted,
     )
+
+
+def _expected(
+    given: Expect | tuple[Expect, ...], signature: Signature, source: Callable[..., Any]
+) -> tuple[Expect, ...]:
+    """Check the expectations of an operation."""
+    given = (given,) if isinstance(given, Expect) else tuple(given)
+    for each in given:
+        for pattern in each.values:
+            if wrong := mistake_in(pattern, [parameter.name for parameter in signature.parameters]):
+                raise InvalidArtifact(f"{name_of(source)}: {each.name}: {'; '.join(wrong)}")
+    return given
 
 
 def _uses(mark: Mark, source: Callable[..., Any]) -> tuple[tuple[str, ...], WhenPreempted]:
@@ -472,7 +494,7 @@ class UsageInterface:
         if usual is not None and usual.function is function:
             return usual
         for declared in chain(self.internals, self.operations):
-            if declared.function is function and declared.signature.takes(arity):
+            if declared.source is function and declared.signature.takes(arity):
                 return declared
         return None
 

@@ -194,7 +194,7 @@ class Publication:
     @property
     def observers(self) -> tuple[Observer, ...]:
         """The observers that focus the artifact, in the order of focusing."""
-        return tuple(self._observers)
+        return tuple(each for each in self._observers if each.agent)
 
     def committed(self) -> tuple[ObservableProperty, ...]:
         """Return the properties as observers know them."""
@@ -216,6 +216,13 @@ class Publication:
             self._note_slow()
             self._tell_focus(observer, False)
             self._show(observer, removed=self.committed())
+
+    def follow(self, observer: Observer, on: bool = True) -> None:
+        """Let *observer*, which is no agent's, receive what is published from now on, or no longer."""
+        if on:
+            self._observers[observer] = None
+        else:
+            self._observers.pop(observer, None)
 
     def _tell_focus(self, observer: Observer, on: bool) -> None:
         if self.setting.listener is not None:

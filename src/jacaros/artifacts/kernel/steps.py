@@ -355,9 +355,14 @@ class Steps:
         declared += read_uses(getattr(self.artifact, "further_uses", ()))
         return self._of_robot(tuple(dict.fromkeys(declared)))
 
-    def _of_robot(self, uses: tuple[str, ...]) -> tuple[str, ...]:
+    @property
+    def robot(self) -> str:
+        """Prefix of the robot that the artifact belongs to. Empty for the only one."""
         scope = getattr(self.artifact, "robot_prefix", "")
-        return scoped(uses, scope if isinstance(scope, str) else "")
+        return scope if isinstance(scope, str) else ""
+
+    def _of_robot(self, uses: tuple[str, ...]) -> tuple[str, ...]:
+        return scoped(uses, self.robot)
 
     def hold(self, execution: OperationExecution, uses: tuple[str, ...]) -> Holding:
         """Return a claim that an operation enters and leaves itself."""
@@ -376,7 +381,7 @@ class Steps:
         message = faults.without_resource(execution.request, reason)
         outcome = OperationOutcome(False, message, reason)
         if execution.active or execution in self.turns.waiting_to_begin():
-            self._stop(execution, outcome)
+            self.stop(execution, outcome)
         elif not execution.ended:
             execution.verdict = outcome
             self._tell(execution, outcome)
@@ -560,15 +565,15 @@ class Steps:
         self.publication.close()
         for execution in (*self.turns.waiting_to_begin(), *self._running):
             if execution is not survivor and not execution.stopped:
-                self._stop(execution, faults.disposed(execution.request))
+                self.stop(execution, faults.disposed(execution.request))
         self._close_if_over()
 
     def _time_is_up(self, execution: OperationExecution) -> None:
         seconds = execution.request.timeout
         if seconds is not None and not execution.ended and not execution.stopped:
-            self._stop(execution, faults.timed_out(execution.request, seconds))
+            self.stop(execution, faults.timed_out(execution.request, seconds))
 
-    def _stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
+    def stop(self, execution: OperationExecution, outcome: OperationOutcome) -> None:
         """End an operation from outside. Its caller gets *outcome* when it has ended."""
         execution.verdict = outcome
         if self.turns.withdraw(execution):

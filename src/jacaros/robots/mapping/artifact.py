@@ -186,7 +186,10 @@ def _method(artifact: ArtifactPart, number: int) -> Callable[..., Any]:
     run.__qualname__ = run.__name__ = part.name
     run.__doc__ = description(part)
     run.parameter_words = lambda: parameter_words(artifact, part)  # type: ignore[attr-defined]  # for manuals
-    return operation(name=part.name, pausable=is_pausable(part), uses=part.uses)(run)
+    expect, meanwhile = (tuple(each for _, each in found) for found in (part.expect, part.meanwhile))
+    return operation(
+        name=part.name, pausable=is_pausable(part), uses=part.uses, expect=expect, meanwhile=meanwhile
+    )(run)
 
 
 def is_pausable(part: OperationPart) -> bool:

@@ -265,7 +265,7 @@ def _artifact(
         interfaces=lambda folders, _: (*shared, *_interfaces(folders, folder)),
     )
     part = replace(part, **found)
-    for check in (_names, _arities, _references, _streams, _switches, _own_parameters):
+    for check in (_names, _arities, _references, _expectations, _streams, _switches, _own_parameters):
         node.problems += check(part)
     return part
 
@@ -347,6 +347,23 @@ def _own_parameters(part: ArtifactPart) -> Iterator[Problem]:
                 if own
                 else "write the node that has the parameter: node: controller_server",
             )
+
+
+def _expectations(part: ArtifactPart) -> Iterator[Problem]:
+    """Yield expectations that properties of the artifact itself cannot fulfil."""
+    own = {each.name: each for each in part.properties}
+    for operation in part.operations:
+        for place, expected in (*operation.expect, *operation.meanwhile):
+            topic = own.get(expected.name)
+            if topic is None or expected.signal:
+                continue
+            if topic.policy.on_demand:
+                text = f"`{topic.name}` is updated on demand, so it shows no effect"
+                yield place.problem(text, "expect another property, or leave out its `mode`")
+            count = sum(field.count for field in topic.fields or ())
+            if topic.fields is not None and count != len(expected.values):
+                text = f"`{topic.name}` has {count} value{'s' * (count != 1)}, not {len(expected.values)}"
+                yield place.problem(text, "write a pattern for each value, _ for any")
 
 
 def _references(part: ArtifactPart) -> Iterator[Problem]:

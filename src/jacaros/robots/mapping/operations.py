@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Literal
 
+from jacaros.artifacts.env.expectation import Expect, mistake_in
+from jacaros.artifacts.env.values import plain
 from jacaros.robots.mapping.fields import (
     ALL,
     ANGLES,
@@ -118,6 +120,8 @@ class OperationPart:
             operations.
         pause, resume: names of these operations.
         uses: resources that it holds while it runs; empty: those of a motion, if it is one.
+        expect: effects on properties, with their places.
+        meanwhile: what must hold while it runs, with places.
     """
 
     name: str
@@ -148,6 +152,8 @@ class OperationPart:
     properties: tuple[Written, ...] = ()
     description: str = ""
     uses: tuple[str, ...] = ()
+    expect: tuple[tuple[FilePosition, Expect], ...] = ()
+    meanwhile: tuple[tuple[FilePosition, Expect], ...] = ()
 
     @property
     def is_switch(self) -> bool:
@@ -389,6 +395,46 @@ def _uses(node: YamlNode) -> tuple[str, ...]:
     return tuple(found)
 
 
+_SETTINGS = ("within", "else", "no")
+"""Keys of an expectation that are not names of properties."""
+
+
+def _expectations(node: YamlNode, part: OperationPart) -> tuple[tuple[FilePosition, Expect], ...]:
+    """Read what an operation expects: a mapping, or a list of them."""
+    found: list[tuple[FilePosition, Expect]] = []
+    for item in each_of(node):
+        named = list(item.entries())
+        settings = {name.value: value for name, value in named if name.value in _SETTINGS}
+        patterns = [(pair, False) for pair in named if pair[0].value not in _SETTINGS]
+        if "no" in settings:
+            patterns += [(pair, True) for pair in settings["no"].entries()]
+        if not patterns and isinstance(item.value, dict):
+            item.wrong(f"{item.what} names no property", "write a property with its values: docked: [true]")
+        within = settings["within"].number(minimum=0.0) if "within" in settings else 0.0
+        reason = belief_name(settings["else"]) if "else" in settings else None
+        for (name, values), signal in patterns:
+            given = [_pattern(each, part.parameters) for each in values.sequence()]
+            expected = Expect(belief_name(name), *given, within=within, reason=reason, signal=signal)
+            found.append((place_of(name), expected))
+    return tuple(found)
+
+
+def _pattern(node: YamlNode, parameters: tuple[str, ...]) -> object:
+    pattern = plain(node.value)
+    if (wrong := mistake_in(pattern, parameters)) is not None:
+        node.wrong(*wrong)
+    return pattern
+
+
+def _effects(node: YamlNode, part: OperationPart) -> dict[str, Any]:
+    found = _expectations(node, part)
+    for place, each in found:
+        if each.signal:
+            text = "`no` is about signals while the operation runs"
+            node.problems.append(place.problem(text, "write it below `meanwhile`"))
+    return {"expect": found}
+
+
 def _parameters(node: YamlNode) -> tuple[str, ...]:
     names: list[str] = []
     for item in node.sequence():
@@ -448,6 +494,8 @@ COMMON: dict[str, ReadPart] = {
     "parameters": _into("parameters", _parameters),
     "description": _into("description", YamlNode.text),
     "uses": _into("uses", _uses),
+    "expect": _effects,
+    "meanwhile": lambda node, part: {"meanwhile": _expectations(node, part)},
 }
 _ALL_KEYS = tuple(dict.fromkeys((*COMMON, *(key for kind in KEYS for key in list(KEYS[kind])[1:]))))
 

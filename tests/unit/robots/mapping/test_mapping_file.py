@@ -180,8 +180,26 @@ operations: {go: {publish: t, service: s}}
   1:14: the operation `go` has publish and service | write one of publish, service, action, set_parameter,
   get_parameter, refresh, read
 operations: {go: {publish: t, request: {}}}
-  1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, type, fields, qos, rate,
-  duration, at_end
+  1:31: 'go' has no key 'request' | known keys: publish, parameters, description, uses, expect, meanwhile, type, fields,
+  qos, rate, duration, at_end
+operations: {go: {service: s, expect: {within: 2, else: late}}}
+  1:39: 'expect' names no property | write a property with its values: docked: [true]
+operations: {go: {service: s, expect: {docked: true}}}
+  1:48: 'docked' must be a list | write '- item' lines or [item, item]
+operations: {go: {service: s, expect: {docked: [true], within: -1}}}
+  1:64: 'within' is -1, but must be at least 0
+operations: {go: {service: s, expect: {docked: [true], else: "Not docked"}}}
+  1:62: 'Not docked' is not a valid name in agent programs | write not_docked
+operations: {go: {service: s, expect: [{docked: [true]}, {no: {bump: [_]}}]}}
+  1:64: `no` is about signals while the operation runs | write it below `meanwhile`
+operations: {go: {service: s, parameters: [x], request: {a: $x}, expect: {pose: [{near: $y, by: 1}]}}}
+  1:82: the operation has no parameter `y` | parameters: $x
+operations: {go: {service: s, meanwhile: {pose: [{nera: 2, by: 1}]}}}
+  1:50: invalid pattern | write a constant, _, $parameter, {not: X}, {in: [X, Y]} or {near: X, by: 20, unit: degrees}
+properties: {p: {topic: t, type: std_msgs/msg/Bool, fields: [data]}}\noperations: {go: {service: s, expect: {p: [_, 2]}}}
+  2:40: `p` has 1 value, not 2 | write a pattern for each value, _ for any
+properties: {p: {topic: t, mode: on_demand}}\noperations: {look: {refresh: p}, go: {service: s, expect: {p: [_]}}}
+  2:60: `p` is updated on demand, so it shows no effect | expect another property, or leave out its `mode`
 operations: {go: {parameters: [speed], publish: t, fields: {x: $sped}}}
   1:64: the operation has no parameter `sped` | did you mean `$speed`?
 operations: {go: {publish: t, fields: {x: $v}}}
@@ -297,5 +315,9 @@ def test_reading_a_mapping_loads_neither_artifacts_nor_a_middleware() -> None:
     script = "import sys, jacaros.robots.mapping.file; print(*sys.modules)"
     output = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
     loaded = [name for name in output.split() if name.startswith("jacaros")]
-    assert len(loaded) <= 20, loaded
-    assert not [name for name in loaded if name.startswith(("jacaros.artifacts", "jacaros.runtime.clock"))]
+    assert len(loaded) <= 24, loaded
+    assert [name for name in loaded if name.startswith(("jacaros.artifacts.", "jacaros.runtime.clock"))] == [
+        "jacaros.artifacts.env",
+        "jacaros.artifacts.env.values",
+        "jacaros.artifacts.env.expectation",
+    ]

@@ -64,9 +64,8 @@ def with_ready(
         watcher = lab.watch(artifact)
         await lab.sleep(1.5)
         await body(Ready(lab, file, artifact, watcher))
-        silence = (
-            ("waiting", "missing", "no publisher on", "is unknown: no transform") if world is None else ()
-        )
+        silence = ["cannot check the effect"]  # the artifacts of a whole robot are in other tests
+        silence += ["waiting", "missing", "no publisher on", "is unknown: no transform"] * (world is None)
         assert [line for line in lab.logged if not any(each in line for each in silence)] == []
 
     return in_lab(in_it, world)

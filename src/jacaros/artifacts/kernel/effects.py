@@ -1,0 +1,186 @@
+"""Operations that expect effects: watch the properties of a robot while one runs, and after it.
+
+The expectations are checked around the operation's own function, so operations without any cost nothing.
+"""
+
+import asyncio
+import inspect
+from collections.abc import Callable, Sequence
+from functools import partial, wraps
+from typing import Any
+
+from jacaros.artifacts.env.errors import OperationFailed
+from jacaros.artifacts.env.expectation import Expect
+from jacaros.artifacts.env.operation import OperationOutcome
+from jacaros.artifacts.env.property import Observation
+from jacaros.artifacts.env.values import Structure, text
+from jacaros.runtime.clock import Timer
+
+
+def expecting(
+    function: Callable[..., Any],
+    names: Sequence[str],
+    expect: tuple[Expect, ...],
+    meanwhile: tuple[Expect, ...],
+) -> Callable[..., Any]:
+    """Return *function* as a coroutine that fails without the effects *expect*, and stops if *meanwhile* is violated.
+
+    Args:
+        function: takes the artifact and the arguments.
+        names: names of its parameters, for patterns that refer to them.
+        expect: effects, after its end.
+        meanwhile: conditions while it runs.
+    """
+
+    @wraps(function)
+    async def run(artifact: Any, *arguments: object) -> object:
+        given = dict(zip(names, arguments, strict=False))
+        watch = _Watch(artifact, [each.bound(given) for each in expect])
+        try:
+            watch.begin([each.bound(given) for each in meanwhile])
+            result = function(artifact, *arguments)
+            if inspect.iscoroutine(result):
+                result = await result
+            await watch.settle()
+            return result
+        finally:
+            watch.close()
+
+    return run
+
+
+class _Watch:
+    """Watches the artifacts of one robot for one operation. An observer that belongs to no agent."""
+
+    agent = ""
+
+    def __init__(self, artifact: Any, expect: list[Expect]) -> None:
+        self._artifact, self._steps = artifact, artifact._steps
+        self._execution = artifact.current
+        self._places = artifact.workspace.of_same_robot(artifact.id)
+        self._expect, self._meanwhile = expect, list[Expect]()
+        self._known = {each.name for each in expect if self._found(each)}
+        self._timers: dict[Expect, Timer] = {}
+        self._settled: asyncio.Future[None] | None = None
+
+    def _found(self, each: Expect) -> list[tuple[object, ...]]:
+        named = (found.values for place in self._places for found in place.properties.all(each.name))
+        return [values for values in named if len(values) == len(each.values)]
+
+    def _holds(self, each: Expect) -> bool:
+        return any(map(each.matches, self._found(each)))
+
+    def _missed(self, each: Expect, what: str) -> OperationFailed:
+        told, reason = each.missed(next(iter(self._found(each)), None))
+        return OperationFailed(f"{self._what} {what}: {told}", reason)
+
+    def _follow(self, on: bool = True) -> None:
+        for place in self._places:
+            place.follow(self, on)
+
+    def close(self) -> None:
+        """Watch no longer."""
+        self._follow(False)
+        self._meanwhile, self._settled = [], None
+        for timer in self._timers.values():
+            timer.cancel()
+        self._timers.clear()
+
+    # ---- while it runs
+
+    def begin(self, meanwhile: list[Expect]) -> None:
+        """Stop the operation when a condition is violated.
+
+        Raises:
+            OperationFailed: one is violated already.
+        """
+        if not meanwhile:
+            return
+        self._meanwhile = meanwhile
+        for each in meanwhile:
+            if not each.within and self._is_violated(each):
+                raise self._missed(each, "was stopped")
+        self._follow()
+        self._execution.on_resume(self._look)
+        self._look()
+
+    def observe(self, observation: Observation) -> None:
+        """Look at the conditions, or the effects, after a change."""
+        for signal in observation.signals:
+            for each in self._meanwhile:
+                if each.signal and signal.name == each.name and each.matches(signal.arguments):
+                    here = Structure(signal.name, signal.arguments)
+                    reason = each.reason or Structure("occurred", (here,))
+                    self._stop(OperationFailed(f"{self._what} was stopped by {text(here)}", reason))
+        self._look()
+
+    def _look(self) -> None:
+        if self._settled is not None:
+            self._look_at_effects()
+        for each in self._meanwhile:
+            if not self._is_violated(each):
+                if (timer := self._timers.pop(each, None)) is not None:
+                    timer.cancel()
+            elif not each.within:
+                self._stop(self._missed(each, "was stopped"))
+            elif each not in self._timers:
+                self._timers[each] = self._steps.clock.call_later(
+                    each.within, partial(self._look_again, each)
+                )
+
+    def _look_again(self, each: Expect) -> None:
+        del self._timers[each]
+        if self._is_violated(each):
+            self._stop(self._missed(each, "was stopped"))
+
+    def _is_violated(self, each: Expect) -> bool:
+        return not each.signal and bool(self._found(each)) and not self._holds(each)
+
+    @property
+    def _what(self) -> str:
+        return f"operation {self._execution.request.key} of artifact {self._steps.id.name}"
+
+    def _stop(self, failure: OperationFailed) -> None:
+        if not (self._execution.paused or self._execution.stopped or self._execution.ended):
+            self._steps.stop(self._execution, OperationOutcome.of(failure))
+
+    # ---- when it has ended
+
+    async def settle(self) -> None:
+        """Wait until the effects show.
+
+        Raises:
+            OperationFailed: one has not shown in time.
+        """
+        self.close()
+        for each in self._expect:
+            if not self._found(each) and each.name not in self._known:
+                self._leave_unchecked(each)
+        self._expect = [each for each in self._expect if each.name in self._known or self._found(each)]
+        self._expect = [each for each in self._expect if not self._holds(each)]
+        if not self._expect:
+            return
+        self._settled = asyncio.get_running_loop().create_future()
+        for each in self._expect:
+            self._timers[each] = self._steps.clock.call_later(each.within, partial(self._miss, each))
+        self._follow()
+        await self._artifact.step(self._settled)
+
+    def _leave_unchecked(self, each: Expect) -> None:
+        key = (self._steps.id, self._execution.request.operation, each.name)
+        if key not in self._steps.setting.told:
+            self._steps.setting.told.add(key)
+            self._artifact.log(
+                f"warning: cannot check the effect of {self._execution.request.key}: no artifact of this robot shows "
+                f"{each.name}/{len(each.values)}"
+            )
+
+    def _look_at_effects(self) -> None:
+        assert self._settled is not None
+        self._expect = [each for each in self._expect if not self._holds(each)]
+        if not self._expect and not self._settled.done():
+            self._settled.set_result(None)
+
+    def _miss(self, each: Expect) -> None:
+        if self._settled is not None and each in self._expect and not self._settled.done():
+            self._settled.set_exception(self._missed(each, "had no effect"))
