@@ -58,7 +58,7 @@ class _Watch:
         self._artifact, self._steps = artifact, artifact._steps
         self._execution = artifact.current
         self._places = artifact.workspace.of_same_robot(artifact.id)
-        self._expect, self._meanwhile = expect, list[Expect]()
+        self._expect, self._meanwhile, self._pending = expect, list[Expect](), list[Expect]()
         self._known = {each.name for each in expect if self._found(each)}
         self._timers: dict[Expect, Timer] = {}
         self._settled: asyncio.Future[None] | None = None
@@ -115,8 +115,9 @@ class _Watch:
         self._look()
 
     def _look(self) -> None:
-        if self._settled is not None:
-            self._look_at_effects()
+        self._pending = [each for each in self._pending if not self._holds(each)]
+        if self._settled is not None and not self._pending and not self._settled.done():
+            self._settled.set_result(None)
         for each in self._meanwhile:
             if not self._is_violated(each):
                 if (timer := self._timers.pop(each, None)) is not None:
@@ -153,15 +154,16 @@ class _Watch:
             OperationFailed: one has not shown in time.
         """
         self.close()
+        self._places = self._artifact.workspace.of_same_robot(self._steps.id)  # some may have come or gone
         for each in self._expect:
             if not self._found(each) and each.name not in self._known:
                 self._leave_unchecked(each)
-        self._expect = [each for each in self._expect if each.name in self._known or self._found(each)]
-        self._expect = [each for each in self._expect if not self._holds(each)]
-        if not self._expect:
+            elif not self._holds(each):
+                self._pending.append(each)
+        if not self._pending:
             return
         self._settled = asyncio.get_running_loop().create_future()
-        for each in self._expect:
+        for each in self._pending:
             self._timers[each] = self._steps.clock.call_later(each.within, partial(self._miss, each))
         self._follow()
         await self._artifact.step(self._settled)
@@ -175,12 +177,6 @@ class _Watch:
                 f"{each.name}/{len(each.values)}"
             )
 
-    def _look_at_effects(self) -> None:
-        assert self._settled is not None
-        self._expect = [each for each in self._expect if not self._holds(each)]
-        if not self._expect and not self._settled.done():
-            self._settled.set_result(None)
-
     def _miss(self, each: Expect) -> None:
-        if self._settled is not None and each in self._expect and not self._settled.done():
+        if self._settled is not None and each in self._pending and not self._settled.done():
             self._settled.set_exception(self._missed(each, "had no effect"))

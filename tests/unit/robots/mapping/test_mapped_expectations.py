@@ -103,6 +103,7 @@ async def test_the_dock_was_not_left(lab: Lab) -> None:
     offer(lab, "undock", "irobot_create_msgs/action/Undock", 1, is_docked=False)
     offer(lab, "undock_robot", "nav2_msgs/action/UndockRobot", 1, success=True)
     await docked(lab, True)
+    await battery(lab, CHARGING)
     assert (await lab.call(base, "undock")).reason == "still_docked"
     assert (await lab.call(nav, "leave_dock")).reason == "still_docked"
 
