@@ -16,7 +16,7 @@ anything else                            a value that is equal for an agent
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from jacaros.artifacts.env.values import Atom, Structure, equal, text
@@ -26,61 +26,56 @@ _TURNS: Final = {"degrees": 360.0, "radians": math.tau}
 _NEAR: Final = {"near", "by"}
 
 
-@dataclass(frozen=True, slots=True, init=False, eq=False)
+@dataclass(frozen=True, eq=False)
 class Expect:
-    """Values that a property must have, or with *signal*, a signal that must not be sent.
+    """Values that a property must have, or with `signal`, a signal that must not be sent.
 
-    Properties called *name* are looked for in all artifacts of the same robot (`robot_prefix`) in the workspace; one that
+    Properties called `name` are looked for in all artifacts of the same robot (`robot_prefix`) in the workspace; one that
     matches is enough. While none has had a property of this name, the expectation is not checked.
 
-    Args:
+    Attributes:
         name: name of the property or signal.
         values: one pattern for each value (see the module).
         within: seconds in which the property must get the values, 0 or more.
-        reason: reason term of the failure. Default: ``expected(Wanted,found(Found))``.
+        reason: reason term of the failure, a text for an atom. None: ``expected(Wanted,found(Found))``.
         signal: whether this is a signal, which must not be sent. For ``meanwhile``.
     """
 
     name: str
-    values: tuple[Any, ...]
-    within: float
-    reason: Structure | Atom | None
-    signal: bool
-
-    def __init__(
-        self,
-        name: str,
-        *values: Any,
-        within: float = 0.0,
-        reason: Structure | str | None = None,
-        signal: bool = False,
-    ) -> None:
-        reason = Atom(reason) if isinstance(reason, str) else reason
-        for field, value in zip(self.__slots__, (name, values, within, reason, signal), strict=True):
-            object.__setattr__(self, field, value)
+    values: Sequence[Any] = ()
+    within: float = 0.0
+    reason: Structure | str | None = None
+    signal: bool = False
 
     def bound(self, arguments: Mapping[str, object]) -> "Expect":
         """Return the expectation with the arguments of a call in place of parameters."""
-        values = [_bound(each, arguments) for each in self.values]
-        return Expect(self.name, *values, within=self.within, reason=self.reason, signal=self.signal)
+        return replace(self, values=[_bound(each, arguments) for each in self.values])
 
-    def matches(self, values: tuple[object, ...]) -> bool:
+    def matches(self, values: Sequence[object]) -> bool:
         """Return whether the values of a property or signal match."""
         return len(values) == len(self.values) and all(map(_matches, self.values, values))
 
-    def wanted(self) -> Structure | Atom:
-        """Return the expected property as a term: ``battery(_,not(discharging))``."""
-        return _term(self.name, map(_pattern_term, self.values))
-
-    def missed(self, found: tuple[object, ...] | None) -> tuple[str, Structure | Atom]:
+    def missed(self, found: Sequence[object] | None) -> tuple[str, Structure | Atom]:
         """Return the text and the reason of a failure: what was expected, and the values *found* (None: no property)."""
         here = Atom("nothing") if found is None else _term(self.name, found)
-        reason = self.reason or Structure("expected", (self.wanted(), Structure("found", (here,))))
-        return f"expected {self}, found {text(here)}", reason
+        return f"expected {self}, found {text(here)}", self.failure(
+            "expected", self.wanted, Structure("found", (here,))
+        )
+
+    def failure(self, functor: str, *arguments: object) -> Structure | Atom:
+        """Return the reason, or the one with these parts if none was given."""
+        if self.reason is None:
+            return Structure(functor, arguments)
+        return Atom(self.reason) if isinstance(self.reason, str) else self.reason
+
+    @property
+    def wanted(self) -> Structure | Atom:
+        """The expected property as a term: ``battery(any,not(discharging))``."""
+        return _term(self.name, map(_pattern_term, self.values))
 
     def __str__(self) -> str:
         within = f" within {self.within:g} s" if self.within else ""
-        return f"{'no ' * self.signal}{text(self.wanted())}{within}"
+        return f"{'no ' * self.signal}{text(self.wanted)}{within}"
 
 
 def _term(name: str, arguments: Iterable[object]) -> Structure | Atom:
@@ -129,8 +124,9 @@ def _pattern_term(pattern: Any) -> object:
             return Structure("in", ([_pattern_term(each) for each in choices],))
         case {"near": centre, "by": most}:
             return Structure("near", (centre, most))
-    is_word = isinstance(pattern, str) and re.fullmatch(r"_|[a-z]\w*", pattern)
-    return (Atom("any") if pattern == "_" else Atom(pattern)) if is_word else pattern
+    if pattern == "_":
+        return Atom("any")
+    return Atom(pattern) if isinstance(pattern, str) and re.fullmatch(r"[a-z]\w*", pattern) else pattern
 
 
 def mistake_in(pattern: Any, parameters: Sequence[str]) -> tuple[str, str] | None:

@@ -414,7 +414,7 @@ def _expectations(node: YamlNode, part: OperationPart) -> tuple[tuple[FilePositi
         reason = belief_name(settings["else"]) if "else" in settings else None
         for (name, values), signal in patterns:
             given = [_pattern(each, part.parameters) for each in values.sequence()]
-            expected = Expect(belief_name(name), *given, within=within, reason=reason, signal=signal)
+            expected = Expect(belief_name(name), given, within, reason, signal)
             found.append((place_of(name), expected))
     return tuple(found)
 

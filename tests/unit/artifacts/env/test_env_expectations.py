@@ -37,25 +37,28 @@ class Motion(Base):
         self.robot_prefix, self.events = robot, []
 
     @operation(
-        expect=(Expect("docked", True, within=2), Expect("battery", "_", "charging", within=5, reason="idle"))
+        expect=(
+            Expect("docked", [True], within=2),
+            Expect("battery", ["_", "charging"], within=5, reason="idle"),
+        )
     )
     async def dock(self):
         await self.sleep(1)
 
-    @operation(expect=Expect("docked", False))
+    @operation(expect=Expect("docked", [False]))
     def undock(self):
         """End immediately."""
 
-    @operation(expect=Expect("pose", {"near": "$x", "by": 0.5}, within=1))
+    @operation(expect=Expect("pose", [{"near": "$x", "by": 0.5}], within=1))
     async def drive(self, x: float):
         await self.sleep(1)
 
     @operation(
         pausable=True,
         meanwhile=(
-            Expect("battery", "_", {"not": "discharging"}, reason="falling"),
-            Expect("docked", True, within=2, reason="loose"),
-            Expect("bump", "front", signal=True),
+            Expect("battery", ["_", {"not": "discharging"}], reason="falling"),
+            Expect("docked", [True], within=2, reason="loose"),
+            Expect("bump", ["front"], signal=True),
         ),
     )
     async def charge(self):
@@ -201,15 +204,15 @@ async def test_expectations_are_no_focus_and_leave_nothing_behind(stage):
 )
 def test_patterns(pattern, value, matches):
     assert mistake_in(pattern, ("x",)) is None
-    assert Expect("p", pattern).bound({"x": 2}).matches((value,)) is matches
+    assert Expect("p", [pattern]).bound({"x": 2}).matches((value,)) is matches
 
 
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"expect": Expect("pose", "$distance")}, "pose: the operation has no parameter `distance`"),
-        ({"expect": Expect("pose", {"nera": 1})}, "pose: invalid pattern; write a constant, _"),
-        ({"expect": Expect("pose", {"near": "$x", "by": -1})}, "pose: `near` needs two numbers"),
+        ({"expect": Expect("pose", ["$distance"])}, "pose: the operation has no parameter `distance`"),
+        ({"expect": Expect("pose", [{"nera": 1}])}, "pose: invalid pattern; write a constant, _"),
+        ({"expect": Expect("pose", [{"near": "$x", "by": -1}])}, "pose: `near` needs two numbers"),
         ({"expect": Expect("bump", signal=True)}, "expected a property in expect, found a signal"),
     ],
 )
@@ -222,4 +225,4 @@ def test_wrong_expectations_are_found_when_the_class_is_made(options, text):
 
 
 def test_a_reason_can_be_a_structure():
-    assert Expect("a", 1, reason=Structure("lost", (1,))).missed(None)[1] == Structure("lost", (1,))
+    assert Expect("a", [1], reason=Structure("lost", (1,))).missed(None)[1] == Structure("lost", (1,))
