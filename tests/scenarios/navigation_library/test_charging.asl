@@ -23,6 +23,8 @@ place(b, 2, 0, 0).
      .wait(1500);
      !assert_not_did(dock);
      -+battery(20, discharging);
+     .wait(2500);
+     -+battery(20, charging);
      .wait(10000);
      !assert_did(dock, 1);
      !assert_did(navigate_to(_, _, _), 2);
@@ -150,21 +152,105 @@ place(b, 2, 0, 0).
 -!mind[env_failure_reason(Reason)]
   <- +trouble(Reason).
 
-@abandons_a_dock_without_current[test, timeout(2000000)]
-+!test_no_current
-  <- !fakes;
+// Percepts that say that no current flows end the wait within seconds; these do not wait for minutes.
+@the_battery_says_that_it_discharges[test]
++!test_discharging
+  <- +battery(30, discharging);
+     !!hope;
+     .wait(4000);
+     !assert_false(hopeless(_));  // a message that was late
+     .wait(1100);
+     !assert_true(hopeless(no_current)).
+
+@a_robot_that_leaves_its_dock_stops_waiting[test]
++!test_left
+  <- +docked(true);
      +battery(30);
-     !assert_fail(wait_until_charged);
+     !!hope;
+     .wait(5000);
+     -+docked(false);
+     .wait(5100);
+     !assert_true(hopeless(no_current)).
+
+@a_level_that_falls_ends_the_wait[test]
++!test_falls
+  <- +battery(30, charging);
+     !!hope;
+     .wait(1000);
+     -+battery(29, charging);
+     .wait(10000);
+     !assert_false(hopeless(_));
+     -+battery(28, charging);
+     .wait(100);
+     !assert_true(hopeless(no_current)).
+
+@a_contact_that_flickers_is_enough[test]
++!test_flickers
+  <- +battery(94, charging);
+     !!hope;
+     for (.member(_, [1, 2, 3])) {
+        -+battery(94, discharging);
+        .wait(3000);
+        -+battery(94, charging);
+        .wait(3000)
+     };
+     -+battery(95, charging);
+     .wait(100);
+     !assert_false(hopeless(_));
+     !assert_true(hopes).
+
+@a_slow_battery_is_not_dead[test, timeout(3000000)]
++!test_slow
+  <- +battery(93, charging);
      !!hope;
      .wait(200000);
-     -+battery(31);
-     .wait(200000);
+     -+battery(94, charging);
+     .wait(800000);
+     -+battery(95, charging);
+     .wait(100);
      !assert_false(hopeless(_));
-     .wait(100001);
+     !assert_true(hopes).
+
+@a_battery_that_charged_fast_is_abandoned_soon[test]
++!test_fast
+  <- +battery(30, charging);
+     !!hope;
+     .wait(1000);
+     -+battery(31, charging);
+     .wait(13000);
+     !assert_false(hopeless(_));
+     .wait(1500);
      !assert_true(hopeless(no_current)).
 
 +!hope
-  <- !wait_until_charged.
+  <- !wait_until_charged;
+     +hopes.
 
 -!hope[env_failure_reason(Reason)]
   <- +hopeless(Reason).
+
+@docks_anew_when_there_is_no_current[test]
++!test_anew
+  <- !fakes;
+     +battery(10, discharging);
+     !!keep_charged;
+     .wait(7000);
+     !assert_did(dock, 2);
+     !assert_did(undock, 1);
+     -+battery(10, charging);
+     .wait(10000);
+     -+battery(100, full);
+     .wait(1000);
+     !assert_did(dock, 2);
+     !assert_did(undock, 2);
+     .drop_desire(keep_charged).
+
+@does_not_leave_a_dock_that_it_is_not_in[test]
++!test_false_dock
+  <- !fakes;
+     +docked(false);
+     +battery(10, discharging);
+     !!mind;
+     .wait(trouble(no_current), 30000);
+     !assert_did(dock, 3);
+     !assert_not_did(undock).

@@ -27,6 +27,14 @@ battery_low :- percent_left(Percent) & not low_at(_) & Percent <= 20.
 battery_full :- percent_left(Percent) & charged_at(Least) & Percent >= Least.
 battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 
+no_current :- battery(_, discharging).
+no_current :- docked(false) & not battery(_, charging) & not battery(_, full).
+
+// Milliseconds for the next percent.  A slow battery takes two minutes for the first one; a fast one falls by then if it is
+// not charging.
+patience(Ms) :- slowest_percent(Slowest) & Ms = 10000 + 4 * Slowest.
+patience(300000) :- not slowest_percent(_).
+
 /* Going to a place */
 
 // Go to a place by its name, or to a pose in the map (metres and degrees).
@@ -76,6 +84,19 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!recover(rejected) <- .wait(3000).
 +!recover(server_unavailable) <- .wait(3000).
 +!recover(server_lost) <- .wait(3000).
+
+// The dock gives no current: dock anew.
++!recover(no_current)
+  <- !back_out;
+     !into_dock.
+
++!back_out : not docked(false)
+  <- !drive_out_of_dock.
+
++!back_out.
+
+// It is not in a dock after all.
+-!back_out.
 
 // No path was found, or it took too long: forget obstacles that may have moved, and give them time to move.
 +!recover(_)
@@ -192,7 +213,7 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 // Drive into the dock, wait until the battery is full, and drive out.
 +!dock_and_charge
   <- !into_dock;
-     !wait_until_charged;
+     !attempt(wait_until_charged, 1);
      !out_of_dock.
 
 +!into_dock
@@ -219,21 +240,39 @@ battery_full :- percent_left(Percent) & not charged_at(_) & Percent >= 95.
 +!drive_out_of_dock
   <- undock.
 
-// Wait until the battery is full.
+// Wait until the battery is full, percent by percent.  This fails as soon as percepts say that no current flows.
 +!wait_until_charged : battery_full.
 
 +!wait_until_charged
-  <- !get_fuller;
+  <- .nano_time(Begin);
+     !gain_a_percent;
+     .nano_time(End);
+     !learn_rate((End - Begin) / 1000000);
      !wait_until_charged.
 
-// A slow battery takes two minutes per percent; if the level does not rise for five, the robot is not in a dock.  This is
-// a goal of its own because a program that waits in another way has other failures.
-+!get_fuller : percent_left(Before)
-  <- .wait(battery_full | percent_left(Now) & Now > Before, 300000).
++!gain_a_percent : percent_left(Before) & patience(Ms)
+  <- !get_fuller(Before)[within(Ms)].
 
-+!get_fuller
-  <- .wait(percent_left(_), 300000).
+// No message of the battery has come yet.
++!gain_a_percent
+  <- .wait(percent_left(_), 10000).
 
--!get_fuller
-  <- .fail(error(action_failed), error_msg("the battery level has not risen for five minutes"),
-           env_failure_reason(no_current)).
+-!gain_a_percent
+  <- .fail(error(action_failed), error_msg("the battery is not charging"), env_failure_reason(no_current)).
+
+// A sign that no current flows counts when it has lasted: sensors lag, and contacts flicker.
++!get_fuller(Before)
+  <- .wait(battery_full | no_current | percent_left(Now) & (Now > Before | Now < Before - 1));
+     .wait(not no_current, 5000);
+     !fuller_than(Before).
+
++!fuller_than(Before) : battery_full | percent_left(Now) & Now > Before.
+
++!fuller_than(Before) : percent_left(Now) & Now >= Before - 1
+  <- !get_fuller(Before).
+
+// How long the next percent may take: much longer than the slowest so far, because a nearly full battery charges slowly.
++!learn_rate(Ms) : slowest_percent(Slowest) & Slowest >= Ms.
+
++!learn_rate(Ms)
+  <- -+slowest_percent(Ms).
