@@ -5,7 +5,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from jacaros.artifacts.env.values import Atom, Structure
@@ -322,7 +322,11 @@ def check_conversion(conversion: Conversion, path: str, kind: FieldType, angles:
             )
         return
     check_names(conversion, path, kind.base)
-    for key, given in (("unit, scale or offset", conversion.line), ("round", conversion.digits)):
+    for key, given in (
+        ("unit, scale or offset", conversion.line),
+        ("round", conversion.digits),
+        ("least", conversion.least),
+    ):
         if given is not None and not is_number(kind):
             raise WrongPath(f"{key} needs a number, but `{path}` is {kind}", help)
 
@@ -368,6 +372,8 @@ def converted(conversion: Conversion) -> Convert:
     steps: list[Convert] = []
     if (line := conversion.line) is not None:
         steps.append(line.there)
+    if conversion.least is not None:
+        steps.append(partial(max, conversion.least))
     if (digits := conversion.digits) is not None:
         steps.append(_rounding(digits, conversion.floor))
     number = _in_turn(steps)
@@ -392,7 +398,7 @@ def perceived(value: object) -> object:
 def _in_turn(steps: list[Convert]) -> Convert:
     if len(steps) < 2:
         return steps[0] if steps else lambda value: value
-    first, second = steps
+    first, second = steps[0], _in_turn(steps[1:])
     return lambda value: second(first(value))
 
 

@@ -166,7 +166,7 @@ KINDS = (*ANGLES, "name", "atom", "object", *LISTS)
 CONVERSION = ("as", "prefix", "names", "unit", "message_unit", "scale", "offset")
 DOWN = "down"
 """Value of ``round: down``, the next lower integer, so that a battery at 99.7 % does not count as full."""
-FIELD = ("path", *CONVERSION, "sample", "round", "otherwise", "dead_band", "name")
+FIELD = ("path", *CONVERSION, "sample", "round", "least", "otherwise", "dead_band", "name")
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,6 +270,7 @@ class Conversion:
         line: the linear conversion of units, scale and offset; None if the number stays unchanged.
         digits: decimals; None: all.
         floor: integers, rounded down instead of to the nearest.
+        least: replaces smaller numbers of the agent.
     """
 
     kind: str = ""
@@ -280,11 +281,12 @@ class Conversion:
     unit: str = ""
     knows_message_unit: bool = False
     floor: bool = False
+    least: float | None = None
 
     @property
     def needs_number(self) -> bool:
         """Whether only a number can be converted."""
-        return self.line is not None or self.digits is not None
+        return (self.line, self.digits, self.least) != (None, None, None)
 
 
 AS_IT_IS = Conversion()
@@ -399,6 +401,7 @@ def read_conversion(entries: dict[str, YamlNode]) -> Conversion:
         str(unit.value) if unit is not None and isinstance(unit.value, str) and unit.value in UNITS else "",
         "message_unit" in entries,
         digits is not None and digits.value == DOWN,
+        entries["least"].number() if "least" in entries else None,
     )
 
 

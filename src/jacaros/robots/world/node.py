@@ -14,6 +14,7 @@ from jacaros.robots.world.graph.frames import MAP
 from jacaros.robots.world.graph.on_graph import LATCHED, TICKS_PER_SECOND, OnGraph, WorldTime
 from jacaros.robots.world.graph.robot_node import RobotNode
 from jacaros.robots.world.navigation.servers import RobotNavigation
+from jacaros.robots.world.physics.localisation import SimulatedLocalisation
 from jacaros.robots.world.physics.world import World
 from jacaros.runtime.clock import Clock, Timer
 
@@ -65,7 +66,10 @@ class SimNode:
             UsageError: a fault affects an unknown topic or action.
         """
         self.time = WorldTime(self.world, self.clock)
-        self.robots = [RobotNode(self.time, robot, self.backend) for robot in self.world.robots.values()]
+        self.robots = [
+            RobotNode(self.time, robot, self.backend, SimulatedLocalisation(self.world, robot, self.grid))
+            for robot in self.world.robots.values()
+        ]
         self.navigation = [
             RobotNavigation(robot, self.grid)
             for robot in self.robots

@@ -489,3 +489,11 @@ async def test_an_echo_too_near_to_be_measured_is_not_one_beyond_the_range(lab: 
     t = await talk(lab, f"properties: {{a: {{topic: s, type: {SCAN}, fields: [{field}]}}}}")
     await t.scan(ranges=[-inf, inf, 1.0, math.nan, -inf], range_min=0.12, range_max=8.0)
     assert t.values() == [(0.12, 8.0, 1.0, 8.0, 0.12)]
+
+
+async def test_smaller_numbers_than_the_least_become_it(lab: Lab) -> None:
+    field = "{path: data, scale: -100, offset: 100, least: 0, round: 0}"
+    t = await talk(lab, f"properties: {{a: {{topic: s, type: std_msgs/msg/Float64, fields: [{field}]}}}}")
+    for variance in (0.0025, 0.25, 1.5):
+        await t.say("s", "std_msgs/msg/Float64", data=variance)
+    assert t.values() == [(100,), (75,), (0,)]

@@ -102,6 +102,29 @@ def test_going_to_a_pose(file: str) -> None:
     with_ready(file, body)
 
 
+@pytest.mark.parametrize("file", ["nav2.yaml", "move_base.yaml"])
+def test_doubt_about_the_place_ends_by_a_given_pose_or_by_searching(file: str) -> None:
+    async def body(robot: Ready) -> None:
+        robot.lab.world.place("turtlebot", 2, 2, 0)
+        await robot.lab.sleep(3)
+        assert robot.value("localised")[0] < 75  # type: ignore[operator]
+        assert robot.watcher.holds("lost") == [()]
+        await robot.do("set_pose", 2.3, 2, 10)
+        await robot.lab.sleep(1)
+        assert robot.value("pose") == pytest.approx((2, 2, 0), abs=0.1)
+        await robot.do("relocalise")
+        await robot.lab.sleep(1)
+        assert robot.value("localised") == (0,)
+        twist = robot.lab.backend.publisher("/cmd_vel", TWIST)
+        for _ in range(80):
+            twist.publish({"angular": {"z": 1.0}})
+            await robot.lab.sleep(0.1)
+        assert robot.value("localised") == (100,)
+        assert robot.watcher.holds("lost") == []
+
+    with_ready(file, body)
+
+
 @played(with_ready, "nav2.yaml")
 async def test_feedback_of_nav2_is_there_while_the_robot_is_on_its_way(robot: Ready) -> None:
     tried.update({("nav2.yaml", "distance_left"), ("nav2.yaml", "recoveries")})

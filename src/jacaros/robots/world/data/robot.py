@@ -133,8 +133,9 @@ TOPICS: Final = _names(
 )
 SERVICES: Final = _names(
     """
-    global_costmap/clear_entirely_global_costmap local_costmap/clear_entirely_local_costmap
-    move_base/clear_costmaps
+    global_costmap/clear_entirely_global_costmap global_localization
+    local_costmap/clear_entirely_local_costmap move_base/clear_costmaps
+    reinitialize_global_localization
     """
 )
 ACTIONS: Final = _names(

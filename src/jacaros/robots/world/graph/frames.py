@@ -8,12 +8,12 @@ import math
 from contextlib import suppress
 from typing import Any
 
-from jacaros.robots.plane.pose import Placement, distance
+from jacaros.robots.plane.pose import Placement
 from jacaros.robots.ros.errors import CapabilityMissing, RosError, TransformUnavailable, UnknownInterface
 from jacaros.robots.ros.node import Capability, Publisher
 from jacaros.robots.ros.qos import QoS
 from jacaros.robots.world.graph.on_graph import LATCHED, RobotOnGraph
-from jacaros.robots.world.physics.perception import FOUND
+from jacaros.robots.world.physics.localisation import OdometryMoves
 from jacaros.robots.world.physics.rendering import CAMERA_HEIGHT
 
 MAP, ODOMETRY, FOOTPRINT, BASE, SCAN = "map", "odom", "base_footprint", "base_link", "base_scan"
@@ -151,12 +151,6 @@ class RobotTransforms:
         return message
 
 
-UPDATE_DISTANCE = 0.25
-"""Metres of odometry between two messages (``update_min_d``)."""
-UPDATE_ANGLE = 0.2
-"""Radians of odometry between two messages (``update_min_a``)."""
-
-
 class AmclPose:
     """Publishes the estimated pose of one robot on the map; idle until the first subscription.
 
@@ -168,7 +162,7 @@ class AmclPose:
         self._at = at
         self._publisher = at.publisher("/amcl_pose", POSE_WITH_COVARIANCE, LATCHED)
         self._is_wanted = False
-        self._last = (math.inf, math.inf, 0.0)
+        self._moves = OdometryMoves(at.robot.odometry)
         self._variances: tuple[float, float] | None = None
 
     def publish(self, ticks: int) -> None:
@@ -177,13 +171,12 @@ class AmclPose:
         if not self._is_wanted:
             return
         localisation, time = self._at.localisation, self._at.time.world.time
-        if localisation.variances is not FOUND:
+        if not localisation.settled:
             localisation.update(time)
-        if localisation.variances is self._variances and not self._has_moved():
+        if not self._moves.enough() and localisation.variances is self._variances:
             return
         localisation.update(time)
-        odometry = self._at.robot.odometry
-        self._last = (odometry.x, odometry.y, odometry.yaw)
+        self._moves.begin()
         self._variances = variances = localisation.variances
         message = self._publisher.message()
         # An array owned by the message; a list of 36 numbers would be checked one by one.
@@ -193,9 +186,3 @@ class AmclPose:
         self._at.fill_header(message.header, MAP)
         _write(message.pose.pose, localisation.pose())
         self._publisher.publish(message)
-
-    def _has_moved(self) -> bool:
-        odometry = self._at.robot.odometry
-        x, y, yaw = self._last
-        turned = abs(math.remainder(odometry.yaw - yaw, math.tau))
-        return turned >= UPDATE_ANGLE or distance((x, y), (odometry.x, odometry.y)) >= UPDATE_DISTANCE

@@ -13,7 +13,7 @@ from jacaros.robots.ros.names import result_type
 from jacaros.robots.ros.node import Capability, Closable, Publisher
 from jacaros.robots.ros.qos import DEFAULT_QOS, QoS
 from jacaros.robots.ros.services import Handler
-from jacaros.robots.world.physics.perception import SimulatedLocalisation
+from jacaros.robots.world.physics.localisation import SimulatedLocalisation
 from jacaros.robots.world.physics.robot import Robot
 from jacaros.robots.world.physics.world import STEP, World
 from jacaros.runtime.clock import Clock
@@ -217,9 +217,9 @@ class RobotOnGraph(OnGraph):
         time: the world on a clock.
         robot: robot of that world.
         backend: graph; already started.
+        localisation: its estimated pose.
 
     Attributes:
-        localisation: estimated pose.
         prefix: prefix of the robot's topics, services and actions.
         frame_prefix: prefix of its frames.
     """
@@ -229,11 +229,11 @@ class RobotOnGraph(OnGraph):
         time: WorldTime,
         robot: Robot,
         backend: Backend,
-        localisation: SimulatedLocalisation | None = None,
+        localisation: SimulatedLocalisation,
     ) -> None:
         super().__init__(time, backend)
         self.robot = robot
-        self.localisation = localisation or SimulatedLocalisation(robot)
+        self.localisation = localisation
         namespace = robot.description.namespace
         self.prefix = f"/{namespace}" if namespace else ""
         self.frame_prefix = f"{namespace}/" if namespace else ""

@@ -17,6 +17,7 @@ from jacaros.robots.world.graph.frames import MAP, POSE_WITH_COVARIANCE, pose_fa
 from jacaros.robots.world.graph.on_graph import TICKS_PER_SECOND, ActiveGoal, RobotOnGraph, WorldTime
 from jacaros.robots.world.graph.publishing import Tick
 from jacaros.robots.world.graph.sensors import SENSORS
+from jacaros.robots.world.physics.localisation import SimulatedLocalisation
 from jacaros.robots.world.physics.robot import Robot, approach
 from jacaros.robots.world.physics.things import Thing
 from jacaros.runtime.errors import UsageError
@@ -32,8 +33,10 @@ class RobotNode(RobotOnGraph):
         UsageError: an added type is not installed, or does not have the fields that the world file states.
     """
 
-    def __init__(self, time: WorldTime, robot: Robot, backend: Backend) -> None:
-        super().__init__(time, robot, backend)
+    def __init__(
+        self, time: WorldTime, robot: Robot, backend: Backend, localisation: SimulatedLocalisation
+    ) -> None:
+        super().__init__(time, robot, backend, localisation)
         self._ticks = 0
         self._sensors: list[Tick] = [sensor(self) for sensor in SENSORS]
         self._colors: list[str] = []
@@ -49,6 +52,10 @@ class RobotNode(RobotOnGraph):
             self.subscribe(topic, "geometry_msgs/msg/Twist", self._command)
         self.subscribe("/cleaning/task", "std_msgs/msg/String", self._task)
         self.subscribe("/initialpose", POSE_WITH_COVARIANCE, self._receive_pose)
+        if backend.ros_version == 2:
+            self.service("/reinitialize_global_localization", "std_srvs/srv/Empty", self._relocalise)
+        if backend.ros_version == 1 or backend.name == "memory":
+            self.service("/global_localization", "std_srvs/srv/Empty", self._relocalise)
         if robot.description.tools:
             self.subscribe("/cleaning/tool", "std_msgs/msg/String", self._use_tool)
 
@@ -138,6 +145,11 @@ class RobotNode(RobotOnGraph):
         radius = 2.0 * math.sqrt(max(covariance[0], covariance[7]))
         turn = 2.0 * math.sqrt(covariance[35])
         self.localisation.believe(pose_of(received.pose), radius, turn, self.time.world.time)
+
+    def _relocalise(self, request: Any) -> Mapping[str, Any]:
+        self.time.catch_up()
+        self.localisation.relocalise()
+        return {}
 
 
 OPENING: Final = 0.1

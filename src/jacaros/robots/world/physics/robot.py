@@ -83,6 +83,8 @@ STILL_TURN_RATE = 0.1
 HALF_TRACK = 0.115
 """Distance from the centre to a wheel in metres, as of a TurtleBot 2."""
 
+BUMP = 0.1
+"""Metres by which a bump may move a robot unnoticed by its wheels."""
 WALL = "wall"
 
 
@@ -101,6 +103,7 @@ class Robot:
         misses: returns, for each grasp, whether its gripper misses; None if it does not.
         misled: pose that its localisation jumps to at the next message; None for none.
         put_downs: number of times it was put down elsewhere.
+        shaken: metres by which slip and bumps may have moved it unnoticed by its wheels, in total.
         touching: names of what it touches: ``wall`` or other robots. contacts: the side of each contact, by name.
     """
 
@@ -121,7 +124,7 @@ class Robot:
         self.has_current: Callable[[Dock], bool] = lambda dock: True
         self.misses: Callable[[], bool] | None = None
         self.misled: Pose | None = None
-        self.put_downs = 0
+        self.put_downs, self.shaken = 0, 0.0
         self.touching: frozenset[str] = frozenset()
         self.contacts: dict[str, str] = {}
         self._silence = math.inf
@@ -199,6 +202,7 @@ class Robot:
         rolled, turned = distance, turn
         if self.grip is not None:
             grip = self.grip()
+            self.shaken += (1.0 - grip) * (abs(distance) + HALF_TRACK * abs(turn))
             distance, turn = grip * distance, grip * turn
         before_x, before_y = self.x, self.y
         self.x, self.y, self.yaw = advance(self.x, self.y, self.yaw, distance, turn)
@@ -292,6 +296,7 @@ class Robot:
             return
         for other, side in self._touched.items():
             if other not in self.touching:
+                self.shaken += BUMP
                 if other == WALL:
                     self.tell("bump", {"side": side})
                 else:
