@@ -8,14 +8,21 @@
 
 // A plan: to achieve the goal `start`, run these steps in order.
 +!start
-  <- // An artifact is something that the agent uses; this one drives the robot.
-     !use_artifact("wheels", "ArtCmdVel", [frame(map)]);
+  <- !use_artifact("wheels", "ArtCmdVel", [frame(map)]);  // an artifact is something that the agent uses
      for (.member(Leg, [out, back])) {
         .print("driving ", Leg);
         move(25);     // drive ahead for 2.6 seconds: 26 commands at 10 Hz
         rotate(180);  // degrees, to the left; ends when odometry has measured them
      };
-     getCurrentPose(X, Y, _Heading);  // capitalised names are variables: they get their values here
-     .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)),
-            " mm from where I started");
-     .stopMAS.  // stop the whole system
+     // Wheels slip, so look where that has led: capitalised names are variables, which get their values here.
+     getCurrentPose(Ahead, _, _); moveForward(-Ahead);
+     getCurrentPose(X, Y, _);
+     .print("I believe to be ", math.round(1000 * math.sqrt(X * X + Y * Y)), " mm from where I started");
+     X * X + Y * Y < 0.05 * 0.05;  // a condition is a step, too: if it does not hold, the goal fails
+     .stopMAS.                     // stop the whole system
+
+// The wheels drop: somebody lifts the robot, so nothing is left of what it has measured.
++hazard(wheel_drop, _) <- .fail_goal(start).
+
+// The goal has failed: the exit status says so.
+-!start <- .print("I am not where I started, I need help"); .stopMAS(0, 1).

@@ -12,7 +12,12 @@
         moveForward(1);  // metres
         rotate(90);      // degrees
         getCurrentPose(X, Y, _);
-        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100),
-               " cm")
+        .print("side ", Side, " done, at ", math.round(X * 100), " cm, ", math.round(Y * 100), " cm")
      };
+     getCurrentPose(X, Y, _); X * X + Y * Y < 0.05 * 0.05;  // back at the start: otherwise the goal fails
      .stopMAS.
+
+// Somebody lifts the robot.
++hazard(wheel_drop, _) <- .fail_goal(start).
+
+-!start <- .print("I am not back at the start, I need help"); .stopMAS(0, 1).

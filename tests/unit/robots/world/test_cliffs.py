@@ -3,6 +3,7 @@
 import pytest
 from navigation_lab import Lab
 
+from jacaros.robots.plane.pose import Pose
 from jacaros.robots.world import World, WorldError, read_world
 from jacaros.robots.world.data.grid import Grid
 
@@ -84,3 +85,15 @@ def test_the_map_keeps_robots_away_from_cliffs() -> None:
 def test_a_robot_must_not_start_over_a_cliff() -> None:
     with pytest.raises(WorldError, match=r"the robot 'robot' is at \[1.5, 0\], over a cliff"):
         read_world(STAIRS.replace("x: 0", "x: 1.5"))
+
+
+@pytest.mark.world(STAIRS)
+async def test_the_wheels_of_a_carried_robot_drop_for_a_moment(lab: Lab) -> None:
+    drops = lab.hear("/mobile_base/events/wheel_drop", "kobuki_msgs/msg/WheelDropEvent")
+    hazards = lab.hear("/hazard_detection", "irobot_create_msgs/msg/HazardDetectionVector")
+    await lab.drive(1.0, 0.0)
+    lab.world.robot().put_down(Pose(1.5, 1.5, 0.0))
+    await lab.drive(1.0, 0.0)
+    assert [(drop.wheel, drop.state) for drop in drops] == [(0, 1), (1, 1), (0, 0), (1, 0)]
+    assert {len(vector.detections) for vector in hazards} == {0, 2}
+    assert hazards[-1].detections == []

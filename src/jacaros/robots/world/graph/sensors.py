@@ -153,7 +153,7 @@ def _kobuki_cliffs(at: RobotOnGraph) -> frozenset[str]:
 
 
 def _dropped_wheels(at: RobotOnGraph) -> frozenset[str]:
-    return frozenset(("LEFT", "RIGHT") if at.robot.fallen else ())
+    return frozenset(("LEFT", "RIGHT") if at.robot.wheels_drop else ())
 
 
 _CREATE3_BUMPERS = {"left": "bump_left", "front": "bump_front_center", "right": "bump_right"}
@@ -172,7 +172,7 @@ def _hazards(at: RobotOnGraph) -> Mapping[str, Any]:
     hazards = [
         *(("BUMP", _CREATE3_BUMPERS[side]) for side in sorted(_pressed(at) & _CREATE3_BUMPERS.keys())),
         *(("CLIFF", frame) for frame, degrees in _CREATE3_CLIFFS.items() if sees_cliff(at, degrees)),
-        *(("WHEEL_DROP", frame) for frame in (_CREATE3_WHEELS if at.robot.fallen else ())),
+        *(("WHEEL_DROP", frame) for frame in (_CREATE3_WHEELS if at.robot.wheels_drop else ())),
     ]
     return {"detections": [_hazard(at, *each) for each in hazards]}
 
@@ -229,7 +229,7 @@ SENSORS: Final[Sequence[Sensor]] = (
         "irobot_create_msgs/msg/HazardDetectionVector",
         every=2,
         fields=_hazards,
-        changed=_pressed,
+        changed=lambda at: (_pressed(at), at.robot.wheels_drop),
         optional=True,
     ),
     sensor("/sensor_state", "turtlebot3_msgs/msg/SensorState", _turtlebot3, optional=True),

@@ -85,6 +85,8 @@ HALF_TRACK = 0.115
 
 BUMP = 0.1
 """Metres by which a bump may move a robot unnoticed by its wheels."""
+LIFTED = 0.5
+"""Seconds for which the wheels of a carried robot hang down, when it is put down."""
 WALL = "wall"
 
 
@@ -119,6 +121,7 @@ class Robot:
         self.battery = Battery(description.battery)
         self.dock: Dock | None = None
         self.fallen = False
+        self._lifted = 0.0
         self.grip: Callable[[], float] | None = None
         self.blocked_wheel = ""
         self.has_current: Callable[[Dock], bool] = lambda dock: True
@@ -150,6 +153,11 @@ class Robot:
     def fed(self) -> bool:
         """Whether a dock supplies it with current."""
         return self.dock is not None and self.has_current(self.dock)
+
+    @property
+    def wheels_drop(self) -> bool:
+        """Whether its wheels hang in the air: it has fallen, or was carried just now."""
+        return self.fallen or self._lifted > 0.0
 
     @property
     def moving(self) -> bool:
@@ -185,6 +193,7 @@ class Robot:
     def step(self, dt: float, walls: WallIndex) -> None:
         """Drive for *dt* seconds, with contacts to walls; the world handles other robots and docks."""
         self._touched = {}
+        self._lifted = max(0.0, self._lifted - dt)
         if not self.moving:
             if WALL in self.touching:
                 self._touched[WALL] = self.contacts.get(WALL, "")
@@ -228,10 +237,11 @@ class Robot:
         return 0.5 * (left + right), 0.5 * (right - left) / HALF_TRACK
 
     def put_down(self, pose: Pose) -> None:
-        """Put the robot down at another place; the wheels do not notice."""
+        """Put the robot down at another place; the wheels drop on the way, and odometry does not notice."""
         self.x, self.y, self.yaw = pose
         self.speed = self.turn_rate = 0.0
         self.put_downs += 1
+        self._lifted = LIFTED
 
     def _watch_commands(self, dt: float) -> None:
         """Brake immediately, without a ramp, when commands cease or the battery is empty."""
