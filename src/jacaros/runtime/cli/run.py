@@ -143,6 +143,7 @@ def command(
     """Run FILE: an agent program (.asl, or .py for an agent in Python) or a project (.mas2j, .jcm).
 
     The output of agents goes to the standard output as `[agent] text`, everything else to the standard error output.
+    A line on the standard input answers the oldest open question of an agent to a person, see the artifact Operator.
     """
     check_file(file)
     outputs = RequestedOutputs.taken_from(given)
