@@ -2,6 +2,8 @@
 
 import asyncio
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -30,3 +32,39 @@ def test_lines_of_a_pipe_come_one_by_one(clock: Clock) -> None:
 
     assert run(main, clock) == ["kitchen", "häll\r", "last\ufffd", None]
     os.close(reader)
+
+
+IN_THE_BACKGROUND = """
+import asyncio, os, pty, signal
+
+def read():
+    from jacaros.runtime.input import LineInput
+    async def main():
+        line = asyncio.get_running_loop().create_future()
+        LineInput().next_line(line.set_result)
+        print("line:", await line, flush=True)
+    asyncio.run(main())
+
+leader, terminal = pty.fork()
+if leader:  # the terminal
+    try:
+        while piece := os.read(terminal, 1000):
+            print(piece.decode(), end="")
+    except OSError:  # its last process has ended
+        pass
+elif job := os.fork():  # the shell, whose process group is in the foreground
+    _, status = os.waitpid(job, os.WUNTRACED)
+    print("stopped" if os.WIFSTOPPED(status) else "ended", flush=True)
+    os.kill(job, signal.SIGKILL) if os.WIFSTOPPED(status) else None
+else:
+    os.setpgid(0, 0)
+    read()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no job control")
+def test_a_job_in_the_background_is_not_stopped_by_its_terminal() -> None:
+    ran = subprocess.run(
+        [sys.executable, "-c", IN_THE_BACKGROUND], capture_output=True, timeout=30, check=True, text=True
+    )
+    assert ran.stdout.split("\n") == ["line: None", "ended", ""]
