@@ -63,7 +63,8 @@ class _Watch:
         self._expect, self._meanwhile, self._pending = expect, list[Expect](), list[Expect]()
         self._known = {each.name for each in expect if self._found(each)}
         self._timers: dict[Expect, Timer] = {}
-        self._settled: asyncio.Future[None] | None = None
+        self._wake: asyncio.Future[None] | None = None
+        self._failure: OperationFailed | None = None
 
     def _found(self, each: Expect) -> list[tuple[object, ...]]:
         named = (found.values for place in self._places for found in place.properties.all(each.name))
@@ -83,7 +84,7 @@ class _Watch:
     def close(self) -> None:
         """Watch no longer."""
         self._follow(False)
-        self._meanwhile, self._settled = [], None
+        self._meanwhile, self._pending = [], []
         for timer in self._timers.values():
             timer.cancel()
         self._timers.clear()
@@ -110,8 +111,8 @@ class _Watch:
 
     def _look(self) -> None:
         self._pending = [each for each in self._pending if not self._holds(each)]
-        if self._settled is not None and not self._pending and not self._settled.done():
-            self._settled.set_result(None)
+        if not self._pending:
+            self._wake_up()
         for each in self._meanwhile:
             if not self._is_violated(each):
                 if (timer := self._timers.pop(each, None)) is not None:
@@ -156,11 +157,17 @@ class _Watch:
                 self._pending.append(each)
         if not self._pending:
             return
-        self._settled = asyncio.get_running_loop().create_future()
         for each in self._pending:
             self._timers[each] = self._steps.clock.call_later(each.within, partial(self._miss, each))
         self._follow()
-        await self._artifact.step(self._settled)
+        self._execution.on_pause(self._wake_up)
+        while self._pending:
+            await self._artifact.pause_point()  # a more urgent operation gets the resources
+            self._wake = asyncio.get_running_loop().create_future()
+            if self._pending and self._failure is None:
+                await self._artifact.step(self._wake)
+            if self._failure is not None:
+                raise self._failure
 
     def _leave_unchecked(self, each: Expect) -> None:
         key = (self._steps.id, self._execution.request.operation, each.name)
@@ -172,5 +179,10 @@ class _Watch:
             )
 
     def _miss(self, each: Expect) -> None:
-        if self._settled is not None and each in self._pending and not self._settled.done():
-            self._settled.set_exception(self._missed(each, "had no effect"))
+        if each in self._pending and self._failure is None:
+            self._failure = self._missed(each, "had no effect")
+            self._wake_up()
+
+    def _wake_up(self) -> None:
+        if self._wake is not None and not self._wake.done():
+            self._wake.set_result(None)

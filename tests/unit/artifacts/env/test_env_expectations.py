@@ -4,7 +4,9 @@ import pytest
 
 from jacaros.artifacts import Artifact, Expect, InvalidArtifact, operation
 from jacaros.artifacts.env.expectation import mistake_in
+from jacaros.artifacts.env.operation import OperationRequest
 from jacaros.artifacts.env.values import Atom, Structure, text
+from stage_lab import Call
 
 
 class Base(Artifact):
@@ -44,6 +46,14 @@ class Motion(Base):
     )
     async def dock(self):
         await self.sleep(1)
+
+    @operation(uses="wheels", pausable=True, expect=Expect("docked", [True], within=10))
+    async def enter(self):
+        await self.sleep(1)
+
+    @operation(uses="wheels")
+    async def flee(self):
+        await self.sleep(3)
 
     @operation(expect=Expect("docked", [False]))
     def undock(self):
@@ -130,6 +140,19 @@ async def test_another_robot_and_a_property_with_other_values_do_not_count(stage
     assert [line for line in stage.lines if "docked/1" in line] == [
         "[motion] warning: cannot check the effect of undock/0: no artifact of this robot shows docked/1"
     ]
+
+
+@pytest.mark.parametrize(("back", "at"), [(False, 11), (True, 5)])
+async def test_a_more_urgent_operation_gets_the_wheels_while_an_effect_is_waited_for(stage, back, at):
+    motion, base = await two(stage)
+    stage.call(base, "report", "docked", False)
+    call = stage.call(motion, "enter")
+    await stage.clock.sleep(2)
+    fleeing = Call(stage, "flee")
+    stage.main.execute(OperationRequest(motion, "flee", (), on_done=fleeing.on_done, urgency=9))
+    await stage.after(1, stage.call, base, "change", "docked", back)
+    await call.wait()
+    assert (call.ok, call.ended_at, fleeing.ended_at) == (back, at, 5)
 
 
 @pytest.mark.parametrize(
