@@ -123,10 +123,10 @@ def _pattern_term(pattern: Any) -> object:
         case {"in": choices}:
             return Structure("in", ([_pattern_term(each) for each in choices],))
         case {"near": centre, "by": most}:
-            return Structure("near", (centre, most))
+            return Structure("near", (_pattern_term(centre), most))
     if pattern == "_":
         return Atom("any")
-    return Atom(pattern) if isinstance(pattern, str) and re.fullmatch(r"[a-z]\w*", pattern) else pattern
+    return Atom(pattern) if isinstance(pattern, str) and re.fullmatch(r"\$?[a-z]\w*", pattern) else pattern
 
 
 def mistake_in(pattern: Any, parameters: Sequence[str]) -> tuple[str, str] | None:

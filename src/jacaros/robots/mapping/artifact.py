@@ -224,4 +224,9 @@ def description(part: OperationPart) -> str:
         OperationKind.REFRESH: f"Updates {named} to the newest values.",
         OperationKind.READ: f"Gives the newest values of {named}.",
     }
-    return part.description or usual[part.kind]
+    told = part.description or usual[part.kind]
+    expected = [
+        f"{each}, else {each.reason}" if each.reason else str(each)
+        for _, each in (*part.expect, *part.meanwhile)
+    ]
+    return f"{told} Expects {'; '.join(expected)}." if expected else told

@@ -165,6 +165,22 @@ operations:
     assert "other(v: any value)" in usages
 
 
+def test_what_an_operation_expects_is_described() -> None:
+    text = """
+operations:
+  go:
+    description: Go there.
+    parameters: [x]
+    publish: t
+    expect: {pose: [{near: $x, by: 0.5}, _], within: 2, else: not_there}
+    meanwhile: {no: {bump: [{in: [left, right]}]}}
+"""
+    (go,) = (each for each in manual(text).operations if each.name == "go")
+    assert go.text == (
+        "Go there. Expects pose(near($x,0.5),any) within 2 s, else not_there; no bump(in([left,right]))."
+    )
+
+
 def test_definitions_are_looked_up_on_demand(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> object:
         raise AssertionError("definitions were looked up")
