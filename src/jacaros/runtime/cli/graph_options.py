@@ -4,30 +4,17 @@ import asyncio
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from jacaros.robots.ros.handoff import in_thread
 from jacaros.robots.ros.middleware import ROS_KINDS
-from jacaros.runtime.cli.options import VariableOption
+from jacaros.runtime.cli.options import F, VariableOption, with_options
 from jacaros.runtime.cli.usage import usage_error
 
 if TYPE_CHECKING:
     from jacaros.robots.ros.action_client import OrphanPolicy
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def together(*options: Callable[[F], F]) -> Callable[[F], F]:
-    """Return a decorator that adds several options to a command."""
-
-    def add(command: F) -> F:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return add
 
 
 class RosKind(click.Choice[str]):
@@ -155,13 +142,13 @@ _PARAMETERS = (
 )
 
 
-graph_options = together(*_ADDRESS, _NAMESPACE, *_NAMES)
+graph_options = with_options(*_ADDRESS, _NAMESPACE, *_NAMES)
 """The options for the address of a graph, the name of our node, and remappings."""
-address_options = together(*_ADDRESS, _NAMESPACE)
+address_options = with_options(*_ADDRESS, _NAMESPACE)
 """The options for the address of a graph and the namespace of our node."""
-world_options = together(*_ADDRESS, *_NAMES)
+world_options = with_options(*_ADDRESS, *_NAMES)
 """The same options as `graph_options` without the namespace: world files give each robot its own."""
-parameter_options = together(*_PARAMETERS)
+parameter_options = with_options(*_PARAMETERS)
 """The options that set parameters of our node."""
 orphans_option = click.option(
     "--orphans",

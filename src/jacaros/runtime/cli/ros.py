@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from jacaros.robots.ros.middleware import MIDDLEWARES
-from jacaros.runtime.cli.graph_options import address_options, ros_option, together, world_option
-from jacaros.runtime.cli.options import settled
+from jacaros.runtime.cli.graph_options import address_options, ros_option, world_option
+from jacaros.runtime.cli.options import settled, with_options
 from jacaros.runtime.cli.usage import examples, usage_error
 from jacaros.runtime.files.texts import shown_from
 from jacaros.runtime.mas.options import RunOptions
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_asking = together(
+_asking = with_options(
     ros_option("ROS graph to inspect: that of the embedded world (memory), or a real one."),
     world_option("World file, or the name of a shipped world; with --ros memory only."),
     address_options,

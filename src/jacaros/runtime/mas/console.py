@@ -7,9 +7,11 @@ import sysconfig
 import traceback
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Protocol, TextIO, TypeVar
 
 from jacaros.runtime.output import CLOSING, PATIENCE, Output, Printed, TextStream
+
+L = TypeVar("L")
 
 _NOT_OF_USERS = (str(Path(__file__).parents[2]), sysconfig.get_path("stdlib"), "<")
 """Beginnings of the names of files that are not the user's code."""
@@ -117,22 +119,23 @@ class HeardConsole:
     def __init__(self, console: RunConsole) -> None:
         self._console = console
         self.print = console.print
-        self._listeners: tuple[Callable[[str, str], None], ...] = ()
+        self._listeners: list[Callable[[str, str], None]] = []
 
     def log(self, text: str, level: str = "info") -> None:
         """Log a line."""
         self._console.log(text, level)
-        for listener in self._listeners:
+        for listener in tuple(self._listeners):
             listener(text, level)
 
     def listen(self, listener: Callable[[str, str], None]) -> Callable[[], None]:
         """Call *listener* with text and level of each line from now on. Return a function that ends this."""
-        self._listeners = (*self._listeners, listener)
+        return entered(self._listeners, listener)
 
-        def end() -> None:
-            self._listeners = tuple(each for each in self._listeners if each is not listener)
 
-        return end
+def entered(listeners: list[L], listener: L) -> Callable[[], None]:
+    """Add *listener* to *listeners*. Return a function that removes it; calling that again has no effect."""
+    listeners.append(listener)
+    return lambda: listeners.remove(listener) if listener in listeners else None
 
 
 def line_of(agent: str, text: str) -> str:

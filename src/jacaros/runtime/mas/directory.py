@@ -20,6 +20,7 @@ from jacaros.agents.terms.collections import detached, holds_collection
 from jacaros.agents.terms.substitution import is_ground, rename
 from jacaros.agents.terms.values import BY_SELF, Annotated, String, Term, atom, functor
 from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.console import entered
 
 
 class Mailbox(Protocol):
@@ -75,8 +76,7 @@ class Directory:
 
     def watch(self, watcher: Callable[[str, bool], None]) -> Callable[[], None]:
         """Call *watcher* with the name of every agent that is added (True) or removed. Return a function that ends this."""
-        self._watchers.append(watcher)
-        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+        return entered(self._watchers, watcher)
 
     def _changed(self, name: str, present: bool) -> None:
         self._names = None
@@ -243,8 +243,7 @@ class ServiceDirectory:
 
         For copies elsewhere.
         """
-        self._watchers.append(watcher)
-        return lambda: self._watchers.remove(watcher) if watcher in self._watchers else None
+        return entered(self._watchers, watcher)
 
     def _changed(self, name: str, service: str, provides: bool) -> None:
         for watcher in tuple(self._watchers):

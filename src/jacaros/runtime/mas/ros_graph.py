@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from jacaros.agents.language.diagnostics import Diagnostic
 from jacaros.runtime.clock import Clock, Timer
 from jacaros.runtime.errors import UsageError
+from jacaros.runtime.mas.console import entered
 from jacaros.runtime.mas.deployment import ProjectError
 from jacaros.runtime.mas.options import RunOptions
 
@@ -72,7 +73,7 @@ class RosGraph:
     """What ends the observation of the graph."""
     _undeclared: Timer | None = None
     _guard: "RunGuard | None" = None
-    _world_watchers: "tuple[Callable[[World], None], ...]" = ()
+    _world_watchers: "list[Callable[[World], None]]" = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.name = node_name(self.name)
@@ -150,12 +151,7 @@ class RosGraph:
         if self.world is not None:
             watcher(self.world)
             return lambda: None
-        self._world_watchers = (*self._world_watchers, watcher)
-
-        def end() -> None:
-            self._world_watchers = tuple(each for each in self._world_watchers if each is not watcher)
-
-        return end
+        return entered(self._world_watchers, watcher)
 
     def catch_up(self) -> None:
         """Let the embedded world make all steps that are due."""
@@ -243,9 +239,9 @@ class RosGraph:
         self.world.ground_truth.keep = None if self.options.keep_ground_truth else _GROUND_TRUTH
         self.node = SimNode(self.world, backend, self.clock)
         self.node.start()
-        for watcher in self._world_watchers:
+        for watcher in tuple(self._world_watchers):
             watcher(self.world)
-        self._world_watchers = ()
+        self._world_watchers.clear()
 
 
 def _finish_at_once(coroutine: Coroutine[Any, Any, None]) -> None:

@@ -17,6 +17,7 @@ from typing import NamedTuple, Protocol
 
 from jacaros.agents.mind.state.act import TimerHandle
 from jacaros.runtime.clock import Clock, real_time, run_context
+from jacaros.runtime.mas.console import entered
 
 
 class Runnable(Protocol):
@@ -385,8 +386,7 @@ class Idleness:
 
     def watch(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Call *callback* whenever the run has become idle. Return a function that ends this."""
-        self._watchers.append(callback)
-        return lambda: self._watchers.remove(callback) if callback in self._watchers else None
+        return entered(self._watchers, callback)
 
     def stop(self) -> None:
         """Remove all listeners."""

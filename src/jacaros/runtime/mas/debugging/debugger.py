@@ -15,6 +15,7 @@ from jacaros.robots.ros.guarded import guarded_by
 from jacaros.runtime.clock import Clock, WallClock, outside_run
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.console import entered
 from jacaros.runtime.mas.debugging.breakpoints import (
     Breakpoint,
     ConditionBreakpoint,
@@ -83,7 +84,7 @@ class Debugger:
     def __init__(self, system: ObservedSystem) -> None:
         self._system = system
         self._breakpoints: dict[str, Breakpoint] = {}
-        self._listeners: tuple[DebugListener, ...] = ()
+        self._listeners: list[DebugListener] = []
         self._state = DebugState("running", speed=self.speed)
         self._stepping: tuple[StepKind, str | None] | None = None
         self._stepped_from: dict[str, int] = {}
@@ -107,12 +108,7 @@ class Debugger:
 
     def listen(self, listener: DebugListener) -> Callable[[], None]:
         """Call *listener* with every new state. Return a function that ends this."""
-        self._listeners = (*self._listeners, listener)
-
-        def end() -> None:
-            self._listeners = tuple(each for each in self._listeners if each is not listener)
-
-        return end
+        return entered(self._listeners, listener)
 
     async def wait_until_paused(self, timeout: float | None = None) -> DebugState:
         """Wait until the run is paused, by a breakpoint or otherwise. Return the state.
@@ -350,7 +346,7 @@ class Debugger:
         breakpoints = tuple(each.data() for each in self._breakpoints.values())
         self._state = replace(state, speed=self.speed, breakpoints=breakpoints)
         with outside_run():
-            for listener in self._listeners:
+            for listener in tuple(self._listeners):
                 listener(self._state)
 
     def _minds(self) -> list[Mind]:

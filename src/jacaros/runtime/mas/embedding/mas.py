@@ -14,7 +14,7 @@ from jacaros.look.why.explanation import Explanation
 from jacaros.runtime.clock import Clock, VirtualClock, VirtualEventLoop, WallClock, clock_of, new_event_loop
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.mas.agents.programs import source_folders
-from jacaros.runtime.mas.console import StandardConsole, place_of_fault
+from jacaros.runtime.mas.console import StandardConsole, entered, place_of_fault
 from jacaros.runtime.mas.deployment import AgentSpec, Deployment, FocusSpec
 from jacaros.runtime.mas.embedding.running_agent import RunningAgent
 from jacaros.runtime.mas.embedding.waits import RunEnded, RunWaits, UnknownAgent
@@ -79,8 +79,7 @@ class PrintedConsole:
 
     def listen(self, callback: OnPrint) -> Callable[[], None]:
         """Also call *callback* with all output from now on. Return a function that ends this."""
-        self._listeners.append(callback)
-        return lambda: self._listeners.remove(callback) if callback in self._listeners else None
+        return entered(self._listeners, callback)
 
     def print(self, agent: str, text: str) -> None:
         """Print a line of an agent's output."""

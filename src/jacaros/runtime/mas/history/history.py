@@ -11,6 +11,7 @@ from jacaros.look.records import records
 from jacaros.look.records.lasting import Lasting
 from jacaros.look.records.records import RecordSink
 from jacaros.runtime.mas.agents.host import AgentHost
+from jacaros.runtime.mas.console import entered
 from jacaros.runtime.mas.history.causes import CauseRecords
 from jacaros.runtime.mas.history.goals import GoalRecords
 from jacaros.runtime.mas.history.intentions import Looks, Moments
@@ -73,7 +74,7 @@ class History:
         self.events: deque[Happening] = deque(maxlen=kept)
         self._kept = kept
         self._lasting: Lasting[Happening] = Lasting()
-        self._listeners: tuple[RecordListener, ...] = ()
+        self._listeners: list[RecordListener] = []
         self._message_listeners: list[Callable[[float, str, Any], None]] = []
         self._ends = ExitStack()
         self._starts = 0
@@ -81,12 +82,7 @@ class History:
 
     def listen(self, listener: RecordListener) -> Callable[[], None]:
         """Call *listener* with every record from now on. Return a function that ends this."""
-        self._listeners = (*self._listeners, listener)
-
-        def end() -> None:
-            self._listeners = tuple(each for each in self._listeners if each is not listener)
-
-        return end
+        return entered(self._listeners, listener)
 
     def listen_to_messages(self, listener: Callable[[float, str, Any], None]) -> None:
         """Call *listener* with time, topic and ROS message of each message that has an effect.
@@ -145,7 +141,7 @@ class History:
             _, kind, forgotten = events[0]
             self._lasting.take(kind, forgotten, events[0])
         events.append(tuple.__new__(Happening, (t, event, data)))
-        for listener in self._listeners:
+        for listener in tuple(self._listeners):
             listener(t, event, data)
 
     def all(self) -> list[Happening]:
