@@ -95,9 +95,8 @@ class Diagnostic:
 
     def place(self) -> str:
         """Return ``file:line:column: ``, or an empty string without a span."""
-        if self.span is None:
-            return ""
-        return f"{escaped(self.span.file.name)}:{self.span.line}:{self.span.column}: "
+        at = self.span
+        return "" if at is None else f"{escaped(at.file.name)}:{at.line}:{at.column}: "
 
 
 def excerpt(span: Span) -> list[str]:
@@ -145,12 +144,16 @@ def render_all(diagnostics: Sequence[Diagnostic]) -> str:
     return "\n\n".join(diagnostic.render() for diagnostic in bounded(diagnostics))
 
 
-class AslError(JacarosError):
-    """Raised for a program with errors. ``diagnostics`` holds all errors and warnings; ``str()`` shows them."""
+class SourceError(JacarosError):
+    """Raised for source files with errors. ``diagnostics`` holds all errors and warnings; ``str()`` shows them."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = tuple(diagnostics)
         super().__init__(render_all(self.diagnostics))
+
+
+class AslError(SourceError):
+    """Raised for a program with errors."""
 
 
 _CODES: Final[dict[Severity, str]] = {

@@ -8,7 +8,7 @@ from typing import Final
 
 import jacaros
 from jacaros.agents.language import nodes
-from jacaros.agents.language.diagnostics import Diagnostic, SourceFile, render_all
+from jacaros.agents.language.diagnostics import Diagnostic, SourceError, SourceFile
 from jacaros.agents.language.loader import read_program
 from jacaros.look.metrics import sources as languages
 from jacaros.look.metrics.counting import CountedFile, Group, ProgramMetrics
@@ -17,7 +17,6 @@ from jacaros.robots.mapping.file import SHIPPED, find_mapping, is_mapping, read_
 from jacaros.robots.registry import type_finder
 from jacaros.robots.world.files.faults import fault_file_problems, is_fault_file
 from jacaros.robots.world.files.world import is_world, shipped_worlds, world_problems
-from jacaros.runtime.errors import JacarosError
 from jacaros.runtime.files.python_modules import ProjectModules
 from jacaros.runtime.files.texts import is_file, suggestion
 from jacaros.runtime.files.yaml import plain_values
@@ -46,12 +45,8 @@ _TEST_MODULES: Final = ("jacaros.testing", "pytest", "unittest")
 Files = dict[Group, tuple[CountedFile, ...]]
 
 
-class MetricsError(JacarosError):
-    """Raised for source files that cannot be counted. ``diagnostics`` holds all errors, ``str()`` shows them."""
-
-    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        self.diagnostics = tuple(diagnostics)
-        super().__init__(render_all(self.diagnostics))
+class MetricsError(SourceError):
+    """Raised for source files that cannot be counted."""
 
 
 def measure(

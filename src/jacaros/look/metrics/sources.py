@@ -4,7 +4,7 @@ import ast
 import io
 import tokenize
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -224,6 +224,16 @@ def _python_comments(tree: ast.Module, text: str) -> list[Stretch]:
 # AgentSpeak
 
 
+_GOALS: Final = {
+    nodes.Trigger: "literal",
+    nodes.Achieve: "goal",
+    nodes.Test: "formula",
+    nodes.ExternalAction: "action",
+}
+"""What names a goal, event or operation in a node. The test of a compound condition has no name: it posts no goal."""
+_OTHERS: Final = {nodes.BeliefChange: "operand", nodes.Rule: "head", nodes.Plan: "label"}
+
+
 def goals_events_operations(clause: nodes.Node, is_goal: bool = False) -> Iterator[str]:
     """Yield the names of goals, events and operations in a clause of a program.
 
@@ -233,36 +243,26 @@ def goals_events_operations(clause: nodes.Node, is_goal: bool = False) -> Iterat
     """
     if is_goal:
         yield from _functor(clause)
-    for node in walk(clause):
-        match node:
-            case nodes.Trigger():
-                yield from _functor(node.literal)
-            case nodes.Achieve():
-                yield from _functor(node.goal)
-            case nodes.Test():
-                # The test of a compound condition posts no goal.
-                yield from _functor(node.formula)
-            case nodes.ExternalAction():
-                yield from _functor(node.action)
+    yield from _named(clause, _GOALS)
 
 
 def other_names(clause: nodes.Node) -> Iterator[str]:
     """Yield the names of beliefs, rules, labels and variables in a clause."""
     if isinstance(clause, nodes.Literal):
         yield from _functor(clause)
+    yield from _named(clause, _OTHERS)
     for node in walk(clause):
         for condition in conditions(node):
             for part in parts_of(condition):
                 yield from _functor(part)
-        match node:
-            case nodes.Variable() if not node.unnamed:
-                yield node.name
-            case nodes.BeliefChange():
-                yield from _functor(node.operand)
-            case nodes.Rule():
-                yield from _functor(node.head)
-            case nodes.Plan():
-                yield from _functor(node.label)
+        if isinstance(node, nodes.Variable) and not node.unnamed:
+            yield node.name
+
+
+def _named(clause: nodes.Node, parts: Mapping[Any, str]) -> Iterator[str]:
+    for node in walk(clause):
+        if (part := parts.get(type(node))) is not None:
+            yield from _functor(getattr(node, part))
 
 
 def _functor(node: object) -> Iterator[str]:

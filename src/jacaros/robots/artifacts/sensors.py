@@ -112,8 +112,6 @@ class KobukiEvents(RosArtifact):
     """Three sensors that publish an event when they change; state 1 is signalled."""
 
     known_options: ClassVar = {"topic": text}
-    event_topic: ClassVar[str]
-    event_type: ClassVar[str]
     side_field: ClassVar[str]
     property_name: ClassVar[str]
     states: ClassVar[tuple[str, str]]
@@ -123,9 +121,10 @@ class KobukiEvents(RosArtifact):
         self._shown = dict.fromkeys(SIDES, self.states[0])
         for side in SIDES:
             self.define_property(self.property_name, Atom(side), Atom(self.states[0]))
-        topic = self.option("topic", self.event_topic)
+        kind = self.property_name
+        topic = self.option("topic", f"mobile_base/events/{kind}")
         self._faults = self.faults_of(topic)
-        self.subscription(topic, self.event_type, self._take)
+        self.subscription(topic, f"kobuki_msgs/msg/{kind.capitalize()}Event", self._take)
 
     def _take(self, sample: Sample) -> None:
         side, state = int(getattr(sample.message, self.side_field)), int(sample.message.state)
@@ -162,8 +161,6 @@ class ArtBumper(KobukiEvents):
         tick_Bumper: `getCurrentBumper` was called.
     """
 
-    event_topic = "mobile_base/events/bumper"
-    event_type = "kobuki_msgs/msg/BumperEvent"
     side_field = "bumper"
     property_name = "bumper"
     states = ("released", "pressed")
@@ -189,8 +186,6 @@ class ArtCliff(KobukiEvents):
         tick_Cliff: `getCurrentCliff` was called.
     """
 
-    event_topic = "mobile_base/events/cliff"
-    event_type = "kobuki_msgs/msg/CliffEvent"
     side_field = "sensor"
     property_name = "cliff"
     states = ("floor", "cliff")

@@ -1,12 +1,11 @@
 """The declarations of a project: agents, workspaces with artifacts, and settings of the run."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from jacaros.agents.language.diagnostics import Diagnostic, Span, render_all
-from jacaros.runtime.errors import JacarosError
+from jacaros.agents.language.diagnostics import Diagnostic, SourceError, Span
 
 CARTAGO_ENVIRONMENTS = frozenset(
     {"jaca.CartagoEnvironment", "c4jason.CartagoEnvironment", "CartagoEnvironment", "jacaros.Environment"}
@@ -22,12 +21,8 @@ def has_own_artifacts(folder: Path) -> bool:
 _NO_OPTIONS: Mapping[str, str] = MappingProxyType({})
 
 
-class ProjectError(JacarosError):
-    """An invalid project file. ``diagnostics`` holds all errors and warnings, and ``str()`` shows them."""
-
-    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        self.diagnostics = tuple(diagnostics)
-        super().__init__(render_all(self.diagnostics))
+class ProjectError(SourceError):
+    """An invalid project file."""
 
 
 @dataclass(frozen=True)
