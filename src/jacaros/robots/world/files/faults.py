@@ -7,7 +7,7 @@ from typing import Any
 
 from jacaros.robots.plane.pose import Pose
 from jacaros.robots.world.data.faults import KINDS, Fault, FaultKind
-from jacaros.robots.world.data.robot import absolute
+from jacaros.robots.world.data.robot import RobotDescription, absolute
 from jacaros.robots.world.data.world import PersonDescription, WorldDescription, WorldError
 from jacaros.robots.world.files.floor import place_problem, read_path
 from jacaros.robots.world.files.map import open_document
@@ -94,7 +94,8 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
         robot=_robot(node, entries.get("robot"), str(word), kind, world),
         share=_SHARES.get(str(word), 1.0),
     )
-    prefix = _prefix(usual.robot, world)
+    robot = next((each for each in (world.robots if world else ()) if each.name == usual.robot), None)
+    prefix = f"/{robot.namespace}" if robot and robot.namespace else ""
     fault = replace(
         usual,
         **values(
@@ -106,17 +107,18 @@ def _fault(key: YamlNode, node: YamlNode, world: WorldDescription | None) -> Fau
             dock=_one_of("dock", world and world.docks),
         ),
     )
-    if word == "missed_grasp":
-        _check_gripper(node, fault.robot, world)
+    if word == "missed_grasp" and robot and not robot.gripper_reach:
+        node.wrong(
+            f"the robot '{robot.name}' has no gripper", "add 'gripper: true' to it, or remove the fault"
+        )
     if word in ("person", "person_in_the_way"):
         person = PersonDescription(name, ((0.0, 0.0),))
         return replace(fault, person=replace(person, **values(entries, person, path=read_path)))
     if word == "battery_drop" and "to" in entries:
         return replace(fault, level=entries["to"].number(0.0, 100.0))
-    if word == "kidnapped_robot" and "to" in entries:
-        return replace(fault, pose=_landing(entries["to"], fault.robot, world))
-    if word in ("lost_localisation", "wrong_dock") and "to" in entries:
-        return replace(fault, pose=_inside(entries["to"], world))
+    if "to" in entries:
+        put_down = robot if word == "kidnapped_robot" else None
+        return replace(fault, pose=_place(entries["to"], put_down, world))
     return fault
 
 
@@ -141,12 +143,6 @@ def _robot(
     return name
 
 
-def _prefix(robot: str, world: WorldDescription | None) -> str:
-    robots = () if world is None else world.robots
-    namespace = next((each.namespace for each in robots if each.name == robot), "")
-    return f"/{namespace}" if namespace else ""
-
-
 def _one_of(what: str, things: Any) -> ReadValue:
     """Read the name of one of the *things* of a world; None for any name."""
 
@@ -162,31 +158,21 @@ def _one_of(what: str, things: Any) -> ReadValue:
     return read
 
 
-def _landing(node: YamlNode, name: str, world: WorldDescription | None) -> Pose:
-    """Read where a robot is put down; closed doors are ignored, because they may be open by then."""
+def _place(node: YamlNode, robot: RobotDescription | None, world: WorldDescription | None) -> Pose:
+    """Read a pose in the world; one where a *robot* is put down must have room for it.
+
+    Closed doors are ignored, because they may be open by then.
+    """
     mistakes = len(node.problems)
     pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
-    robots = () if world is None or len(node.problems) > mistakes else world.robots
-    for robot in robots:
-        if world is not None and robot.name == name:
-            problem, help = place_problem(robot, pose, world, world.segments)
-            if problem:
-                where = f"it puts the robot '{name}' at [{pose.x:g}, {pose.y:g}], {problem}"
-                node.wrong(where, help or "write another place under 'to'")
+    if world is None or len(node.problems) > mistakes:
+        return pose
+    problem, help, whom = "outside the world", "", "it is about"
+    if robot is not None:
+        problem, help = place_problem(robot, pose, world, world.segments)
+        whom = f"it puts the robot '{robot.name}' at"
+    elif world.bounds.contains(pose.x, pose.y):
+        return pose
+    if problem:
+        node.wrong(f"{whom} [{pose.x:g}, {pose.y:g}], {problem}", help or "write another place under 'to'")
     return pose
-
-
-def _inside(node: YamlNode, world: WorldDescription | None) -> Pose:
-    """Read a pose inside the world."""
-    pose = read_pose(node.mapping("x", "y", "yaw_degrees"))
-    if world is not None and not world.bounds.contains(pose.x, pose.y):
-        node.wrong(f"[{pose.x:g}, {pose.y:g}] is outside the world", "write another place under 'to'")
-    return pose
-
-
-def _check_gripper(node: YamlNode, name: str, world: WorldDescription | None) -> None:
-    robots = () if world is None else world.robots
-    if any(each.name == name and not each.gripper_reach for each in robots):
-        node.wrong(
-            f"the robot '{name}' has no gripper", "add 'gripper: true' to the robot, or remove the fault"
-        )
