@@ -120,14 +120,11 @@ class _Watch:
             elif not each.within:
                 self._stop(self._missed(each, "was stopped"))
             elif each not in self._timers:
-                self._timers[each] = self._steps.clock.call_later(
-                    each.within, partial(self._look_again, each)
-                )
+                self._timers[each] = self._steps.clock.call_later(each.within, partial(self._run_out, each))
 
-    def _look_again(self, each: Expect) -> None:
+    def _run_out(self, each: Expect) -> None:
         del self._timers[each]
-        if self._is_violated(each):
-            self._stop(self._missed(each, "was stopped"))
+        self._stop(self._missed(each, "was stopped"))
 
     def _is_violated(self, each: Expect) -> bool:
         return not each.signal and bool(self._found(each)) and not self._holds(each)

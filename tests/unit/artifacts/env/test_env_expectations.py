@@ -28,8 +28,8 @@ class Base(Artifact):
         self.remove_property(name)
 
     @operation
-    def bump(self, where: str):
-        self.signal("bump", where)
+    def send(self, name: str, where: str):
+        self.signal(name, where)
 
 
 class Motion(Base):
@@ -160,8 +160,9 @@ async def test_a_more_urgent_operation_gets_the_wheels_while_an_effect_is_waited
     [
         ("change", ("battery", 39, Atom("discharging")), "falling", 3),
         ("change", ("docked", False), "loose", 5),
-        ("bump", ("front",), 'occurred(bump("front"))', 3),
-        ("bump", ("back",), None, 10),
+        ("send", ("bump", "front"), 'occurred(bump("front"))', 3),
+        ("send", ("bump", "back"), None, 10),
+        ("send", ("bell", "front"), None, 10),
         ("lose", ("docked",), None, 10),
     ],
 )
@@ -184,10 +185,40 @@ async def test_a_violation_shorter_than_within_or_in_a_pause_is_none(stage):
     await stage.after(1, stage.call, base, "change", "docked", False)
     await stage.after(1, stage.call, base, "change", "docked", True)
     await stage.after(3, call.execution.pause)
-    stage.call(base, "bump", "front")
+    stage.call(base, "send", "bump", "front")
     call.execution.resume()
+    await stage.after(4, stage.call, base, "change", "docked", False)
     await call.wait()
-    assert call.ok
+    await stage.clock.sleep(5)
+    assert (call.ok, call.ended_at) == (True, 10)
+
+
+async def test_a_violation_that_outlasts_a_pause_counts(stage):
+    motion, base = await two(stage)
+    stage.call(base, "report", "battery", 40, Atom("charging"))
+    call = stage.call(motion, "charge")
+    await stage.after(1, call.execution.pause)
+    stage.call(base, "change", "battery", 40, Atom("discharging"))
+    await stage.after(1, call.execution.resume)
+    await call.wait()
+    assert (text(call.reason), call.ended_at) == ("falling", 2)
+
+
+async def test_an_artifact_that_is_made_meanwhile_counts(stage):
+    motion = await stage.make(Motion, name="motion")
+    call = stage.call(motion, "drive", 2)
+    base = await stage.make(Base, name="base")
+    await stage.after(0.5, stage.call, base, "report", "pose", 0)
+    await call.wait()
+    assert text(call.reason) == "expected(pose(near(2,0.5)),found(pose(0)))"
+
+
+async def test_an_artifact_can_start_its_own_operation_that_expects(stage):
+    motion = await stage.make(Motion, name="motion")
+    made = stage.environment.artifact(motion)
+    made.start(made.drive, 2.0)
+    await stage.clock.sleep(2)
+    assert stage.logged("cannot check the effect of drive/1")
 
 
 async def test_a_condition_that_is_violated_at_the_start_fails_the_operation(stage):
