@@ -1,6 +1,6 @@
 """Operations: how artifacts declare them, how callers request them, and their outcomes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
@@ -111,8 +111,8 @@ class Mark:
     common: bool = False
     uses: Uses = ()
     when_preempted: WhenPreempted | None = None
-    expect: Expect | tuple[Expect, ...] = ()
-    meanwhile: Expect | tuple[Expect, ...] = ()
+    expect: Expect | Sequence[Expect] = ()
+    meanwhile: Expect | Sequence[Expect] = ()
 
 
 _MARKS = "__jacaros_operations__"
@@ -137,8 +137,8 @@ class OperationOptions(StartedOptions, total=False):
     pausable: bool
     uses: Uses
     when_preempted: WhenPreempted | None
-    expect: Expect | tuple[Expect, ...]
-    meanwhile: Expect | tuple[Expect, ...]
+    expect: Expect | Sequence[Expect]
+    meanwhile: Expect | Sequence[Expect]
 
 
 def _marked(function: F, mark: Mark) -> F:

@@ -2,7 +2,7 @@
 
 import inspect
 import typing
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from importlib import import_module
@@ -341,14 +341,18 @@ def _declare(
 
 
 def _expected(
-    given: Expect | tuple[Expect, ...], signature: Signature, source: Callable[..., Any]
+    given: Expect | Sequence[Expect], signature: Signature, source: Callable[..., Any]
 ) -> tuple[Expect, ...]:
     """Check the expectations of an operation."""
     given = (given,) if isinstance(given, Expect) else tuple(given)
+    names = [parameter.name for parameter in signature.parameters]
     for each in given:
+        if not isinstance(each, Expect) or not isinstance(each.values, list | tuple):
+            wrong = f"expected an Expect with a list of patterns, found {each!r}"
+            raise InvalidArtifact(f'{name_of(source)}: {wrong}; write Expect("docked", [True], within=2)')
         for pattern in each.values:
-            if wrong := mistake_in(pattern, [parameter.name for parameter in signature.parameters]):
-                raise InvalidArtifact(f"{name_of(source)}: {each.name}: {'; '.join(wrong)}")
+            if mistake := mistake_in(pattern, names):
+                raise InvalidArtifact(f"{name_of(source)}: {each.name}: {'; '.join(mistake)}")
     return given
 
 

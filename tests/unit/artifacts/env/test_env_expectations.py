@@ -207,8 +207,9 @@ async def test_a_violation_that_outlasts_a_pause_counts(stage):
 async def test_an_artifact_that_is_made_meanwhile_counts(stage):
     motion = await stage.make(Motion, name="motion")
     call = stage.call(motion, "drive", 2)
+    await stage.clock.sleep(0.5)
     base = await stage.make(Base, name="base")
-    await stage.after(0.5, stage.call, base, "report", "pose", 0)
+    stage.call(base, "report", "pose", 0)
     await call.wait()
     assert text(call.reason) == "expected(pose(near(2,0.5)),found(pose(0)))"
 
@@ -267,6 +268,8 @@ def test_patterns(pattern, value, matches):
         ({"expect": Expect("pose", ["$distance"])}, "pose: the operation has no parameter `distance`"),
         ({"expect": Expect("pose", [{"nera": 1}])}, "pose: invalid pattern; write a constant, _"),
         ({"expect": Expect("pose", [{"near": "$x", "by": -1}])}, "pose: `near` needs two numbers"),
+        ({"expect": Expect("pose", 3)}, "Wrong.go: expected an Expect with a list of patterns, found Expect"),
+        ({"meanwhile": {"pose": [3]}}, "expected an Expect with a list of patterns, found 'pose'"),
         ({"expect": Expect("bump", signal=True)}, "expected a property in expect, found a signal"),
     ],
 )
