@@ -416,7 +416,7 @@ async def test_the_run_continues_while_a_question_about_it_is_answered(page, mon
     await page.mas.agent("bob").until("at(hall)", 5)
     assert not answer.done()
     may_answer.set()
-    assert "intention" in str(await answer)
+    assert "no agent has a goal" in str(await answer)
 
 
 @played(commanding)

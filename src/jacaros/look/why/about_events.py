@@ -1,14 +1,16 @@
 """Answers about events, goals, plans and beliefs: how they were handled, and why."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import PurePath
 
 from jacaros.look.records import records
 from jacaros.look.why.chains import chain, is_written, place_of, plan_name, plan_text, shown, source_line
-from jacaros.look.why.explanation import Explanation, Fact, seconds
-from jacaros.look.why.past import Past, TimedRecords, of_agent
-from jacaros.look.why.patterns import Question, QuestionPattern, name_of, unsigned
+from jacaros.look.why.deeds import deeds_asked_for
+from jacaros.look.why.explanation import Explanation, Fact, earlier, seconds, times
+from jacaros.look.why.past import Deed, Past, of_agent
+from jacaros.look.why.patterns import Question, QuestionPattern, name_of
+from jacaros.look.why.words import stems
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import suggestion
 
@@ -24,12 +26,20 @@ def explain_event(past: Past, asked: Question) -> Explanation:
     pattern = QuestionPattern(asked.about)
     found = [each for each in of_agent(past.deliberations, asked.agent) if pattern.fits(each[1].trigger)]
     if not found:
-        return _never(past, asked, pattern)
+        return _unhandled(past, asked, pattern)
     t, last = found[-1]
-    facts = [*candidates(past, last), *_outcome(past, t, last)]
-    if len(found) > 1:
-        facts.append(Fact("note", f"it happened {_times(len(found) - 1)} before; ask with --at T"))
-    return Explanation(asked.written, _headline(past, t, last), t, tuple(facts), chain(past, last.id))
+    goals = (each for each in deeds_asked_for(past, asked) if each.kind == "goal" and _is_of(each, t, last))
+    facts = [
+        *candidates(past, last),
+        *(Fact("goal", f"{shown(each.text)} {each.outcome}") for each in [*goals][:1]),
+        *earlier(at for at, _ in found),
+    ]
+    return replace(explain_deliberation(past, asked.written, t, last), facts=tuple(facts))
+
+
+def _is_of(goal: Deed, t: float, event: records.DeliberationRecord) -> bool:
+    """Return whether an event posted a goal that has ended."""
+    return goal.agent == event.agent and f"+{goal.text}" == event.trigger and (goal.ended or 0.0) >= t
 
 
 def explain_deliberation(
@@ -38,10 +48,6 @@ def explain_deliberation(
     """Explain one handled event."""
     facts = tuple(candidates(past, deliberation))
     return Explanation(question, _headline(past, t, deliberation), t, facts, chain(past, deliberation.id))
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"
 
 
 def _headline(past: Past, t: float, deliberation: records.DeliberationRecord) -> str:
@@ -100,57 +106,38 @@ def _candidate(plan: records.PlanRecord | None, what: str) -> Fact:
     return Fact("plan", f"`{plan_text(plan)}`: {what}", None, "", *place_of(plan))
 
 
-def _outcome(past: Past, t: float, deliberation: records.DeliberationRecord) -> Iterator[Fact]:
-    """Return the outcome of the goal of an event."""
-    goal = unsigned(deliberation.trigger)
-    for later, data in past.goals if goal.startswith("!") else ():
-        same = data.agent == deliberation.agent and data.goal == goal
-        if same and later >= t and data.state not in ("pursued", "suspended", "resumed"):
-            yield Fact("goal", goal_text(later, data))
-            return
-
-
-def goal_text(t: float, goal: records.GoalRecord) -> str:
-    """Return a change of a goal as text."""
-    return f"{goal.goal} {goal.state} at {seconds(t)}{f': {goal.why}' if goal.why else ''}"
-
-
-def _never(past: Past, asked: Question, pattern: QuestionPattern) -> Explanation:
-    agent = asked.agent
-    if not pattern.kind:
-        changes = (
-            each
-            for each in reversed(of_agent(past.beliefs, agent))
-            if pattern.fits(f"{each[1].op}{each[1].belief}")
-        )
-        for t, data in changes:
-            answer = f"{data.agent} has no relevant plan for `{data.op}{shown(data.belief)}` at {seconds(t)}"
+def _unhandled(past: Past, asked: Question, pattern: QuestionPattern) -> Explanation:
+    """Explain an event that no plan is for, a goal of an agent in Python, or what never happened."""
+    for t, data in reversed(of_agent(past.beliefs, asked.agent) if not pattern.kind else []):
+        event = f"{data.op}{data.belief}"
+        if pattern.fits(event):
+            answer = f"{data.agent} has no relevant plan for `{shown(event)}` at {seconds(t)}"
             facts = tuple(_near_plans(past, pattern, data.agent))
             return Explanation(asked.written, answer, t, facts, chain(past, data.cause))
-    for t, goal in reversed(past.goals if pattern.kind == "!" else ()):
-        if pattern.fits(goal.goal):
-            return Explanation(asked.written, f"{goal.agent}: {goal_text(t, goal)}", t)
-    what, who = "goal" if pattern.kind else "event", f" in {agent}" if agent else ""
-    answer = f"no {what} `{asked.about}` happened{who} until {seconds(past.end)}"
-    return Explanation(asked.written, answer, None, tuple(_hints(past, pattern, agent)))
+    for each in reversed(deeds_asked_for(past, asked) if pattern.kind == "!" else []):
+        if each.kind == "goal" and pattern.fits(each.text):
+            return Explanation(asked.written, f"{each.agent}: {each.text} {each.outcome}", each.began)
+    return _never(past, asked, pattern, f"{'goal' if pattern.kind else 'event'} `{asked.about}` happened")
 
 
-def _rule(past: Past, name: str) -> str | None:
-    return next((rule for rules in past.rules.values() for rule in rules if name_of(rule) == name), None)
-
-
-def _hints(past: Past, pattern: QuestionPattern, agent: str) -> Iterator[Fact]:
-    """Suggest what an event that never happened may mean, and which plans would handle it."""
-    if not pattern.kind and _rule(past, pattern.name) is not None:
-        yield Fact("note", f"`{pattern.name}` is the conclusion of a rule; rules cause no events")
-    yield from _near_plans(past, pattern, agent)
-    help = suggestion(pattern.name, sorted(known_names(past) - {pattern.name}))
+def _never(past: Past, asked: Question, pattern: QuestionPattern, what: str) -> Explanation:
+    """Explain that something never happened: what else its name may mean, and the plans for it."""
+    agent, name = asked.agent, pattern.name
+    who = f" in {agent}" if agent else ""
+    rules = [rule for rules in past.rules.values() for rule in rules if name_of(rule) == name]
+    facts = [Fact("note", f"rules conclude it, and cause no events: {rule}") for rule in rules[:MOST]]
+    facts += _near_plans(past, pattern, agent)
+    occurred = [data.trigger for _, data in past.deliberations] + [data.belief for _, data in past.beliefs]
+    names = {*map(name_of, occurred), *(name_of(plan.trigger) for _, plan in past.plans())} - {"", name}
+    help = suggestion(name, sorted(names))
     if help:
-        yield Fact("note", help)
-    near = (data.trigger for _, data in past.deliberations if name_of(data.trigger) == pattern.name)
-    seen = sorted(set(map(shown, near)))
+        facts.append(Fact("note", help))
+    seen = sorted({shown(each) for each in occurred if name_of(each) == name})
     if seen:
-        yield Fact("note", f"events with this name: {', '.join(f'`{each}`' for each in seen[:MOST])}")
+        facts.append(
+            Fact("note", f"recorded with this name: {', '.join(f'`{each}`' for each in seen[:MOST])}")
+        )
+    return Explanation(asked.written, f"no {what}{who} until {seconds(past.end)}", None, tuple(facts))
 
 
 def _near_plans(past: Past, pattern: QuestionPattern, agent: str) -> Iterator[Fact]:
@@ -159,15 +146,6 @@ def _near_plans(past: Past, pattern: QuestionPattern, agent: str) -> Iterator[Fa
         if name_of(plan.trigger) == pattern.name:
             how = "waits for it" if pattern.fits(plan.trigger) else "does not match: another trigger"
             yield Fact("plan", f"`{plan_text(plan)}` {how}", None, name, *place_of(plan))
-
-
-def known_names(past: Past) -> set[str]:
-    """Return the names of all events, goals and beliefs that occurred or that plans handle."""
-    found = [data.trigger for _, data in past.deliberations]
-    found += [data.belief for _, data in past.beliefs]
-    found += [data.goal for _, data in past.goals]
-    found += [plan.trigger for _, plan in past.plans()]
-    return set(map(name_of, found)) - {""}
 
 
 # ---- plans
@@ -196,8 +174,8 @@ def explain_plan(past: Past, asked: Question) -> Explanation:
     t, data, how = considered[-1]
     answer = f"{what} {how if how == REFUSED else f'was {how}'} for `{shown(data.trigger)}` at {seconds(t)}"
     counts = {each: sum(treated == each for *_, treated in considered) for each in _COUNTED}
-    told = ", ".join(f"{_COUNTED[each]} {_times(count)}" for each, count in counts.items())
-    facts = (*_reasons(past, name, data, plan, how), Fact("note", f"until then {told}"))
+    told = ", ".join(f"{_COUNTED[each]} {times(count)}" for each, count in counts.items())
+    facts = (*candidates(past, data), Fact("note", f"until then {told}"))
     return Explanation(asked.written, answer, t, facts, chain(past, data.id))
 
 
@@ -219,26 +197,17 @@ def _considered(
     return found
 
 
-def _reasons(
-    past: Past, agent: str, deliberation: records.DeliberationRecord, plan: records.PlanRecord, how: str
-) -> Iterator[Fact]:
-    options = deliberation.options or ()
-    if how == REFUSED:
-        why = next(option.why for option in options if option.plan == plan.id)
-        yield Fact("plan", why or "applicable, but another plan was selected")
-    others = [(option.plan, f"does not apply: {option.why or ''}") for option in options]
-    for number, what in others if how == CHOSEN else [(deliberation.chosen, "was chosen")]:
-        other = past.plan(agent, number)
-        if other or how == CHOSEN:
-            told = f"`{plan_text(other)}` {what.removesuffix(': ')}"
-            yield Fact("plan", told, None, "", *place_of(other))
-
-
 def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.PlanRecord]]:
     """Return the plans that *about* may mean, each with its agent; at least one."""
-    plans = list(past.plans(agent))
-    for is_it in (_has_label, _is_at, _has_trigger):
-        found = [each for each in plans if is_it(each[1], about)]
+    plans, name = list(past.plans(agent)), about.removeprefix("@").strip()
+    checks: tuple[Callable[[records.PlanRecord], bool], ...] = (
+        lambda plan: (plan.label or "").partition("[")[0] == name,
+        lambda plan: _is_at(plan, about),
+        lambda plan: name in (plan.trigger, plan.trigger.removeprefix("+")),
+        lambda plan: name.removeprefix("+") == plan.trigger.partition("(")[0].removeprefix("+"),
+    )
+    for is_it in checks:
+        found = [each for each in plans if is_it(each[1])]
         if found:
             return found
     names = sorted(
@@ -254,10 +223,6 @@ def _find(past: Past, about: str, agent: str) -> list[tuple[str, records.PlanRec
     raise UsageError(f"error: unknown plan: `{about}`\n  = help: {listed}")
 
 
-def _has_label(plan: records.PlanRecord, about: str) -> bool:
-    return (plan.label or "").partition("[")[0] == about.removeprefix("@")
-
-
 def _is_at(plan: records.PlanRecord, about: str) -> bool:
     """Return whether a location is in a plan. The file may be named without its folders."""
     file, _, line = about.rpartition(":")
@@ -268,10 +233,15 @@ def _is_at(plan: records.PlanRecord, about: str) -> bool:
     return same and first <= int(line) <= (plan.end or first)
 
 
-def _has_trigger(plan: records.PlanRecord, about: str) -> bool:
-    trigger, wanted = plan.trigger, about.strip()
-    name = trigger.partition("(")[0]
-    return wanted in (trigger, trigger.removeprefix("+"), name) or name == f"+{wanted}"
+def plan_about(past: Past, words: list[str], agent: str) -> str | None:
+    """Return the place of the plan that words describe, by its trigger, label, context and steps; None if there is none."""
+    found = []
+    for name, plan in past.plans(agent):
+        file, first = place_of(plan)
+        code = " ".join(source_line(past, file, line) for line in range(first, (plan.end or first) + 1))
+        if set(words) <= set(stems(f"{plan.label} {plan_text(plan)} {code}")):
+            found.append((bool(_considered(past, name, plan)), -len(code), f"{file}:{first}"))
+    return max(found)[2] if found else None
 
 
 # ---- beliefs
@@ -279,47 +249,27 @@ def _has_trigger(plan: records.PlanRecord, about: str) -> bool:
 
 def explain_belief(past: Past, asked: Question) -> Explanation:
     """Explain the last change of a belief, such as ``battery(_)``."""
-    pattern, agent = QuestionPattern(asked.about), asked.agent
-    changes = [each for each in of_agent(past.beliefs, agent) if pattern.fits_literal(each[1].belief)]
+    pattern = QuestionPattern(asked.about)
+    changes = [each for each in of_agent(past.beliefs, asked.agent) if pattern.fits_literal(each[1].belief)]
     if not changes:
-        verb = f"{agent} never believed" if agent else "no agent ever believed"
-        answer = f"{verb} `{pattern.written}` until {seconds(past.end)}"
-        return Explanation(asked.written, answer, None, tuple(_meant(past, pattern)))
+        return _never(past, asked, pattern, f"belief `{pattern.written}` was recorded")
     t, last = changes[-1]
     does = "came to believe" if last.op == "+" else "stopped believing"
+    before = (
+        Fact("belief", f"before: {data.op}{shown(data.belief)} at {seconds(at)}", at, data.agent)
+        for at, data in reversed(changes[:-1][-MOST_CHANGES:])
+    )
     answer = f"{last.agent} {does} `{shown(last.belief)}` at {seconds(t)}"
-    facts = (*_changing_step(past, t, last), *_before(changes))
-    return Explanation(asked.written, answer, t, facts, chain(past, last.cause))
+    return Explanation(
+        asked.written, answer, t, (*_changing_step(past, t, last), *before), chain(past, last.cause)
+    )
 
 
 def _changing_step(past: Past, t: float, change: records.BeliefRecord) -> Iterator[Fact]:
     """Return the step of a plan that changed a belief."""
     file, line = place_of(change)
     if file:
-        written = source_line(past, file, line)
-        step = f"the step `{written}`" if written else "a step"
-        whose = f" of intention {change.intention}" if change.intention else ""
-        yield Fact("act", f"{step}{whose} did it", t, "", file, line)
+        step = f"the step `{source_line(past, file, line)}` of intention {change.intention} did it"
+        yield Fact("act", step, t, "", file, line)
     elif not change.cause:
         yield Fact("note", "it is an initial belief, or was added from outside of the plans")
-
-
-def _before(changes: TimedRecords[records.BeliefRecord]) -> Iterator[Fact]:
-    for t, data in reversed(changes[:-1][-MOST_CHANGES:]):
-        yield Fact("belief", f"before: {data.op}{shown(data.belief)} at {seconds(t)}", t, data.agent)
-    left = len(changes) - 1 - MOST_CHANGES
-    if left > 0:
-        yield Fact("note", f"{left} more changes before")
-
-
-def _meant(past: Past, pattern: QuestionPattern) -> Iterator[Fact]:
-    rule = _rule(past, pattern.name)
-    if rule is not None:
-        yield Fact("note", f"it is the conclusion of a rule: {rule}")
-    same = [data.belief for _, data in past.beliefs if name_of(data.belief) == pattern.name]
-    if same:
-        yield Fact("note", f"there was `{shown(same[-1])}`")
-        return
-    help = suggestion(pattern.name, sorted({name_of(data.belief) for _, data in past.beliefs}))
-    if help:
-        yield Fact("note", help)

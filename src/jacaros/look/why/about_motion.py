@@ -7,14 +7,15 @@ from dataclasses import replace
 from jacaros.look.records import records
 from jacaros.look.why.chains import chain, place_of, plan_name, shown
 from jacaros.look.why.explanation import Explanation, Fact, seconds
-from jacaros.look.why.past import ChainLink, Past, TimedRecords
+from jacaros.look.why.past import AT_ONCE, ChainLink, Past, TimedRecords
 from jacaros.look.why.patterns import Question, literal_at
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?\b")
+_TURNING = re.compile(r"angular\.z=-?(?:0\.[1-9]|[1-9])")
+_DRIVING = re.compile(r"linear\.[xy]=-?(?:0\.0?[1-9]|[1-9])")
+"""Commands that turn or drive, rather than correct a motion of the other kind."""
 MOST_FACTS = 8
 """Maximum number of facts in an answer, besides the chain."""
-AT_ONCE = 0.2
-"""Events and changes of goals within this number of seconds before a stop are reported with it."""
 LATEST = 0.7
 """Maximum delay in seconds of a recorded stop after the change of a goal that caused it."""
 _INTERRUPTS = re.compile(r"(\.)(?=(?:suspend|drop_\w+|fail_goal|succeed_goal)\b)|(?<=[\[, ])(?=needs\()")
@@ -33,25 +34,30 @@ def explain_stop(past: Past, asked: Question) -> Explanation:
         answer = (
             f"no command to stop until {seconds(past.end)}; the last command is `{last.what}` at {seconds(t)}"
         )
-        return Explanation(question, answer, t, tuple(_world(past, t, robot)), chain(past, last.id))
+        return Explanation(question, answer, t, tuple(world_facts(past, t, robot)), chain(past, last.id))
     t, number = stop.t, stop.cause.id
-    answer = f"{robot or 'the robot'} stopped at {seconds(t)}: `{stop.cause.what}`"
     because = chain(past, number)
-    if past.exit_code is not None and past.end - t <= AT_ONCE:
-        ended = Fact("note", f"the run ended at {seconds(past.end)}; robots are stopped then", past.end)
-        return Explanation(question, answer, t, (ended,), because)
+    ended = [*_ended_operation(past, t, number)]
+    if past.exit_code is not None and past.end - t <= AT_ONCE and not ended:
+        answer = (
+            f"{robot or 'the robot'} stopped at {seconds(t)}, because the run ended; robots are stopped then"
+        )
+        return Explanation(question, answer, t, (), because)
     goals = _goals_interrupted(past, t, number, agent)
     own_goals = _goals_interrupted(past, t, number, agent, only_own=True)
     since = min((each.t for each in goals if each.t is not None), default=t)
-    handled = _events_before(past, since, number, agent)
-    events = (_event_fact(past, *each) for each in handled)
-    facts = [*_ended_operation(past, t, number), *events, *goals, *_world(past, t, robot)]
-    if handled and own_goals:
+    handled = events_before(past, since, number, agent)
+    events = (event_fact(past, *each) for each in handled)
+    facts = [*events, *goals, *world_facts(past, t, robot)]
+    why = f": {ended[0].text}" if ended else ""
+    if handled and own_goals and " was done at " not in why:
         # A paused or cancelled operation publishes its last command for its own plan, or in the turn of the message
         # that made its agent suspend or drop it. The reason is in the plan that did so.
         reason = handled[-1][1]
         own = (fact for fact in because[:2] if fact.kind in ("command", "operation"))
         because = (*own, *own_goals, *_interrupting_step(past, reason), *chain(past, reason.id))
+        why = f", because of `{shown(reason.trigger)}`"
+    answer = f"{robot or 'the robot'} stopped at {seconds(t)}{why}"
     return Explanation(question, answer, t, tuple(facts[:MOST_FACTS]), because)
 
 
@@ -60,16 +66,16 @@ def _by_operation(past: Past, asked: Question) -> Explanation | None:
     ended = [
         (each.ended, number, each)
         for number, each in past.operations.items()
-        if each.ended is not None and _drives(past, each.data.artifact, asked.robot)
+        if each.ended is not None and _drives(past, each.artifact, asked.robot)
     ]
     if not ended:
         return None
     t, number, last = max(ended, key=lambda each: each[:2])
     goals = _goals_interrupted(past, t, number, asked.agent, only_own=True)
     events = (
-        [_event_fact(past, *each) for each in _events_before(past, t, number, asked.agent)] if goals else []
+        [event_fact(past, *each) for each in events_before(past, t, number, asked.agent)] if goals else []
     )
-    what = f"{last.data.operation} of {last.data.artifact} {last.outcome}"
+    what = f"{last.text} of {last.artifact} {last.outcome}"
     answer = f"no agent sent commands to the wheels; the last operation: {what}"
     return Explanation(asked.written, answer, t, (*events, *goals)[:MOST_FACTS], chain(past, number))
 
@@ -81,24 +87,40 @@ def _drives(past: Past, artifact: str, robot: str) -> bool:
 
 def explain_command(past: Past, asked: Question) -> Explanation:
     """Explain the last command, on the topic if one is given."""
-    commands = [each for each in _commands(past, asked.robot) if asked.about in each.cause.what]
+    found = [each for each in _commands(past, asked.robot) if asked.about in each.cause.what]
+    return _of_command(past, asked, found)
+
+
+def explain_drive(past: Past, asked: Question) -> Explanation:
+    """Explain the last command to move, or the last operation of a robot that other nodes drive."""
+    return _of_motion(past, asked, _DRIVING)
+
+
+def explain_turn(past: Past, asked: Question) -> Explanation:
+    """Explain the last command to turn, or the last operation of a robot that other nodes drive."""
+    return _of_motion(past, asked, _TURNING)
+
+
+def _of_motion(past: Past, asked: Question, motion: re.Pattern[str]) -> Explanation:
+    commands = _commands(past, asked.robot)
+    found = [each for each in commands if motion.search(each.cause.what)]
+    explanation = None if commands else _by_operation(past, asked)
+    return explanation or _of_command(past, asked, found or [each for each in commands if _moves(each)])
+
+
+def _of_command(past: Past, asked: Question, commands: list[ChainLink]) -> Explanation:
     if not commands:
         return _no_command(past, asked)
     t, cause, _ = commands[-1]
-    return Explanation(asked.written, f"`{cause.what}` at {seconds(t)}", t, (), chain(past, cause.id))
+    started = next((each for each in past.chain(cause.id) if each.cause.sort == "operation"), None)
+    operation = past.operations.get(started.cause.id) if started is not None else None
+    whose = f", for `{operation.text}`" if operation is not None else ""
+    return Explanation(asked.written, f"`{cause.what}` at {seconds(t)}{whose}", t, (), chain(past, cause.id))
 
 
-def explain_operation(past: Past, asked: Question) -> Explanation:
-    """Explain the last operation, with the name if one is given."""
-    name = asked.about.partition("(")[0]
-    for number, last in reversed(past.operations.items()):
-        if name in last.data.operation and asked.agent in ("", last.data.agent):
-            what = f"{last.data.operation} of {last.data.artifact} began at {seconds(last.began)}"
-            return Explanation(asked.written, f"{what}, {last.outcome}", last.began, (), chain(past, number))
-    names = sorted({each.data.operation.partition("(")[0] for each in past.operations.values()})
-    known = (Fact("note", f"known operations: {', '.join(names[:MOST_FACTS])}"),) if names else ()
-    answer = f"no operation{f' `{asked.about}`' if asked.about else ''} began until {seconds(past.end)}"
-    return Explanation(asked.written, answer, None, known)
+def _moves(command: ChainLink) -> bool:
+    what = command.cause.what.removeprefix(command.cause.topic or "")
+    return any(float(number) != 0.0 for number in _NUMBER.findall(what))
 
 
 def _commands(past: Past, robot: str) -> list[ChainLink]:
@@ -119,9 +141,8 @@ def _stop_of(commands: list[ChainLink]) -> ChainLink | None:
     """Return the first stop command after the last motion command; None if the last command is a motion."""
     stop: ChainLink | None = None
     for each in reversed(commands):
-        what = each.cause.what.removeprefix(each.cause.topic or "")
         # All of its numbers are zero; one without numbers may stop it, too.
-        if any(float(number) != 0.0 for number in _NUMBER.findall(what)):
+        if _moves(each):
             break
         stop = each
     return stop
@@ -131,13 +152,13 @@ def _ended_operation(past: Past, t: float, command: int) -> Iterator[Fact]:
     """Return how the operation that published a command at *t* ended, if it ended then."""
     for _, link, _ in past.chain(command):
         operation = past.operations.get(link.id)
-        if operation is not None and operation.ended is not None and operation.ended <= t + AT_ONCE:
-            what = f"{operation.data.operation} {operation.outcome}"
+        if operation is not None and operation.ended is not None and operation.ended <= t + LATEST:
+            what = f"{operation.text} {operation.outcome}"
             yield Fact("operation", what, operation.ended)
             return
 
 
-def _world(past: Past, t: float, robot: str) -> Iterator[Fact]:
+def world_facts(past: Past, t: float, robot: str) -> Iterator[Fact]:
     """Return what the world did to the robot at that time."""
     for at, event, whose in past.world:
         if abs(at - t) <= AT_ONCE and robot in ("", whose):
@@ -148,7 +169,7 @@ def _no_command(past: Past, asked: Question) -> Explanation:
     what = f" on `{asked.about}`" if asked.about else ""
     whose = f" for {asked.robot}" if asked.robot else ""
     answer = f"no command{what}{whose} that an agent caused was recorded until {seconds(past.end)}"
-    return Explanation(asked.written, answer, None, tuple(_world(past, past.end, asked.robot)))
+    return Explanation(asked.written, answer, None, tuple(world_facts(past, past.end, asked.robot)))
 
 
 # ---- events that interrupted a motion
@@ -182,7 +203,7 @@ def _interrupted(goals: TimedRecords[records.GoalRecord]) -> Fact:
     return Fact("goal", f"{shown(data.goal)}{more} {data.state} at {seconds(at)}{why}", at, data.agent)
 
 
-def _events_before(past: Past, t: float, link: int, agent: str) -> TimedRecords[records.DeliberationRecord]:
+def events_before(past: Past, t: float, link: int, agent: str) -> TimedRecords[records.DeliberationRecord]:
     """Return the belief events that agents handled just before a stop; those of the same message, if there are any."""
     events = [
         (at, data)
@@ -197,7 +218,7 @@ def _events_before(past: Past, t: float, link: int, agent: str) -> TimedRecords[
     return related or events
 
 
-def _event_fact(past: Past, t: float, deliberation: records.DeliberationRecord) -> Fact:
+def event_fact(past: Past, t: float, deliberation: records.DeliberationRecord) -> Fact:
     """Return a handled event with its plan."""
     plan = past.plan(deliberation.agent, deliberation.chosen)
     name = plan_name(plan) if plan else "`?`"

@@ -1,4 +1,4 @@
-"""Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message."""
+"""Causal chains as lines of an answer: command, operation, step of a plan, event, percept, message; and conditions."""
 
 import re
 from typing import Any
@@ -7,6 +7,7 @@ from jacaros.look.records import records
 from jacaros.look.records.words import named
 from jacaros.look.why.explanation import Fact
 from jacaros.look.why.past import ChainLink, Past
+from jacaros.look.why.patterns import name_of
 
 _OF_PERCEPTS = re.compile(r"\[artifact_id\([^\]]*source\(percept\)[^\]]*\]")
 
@@ -15,6 +16,11 @@ LONGEST_CHAIN = 40
 
 LONGEST_ROUND = 12
 """Maximum number of links of a round of a loop."""
+MOST_VALUES = 6
+"""Maximum number of beliefs of a condition."""
+_NAMES = re.compile(r"[a-z]\w*")
+_DEPTH = 3
+"""Maximum number of rules that are followed from one to the next."""
 
 
 def chain(past: Past, number: Any) -> tuple[Fact, ...]:
@@ -121,3 +127,28 @@ def source_line(past: Past, file: str, line: int) -> str:
         return ""
     code = lines[line - 1].partition("//")[0].strip()
     return code.removeprefix("<-").strip().rstrip(";.")
+
+
+def with_values(past: Past, agent: str, condition: str, t: float) -> str:
+    """Return a condition as text, with the beliefs that it and the rules in it are about, as they were at *t*."""
+    names, rules = set(_NAMES.findall(condition)), past.rules.get(agent, [])
+    for _ in range(_DEPTH):
+        bodies = [rule.partition(":-")[2] for rule in rules if name_of(rule) in names]
+        names.update(name for body in bodies for name in _NAMES.findall(body))
+    held: dict[str, None] = {}
+    for at, change in past.beliefs:
+        if at <= t and change.agent == agent and name_of(change.belief) in names:
+            held.pop(change.belief, None)
+            if change.op == "+":
+                held[change.belief] = None
+    values = ", ".join(shown(belief).partition("[")[0] for belief in [*held][-MOST_VALUES:])
+    return f"`{condition}`{f' with {values}' if values else ''}"
+
+
+def applied(past: Past, handled: records.DeliberationRecord, t: float) -> Fact | None:
+    """Return why the plan for an event applied; None if it has no context."""
+    plan = past.plan(handled.agent, handled.chosen)
+    if plan is None or not plan.context:
+        return None
+    text = f"{plan_name(plan)} applied: {with_values(past, handled.agent, plan.context, t)}"
+    return Fact("plan", text, t, handled.agent, *place_of(plan))

@@ -1,6 +1,6 @@
 """The answer to a question about a run, as plain data and as text."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -71,6 +71,18 @@ def _chain(facts: Iterable[Fact]) -> list[str]:
         return []
     kinds, times = (max(len(line[column]) for line in lines) for column in (0, 1))
     return ["because:", *(f"  {kind:{kinds}}  {time:>{times}}  {text}" for kind, time, text in lines)]
+
+
+def earlier(times_of: Iterable[float]) -> Iterator[Fact]:
+    """Return how often something happened before its last time, from all times, the oldest first."""
+    *before, _ = times_of
+    if before:
+        yield Fact("note", f"it happened {times(len(before))} before, last at {seconds(before[-1])}")
+
+
+def times(count: int) -> str:
+    """Return a number of times as text."""
+    return "once" if count == 1 else f"{count} times"
 
 
 def seconds(t: float) -> str:

@@ -2,17 +2,24 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from math import nan
 from typing import Any, NamedTuple, TypeVar
 
 from msgspec import ValidationError
 
 from jacaros.look.records import records
 from jacaros.look.records.records import Record, decoded
+from jacaros.look.why.explanation import seconds
 from jacaros.robots.world.data.ground_truth import FIELDS
 
 T = TypeVar("T", bound=Any)
 TimedRecords = list[tuple[float, T]]
 """Records with their times, the oldest first."""
+AT_ONCE = 0.2
+"""Seconds within which events and changes count as simultaneous."""
+
+CONDITION = "the condition "
+"""Beginning of the recorded reason for waiting for a condition."""
 
 
 class ChainLink(NamedTuple):
@@ -23,33 +30,48 @@ class ChainLink(NamedTuple):
     of: records.DeliberationRecord | records.MessageRecord | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Operation:
-    """An operation of an artifact.
+SUCCEEDED = ("achieved", "done", "happened")
+OPEN = ("pursued", "suspended", "began")
+
+
+class Deed(NamedTuple):
+    """Something that happened.
 
     Attributes:
-        data: record of its beginning.
-        began, ended: seconds; *ended* is None while it runs.
-        last: record of its end; None while it runs.
+        kind: ``operation``, ``goal``, ``event``, ``belief`` or ``world``.
+        text: as recorded, such as ``driveTo(1,1)``.
+        began, ended: seconds; *ended* is None while it lasts.
+        state: its newest recorded state; ``cancelled`` for an operation whose intention was dropped.
+        why: the reason of a failure, in lines.
+        link: number of its link in causal chains, if it has one.
+        artifact, end: artifact of an operation, and the record of its end.
     """
 
-    data: records.OperationRecord
+    kind: str
+    text: str
     began: float
+    agent: str = ""
+    state: str = "happened"
     ended: float | None = None
-    last: records.OperationRecord | None = None
-
-    @property
-    def reason(self) -> str:
-        """The reason of its failure; empty if it has not failed."""
-        return (self.last.reason or "") if self.last is not None else ""
+    why: str = ""
+    link: Any = None
+    artifact: str = ""
+    end: records.OperationRecord | None = None
 
     @property
     def outcome(self) -> str:
         """How and when it ended, as text."""
-        if self.last is None or self.ended is None:
-            return "still running"
-        reason = f": {self.reason}" if self.reason else ""
-        return f"{self.last.state} at {self.ended:.3f} s{reason}"
+        if self.state in OPEN:
+            return "is suspended" if self.state == "suspended" else "has not ended"
+        if self.ended is None:
+            return f"happened at {seconds(self.began)}"
+        why = self.why.partition("\n")[0]
+        if why == "cancelled":
+            return f"was cancelled at {seconds(self.ended)}"
+        how = {"failed": "failed", "recovered": "failed, and a plan for the failure ended"}.get(
+            self.state, f"was {self.state}"
+        )
+        return f"{how} at {seconds(self.ended)}{f': {why}' if why else ''}"
 
 
 @dataclass
@@ -63,6 +85,7 @@ class Past:
         programs: the plans of each agent by id, as in the newest ``program``.
         rules: the rules of each agent as text.
         intentions: the newest record of each, by agent and id.
+        waits: intentions that began to wait for a condition.
         operations: by id.
         agents: their newest state by name.
         began: when each agent began, in seconds.
@@ -70,7 +93,9 @@ class Past:
         sources: texts of the programs by file.
         world: events of robots and the world, as (t, event, robot), the oldest first.
         robots: names of robots that appear in records.
+        ros: the ROS graph of the run.
         debug: the newest record of the debugger.
+        misplaced: where robots in the embedded world wrongly believed to be, as (t, robot, x, y); NaN when they were right.
         exit_code: exit code of the run; None if it had not ended.
     """
 
@@ -82,13 +107,16 @@ class Past:
     programs: dict[str, dict[Any, records.PlanRecord]] = field(default_factory=dict)
     rules: dict[str, list[str]] = field(default_factory=dict)
     intentions: dict[tuple[str, Any], tuple[float, records.IntentionRecord]] = field(default_factory=dict)
-    operations: dict[Any, Operation] = field(default_factory=dict)
+    waits: TimedRecords[records.IntentionRecord] = field(default_factory=list)
+    operations: dict[Any, Deed] = field(default_factory=dict)
     agents: dict[str, tuple[float, str]] = field(default_factory=dict)
     began: dict[str, float] = field(default_factory=dict)
     robots_of: dict[str, str] = field(default_factory=dict)
     sources: dict[str, list[str]] = field(default_factory=dict)
     world: list[tuple[float, str, str]] = field(default_factory=list)
     robots: set[str] = field(default_factory=set)
+    misplaced: list[tuple[float, str, float, float]] = field(default_factory=list)
+    ros: str = ""
     debug: records.DebugRecord | None = None
     exit_code: int | None = None
 
@@ -129,6 +157,11 @@ class Past:
             case records.MessageRecord(id=int(number)) if number not in self.links:
                 cause = records.CauseRecord(number, "message", data.content, data.cause or 0)
                 self.links[number] = ChainLink(t, cause, data)
+            case records.RunRecord():
+                self.ros = data.ros or ""
+            case records.BelievedRecord() if self.ros == "memory":
+                x, y = (nan if each is None else each for each in (data.x, data.y))
+                self.misplaced.append((t, data.robot, x, y))
             case _:
                 self._take_state(t, data)
 
@@ -141,6 +174,8 @@ class Past:
                 self.intentions.pop((data.agent, data.id), None)
             case records.IntentionRecord():
                 self.intentions[data.agent, data.id] = t, data
+                if (data.waits or "").startswith(CONDITION) and data.stack:
+                    self.waits.append((t, data))
             case records.AgentRecord():
                 self.agents[data.agent] = t, data.state
                 self.began.setdefault(data.agent, t)
@@ -162,11 +197,16 @@ class Past:
                 self.goals.append((t, data))
 
     def _take_operation(self, t: float, data: records.OperationRecord) -> None:
+        deed = Deed(
+            "operation", data.operation, t, data.agent or "", data.state, link=data.id, artifact=data.artifact
+        )
         if data.state != "began":
-            known = self.operations.get(data.id, Operation(data, t))
-            self.operations[data.id] = Operation(known.data, known.began, t, data)
+            known = self.operations.get(data.id, deed)
+            self.operations[data.id] = known._replace(
+                state=data.state, ended=t, why=data.reason or "", end=data
+            )
             return
-        self.operations[data.id] = Operation(data, t)
+        self.operations[data.id] = deed
         if data.id not in self.links:
             cause = records.CauseRecord(
                 data.id,

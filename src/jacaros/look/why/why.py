@@ -1,17 +1,7 @@
-"""Questions about a run, and their answers from its records. The grammar ignores filler words.
+"""Questions about a run, and their answers from its records.
 
-======================================  ==================================================================
-``stopped``                             why the robot stopped
-``command``, ``command /cmd_vel``       what led to the last command (on a topic)
-``operation``, ``operation dock``       what led to the last operation (of a name), and how it ended
-``+alarm(_)``, ``-door(open)``          why an event of a belief was handled as it was, or was not handled
-``!go(dock)``, ``+!go(_)``, ``-!go(_)``  the same for a goal, or its failure
-``?level(X)``, ``+?level(_)``           the same for a test goal, or a question of another agent
-``plan @label``, ``plan robot.asl:14``  when a plan was chosen, and why it was not
-``belief battery(_)``                   what last changed a belief
-``waiting``                             what each intention waits for
-``nothing``, ``idle``                   why nothing happens
-======================================  ==================================================================
+A question is one of `FORMS`, or a sentence: ``why``, ``when``, ``how often`` or ``did``, and words for what happened. They
+are compared with the names of operations, goals, events and beliefs of this run (`jacaros.look.why.deeds`).
 """
 
 import re
@@ -21,128 +11,56 @@ from typing import Any, NamedTuple
 
 from jacaros.look.records import records
 from jacaros.look.records.records import Record, decoded
+from jacaros.look.why.about_deeds import explain_failure, explain_operation
 from jacaros.look.why.about_events import (
     explain_belief,
     explain_deliberation,
     explain_event,
     explain_plan,
-    goal_text,
-    known_names,
 )
-from jacaros.look.why.about_motion import explain_command, explain_operation, explain_stop
-from jacaros.look.why.about_waiting import explain_idleness, explain_waiting
-from jacaros.look.why.chains import is_written
-from jacaros.look.why.explanation import Explanation
+from jacaros.look.why.about_motion import explain_command, explain_stop
+from jacaros.look.why.about_now import explain_now
+from jacaros.look.why.deeds import deeds_asked_for
+from jacaros.look.why.explanation import Explanation, seconds
 from jacaros.look.why.past import Past
 from jacaros.look.why.patterns import Question, QuestionPattern, literal_at, name_of
+from jacaros.look.why.sentences import LITERAL, WHEN, WHETHER, Answer, explain_sentence
 from jacaros.runtime.errors import UsageError
 from jacaros.runtime.files.texts import help_line, suggestion
 
 MOST_NAMES = 12
-"""Number of names that the error for an unknown question lists."""
+"""Number of names of each kind that the error for an unknown question lists."""
 
 _PLAN = re.compile(r"@\w+|[\w./\\-]+\.asl:\d+")
 _EVENT = re.compile(r"(?:^|(?<=[\s`'\"]))(?:[+\-]?[!?]|[+\-^])(?=~?[a-z_'])")
-_LITERAL = re.compile(r"~?[a-z]\w*(?=\()|(?:(?<=belief\s)|(?<=changed\s))~?[a-z]\w*")
-_FILLERS = frozenset(
-    [
-        "why",
-        "what",
-        "did",
-        "do",
-        "does",
-        "is",
-        "was",
-        "were",
-        "are",
-        "the",
-        "a",
-        "an",
-        "it",
-        "its",
-        "this",
-        "that",
-        "not",
-        "no",
-        "there",
-        "robot",
-        "agent",
-        "agents",
-        "happen",
-        "happens",
-        "happened",
-        "last",
-        "of",
-        "on",
-        "for",
-        "by",
-        "from",
-        "about",
-        "because",
-        "led",
-        "caused",
-        "event",
-        "goal",
-        "then",
-    ]
-)
-_STARTS_NAME = re.compile(r"[~a-z]\w*$")
 
 
-class _Kind(NamedTuple):
-    """A kind of questions: how to ask, each with its meaning; words that tell it; and what answers."""
+class _Form(NamedTuple):
+    """How to ask a question in one word, its meaning, and what answers it."""
 
-    forms: Mapping[str, str]
-    words: str
-    answer: Callable[[Past, Question], Explanation]
+    written: str
+    meaning: str
+    answer: Answer
 
 
-KINDS: Mapping[str, _Kind] = {
-    "stopped": _Kind(
-        {"stopped": "why the robot stopped"},
-        "stop stopped stops stopping stand stands standing still halt halted",
-        explain_stop,
+FORMS: Mapping[str, _Form] = {
+    "stopped": _Form("stopped", "why the robot stopped", explain_stop),
+    "command": _Form("command [TOPIC]", "what led to the last command", explain_command),
+    "operation": _Form("operation [NAME]", "what led to the last operation", explain_operation),
+    "event": _Form(
+        "+EVENT, !GOAL, ...", "how an event, a goal or its failure (`-!`) was handled", explain_event
     ),
-    "command": _Kind(
-        {"command [TOPIC]": "what led to the last command"},
-        "command commands commanded drive drives driving move moves moving",
-        explain_command,
-    ),
-    "operation": _Kind(
-        {"operation [NAME]": "what led to the last operation"},
-        "operation operations",
-        explain_operation,
-    ),
-    "event": _Kind(
-        {
-            "+EVENT, -EVENT": "how an event of a belief was handled, such as `+alarm(_)`",
-            "!GOAL, ?TEST, -!GOAL": "the same for a goal, a test goal or a failure",
-        },
-        "",
-        explain_event,
-    ),
-    "plan": _Kind(
-        {"plan @LABEL, plan FILE:LINE": "when a plan was chosen, and why it was not"},
-        "",
-        explain_plan,
-    ),
-    "belief": _Kind(
-        {"belief BELIEF": "what last changed a belief, such as `battery(_)`"},
-        "",
-        explain_belief,
-    ),
-    "waiting": _Kind(
-        {"waiting": "what each intention waits for"},
-        "wait waits waiting",
-        explain_waiting,
-    ),
-    "idle": _Kind(
-        {"nothing": "why nothing happens"},
-        "nothing idle stuck hang hangs silent",
-        explain_idleness,
-    ),
+    "plan": _Form("plan @LABEL, plan FILE:LINE", "when a plan was chosen, and why it was not", explain_plan),
+    "belief": _Form("belief BELIEF", "what last changed a belief, such as `battery(_)`", explain_belief),
+    "waiting": _Form("waiting, nothing", "what each intention waits for", explain_now),
+    "failed": _Form("failed", "what failed last, and why", explain_failure),
 }
-"""The kinds of questions."""
+"""The questions with a fixed form."""
+_SENTENCES = (
+    ("why did it VERB ...", "what led to it, such as `why did it go to the dock`"),
+    ("did it VERB ..., did it achieve GOAL", "whether it succeeded"),
+    ("when did it ..., how often did it ...", "the times"),
+)
 
 
 def explain(
@@ -152,7 +70,7 @@ def explain(
 
     Args:
         happened: (t, event, data), as described in docs/reference/recordings.md, the oldest first.
-        question: see `KINDS`.
+        question: one of `FORMS`, or a sentence.
         at: seconds since the run began; later records are ignored. None: the end of the records.
         agent: only goals, plans and beliefs of this agent; empty for all.
         robot: only commands to this robot; empty for all.
@@ -161,104 +79,76 @@ def explain(
         UsageError: the question is not understood, or names an unknown plan or agent.
     """
     past = Past.of(happened, at)
-    asked = read_question(question, known_names(past))
     words = question.strip(" ?").split()
     if agent and agent not in past.agents:
         known = ", ".join(past.agents) or "none"
         raise UsageError(f"error: unknown agent: `{agent}`\n  = help: agents until {past.end:.3f} s: {known}")
     agent = agent or next((word for word in words if word in past.agents), "")
     robot = robot or next((word for word in words if word in past.robots), "")
-    asked = replace(asked, agent=agent, robot=robot)
-    if asked.kind == "name":
-        asked = _named(past, asked)
-    return KINDS[asked.kind].answer(past, asked)
+    asked = replace(read_question(question), agent=agent, robot=robot)
+    answer = FORMS[asked.kind].answer if asked.kind in FORMS else explain_sentence
+    explanation = answer(past, asked)
+    if explanation is None:
+        raise unknown_question(past, asked)
+    return explanation
 
 
-def _named(past: Past, asked: Question) -> Question:
-    """Resolve a lone word: a belief, a goal, an operation, or the label or trigger of a plan.
-
-    Raises:
-        UsageError: it is unknown.
-    """
-    pattern, name = QuestionPattern(asked.about), asked.about
-    if any(pattern.fits_literal(data.belief) for _, data in past.beliefs):
-        return replace(asked, kind="belief")
-    if any(name_of(data.goal) == name for _, data in past.goals):
-        return replace(asked, kind="event", about=f"!{name}")
-    if any(each.data.operation.partition("(")[0] == name for each in past.operations.values()):
-        return replace(asked, kind="operation")
-    plans = [plan for _, plan in past.plans(asked.agent)]
-    if any(plan.label == name for plan in plans):
-        return replace(asked, kind="plan", about=f"@{name}")
-    for plan in plans:
-        if name_of(plan.trigger) == name:
-            return replace(asked, kind="event", about=plan.trigger.partition("(")[0])
-    labels = {str(plan.label) for plan in plans if is_written(plan.label)}
-    raise unknown_question(asked.written, known_names(past) | labels)
-
-
-def read_question(written: str, known: Iterable[str] = ()) -> Question:
-    """Parse a question. *known* names are suggested if it is not understood.
+def read_question(written: str) -> Question:
+    """Return the form of a question and its subject; ``sentence`` for one in other words.
 
     Raises:
-        UsageError: it is of none of the `KINDS`. The text lists them.
+        UsageError: its event is not an event.
     """
     asked = written.strip(" ?.`'\"\n") if written.strip(" `'\"?") else written
     asked = f"?{asked}" if written.lstrip(" `'\"").startswith("?") else asked
+    words = asked.split()
+    sentence = bool(words) and words[0].lower() in WHETHER | WHEN
     found = _PLAN.search(asked)
     if found is not None:
         return Question(written, "plan", found[0])
     found = _EVENT.search(asked)
-    if found is not None:
+    if found is not None and not sentence:
         of_plan = "plan" in asked[: found.start()].split()
         event = found[0] + literal_at(asked, found.end())
         QuestionPattern(event)  # raises if it is not a literal
         return Question(written, "plan" if of_plan else "event", event)
-    words = asked.split()
-    if words[:1] == ["plan"] and len(words) > 1:
-        return Question(written, "plan", " ".join(words[1:]))
+    if (
+        words
+        and words[0] in FORMS
+        and words[0] not in ("event", "belief")
+        and (words[1:] or words != ["plan"])
+    ):
+        return Question(written, words[0], " ".join(words[1:]))
     if asked.startswith("belief(") and asked.endswith(")"):
         asked = f"belief {asked.removeprefix('belief(')[:-1]}"
-    found = _LITERAL.search(asked)
-    if found is not None:
+    found = LITERAL.search(asked)
+    if found is not None and not sentence:
         return Question(written, "belief", literal_at(asked, found.start()))
-    question = _of_words(written, words)
-    if question is None:
-        raise unknown_question(written, known)
-    return question
+    return Question(written, "sentence", asked)
 
 
-def _of_words(written: str, words: list[str]) -> Question | None:
-    low = [word.lower().strip(",;:") for word in words]
-    for kind, (_, known, _) in KINDS.items():
-        at = next((index for index, word in enumerate(low) if word in known.split()), None)
-        if at is not None:
-            rest = [word for word in words[at + 1 :] if word.lower() not in _FILLERS]
-            return Question(written, kind, rest[0] if rest and kind in ("command", "operation") else "")
-    left = [word for word in words if word.lower() not in _FILLERS]
-    if len(left) == 1 and _STARTS_NAME.match(left[0]):
-        return Question(written, "name", left[0])
-    return None
-
-
-def unknown_question(written: str, known: Iterable[str] = ()) -> UsageError:
-    """Return the error for a question that is not understood. *known* are names for suggestions."""
-    words = {word for kind in KINDS.values() for word in kind.words.split()}
-    names = sorted(set(known))
-    last = written.strip(" ?`'\"").split()[-1:] or [""]
-    help = suggestion(last[0].lstrip("+-!?"), sorted({*words, *names}))
-    lines = [f"error: unknown question: `{written}`"]
+def unknown_question(past: Past, asked: Question) -> UsageError:
+    """Return the error for a question that is not understood. It lists what this run can be asked about."""
+    names: dict[str, dict[str, None]] = {"operation": {}, "goal": {}, "event": {}, "world": {}}
+    for each in sorted(deeds_asked_for(past, asked), key=lambda deed: -deed.began):
+        names[each.kind].setdefault(name_of(each.text) or each.text)
+    known = {name for each in names.values() for name in each}
+    last = asked.written.strip(" ?`'\"").split()[-1:] or [""]
+    help = suggestion(last[0].lstrip("+-!?"), sorted({*FORMS, *known}))
+    lines = [f"error: unknown question: `{asked.written}`"]
     if help:
         lines.append(help_line(help))
-    if names:
-        more = ", ..." if len(names) > MOST_NAMES else ""
-        lines.append(
-            f"  = help: events, goals and beliefs of this run: {', '.join(names[:MOST_NAMES])}{more}"
-        )
+    for kind, found in names.items():
+        if found:
+            more = ", ..." if len(found) > MOST_NAMES else ""
+            title = "events in the world" if kind == "world" else f"{kind}s"
+            lines.append(
+                f"  = help: {title} of this run, newest first: {', '.join([*found][:MOST_NAMES])}{more}"
+            )
+    forms = [*_SENTENCES, *((form.written, form.meaning) for form in FORMS.values())]
+    width = max(len(written) for written, _ in forms)
     lines.append("  = help: ask one of")
-    forms = {form: what for kind in KINDS.values() for form, what in kind.forms.items()}
-    width = max(map(len, forms))
-    lines += [f"      {form:{width}}  {what}" for form, what in forms.items()]
+    lines += [f"      {written:{width}}  {meaning}" for written, meaning in forms]
     return UsageError("\n".join(lines))
 
 
@@ -309,7 +199,9 @@ class Announcer:
             case records.BeliefRecord() if not _has_plan(past, record):
                 return explain_event(past, Question(asked, about=asked, agent=record.agent))
             case records.GoalRecord():
-                return Explanation(asked, f"{record.agent}: {goal_text(t, record)}", t)
+                return Explanation(
+                    asked, f"{record.agent}: {record.goal} failed at {seconds(t)}: {record.why}", t
+                )
         return None
 
 

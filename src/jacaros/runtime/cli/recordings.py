@@ -67,7 +67,9 @@ def view(run: Path, output: Path | None, view_port: int, view_address: str, view
 @click.command(
     "why",
     context_settings=_QUESTIONS,
-    epilog=examples("jacaros why run.jsonl stopped", "jacaros why run.jsonl '+alarm(_)' --at 12.5"),
+    epilog=examples(
+        "jacaros why run.jsonl 'why did it recharge?'", "jacaros why run.jsonl '+alarm(_)' --at 12.5"
+    ),
 )
 @click.argument("run", type=PATH)
 @click.argument("question", nargs=-1, required=True)
@@ -85,18 +87,22 @@ def why(
     """Answer a QUESTION about RUN, a recording (`jacaros run FILE --record RUN`).
 
     \b
-    stopped                       why the robot stopped
-    command [TOPIC]               what led to the last command
-    operation [NAME]              what led to the last operation
-    +EVENT, -EVENT                how a belief event was handled, such as '+alarm(_)'
-    !GOAL, ?TEST, -!GOAL          the same for a goal, a test goal or a failure
-    plan @LABEL, plan FILE:LINE   when a plan was selected, or why it was not
-    belief BELIEF                 what last changed a belief, such as 'battery(_)'
-    waiting                       what each intention waits for
-    nothing                       why nothing happens
+    why did it VERB ...                    what led to it: 'why did it go to the dock'
+    did it VERB ..., did it achieve GOAL   whether it succeeded, and if not, why
+    when did it ..., how often did it ...  the times
+    why is it standing still               what it waits for, or why the run ended
+    why did it fail                        what failed last, with the reason
+    stopped                                why the robot stopped
+    command [TOPIC]                        what led to the last command
+    operation [NAME]                       what led to the last operation
+    +EVENT, !GOAL, ?TEST, -!GOAL           how an event, a goal, a test goal or a failure was handled
+    plan @LABEL, plan FILE:LINE            when a plan was selected, or why it was not
+    belief BELIEF                          what last changed a belief, such as 'battery(_)'
 
-    Words around these are ignored: 'why did the robot stop?' asks `stopped`. Variables match anything. Quote the question
-    with single quotes, because shells interpret `!` and brackets.
+    The words of a question are compared with the names of what happened in the run: 'recharge' finds operationRecharge, and
+    'go to the dock' finds !go_to(dock) and driveTo(1,1), if the agent believes place(dock,1,1,0). An unknown question is an
+    error, which lists the operations, goals and events of the run. Variables match anything. Quote the question with single
+    quotes, because shells interpret `!` and brackets.
     """  # fmt: skip
     from jacaros.look.why.why import explain
 

@@ -37,7 +37,7 @@ def test_a_truncated_recording_answers_with_a_warning(recording: Path) -> None:
     recording.write_text(recording.read_text(encoding="utf-8") + '{"kind": "ev', encoding="utf-8")
     result = asked(recording, "waiting")
     assert result.exit_code == 0
-    assert "no intention" in result.stdout
+    assert "no agent has a goal" in result.stdout
     assert result.stderr.startswith(f"warning: {recording} is cut off or damaged")
 
 

@@ -151,18 +151,18 @@ class RecordedActs:
 
     def __init__(self, records: Iterable[Record], agent: str) -> None:
         past = Past.of(records)
-        operations = [each for each in past.operations.values() if each.data.agent == agent]
+        operations = [each for each in past.operations.values() if each.agent == agent]
         self._left = [
             RecordedAction(
-                _operation_key(each.data.operation),
-                shown(each.data.operation),
+                _operation_key(each.text),
+                shown(each.text),
                 each.began,
-                None if each.reason == CANCELLED else each.ended,
-                each.last,
+                None if each.why == CANCELLED else each.ended,
+                each.end,
             )
             for each in operations
         ]
-        known = {each.data.cause for each in operations}
+        known = {past.links[each.link].cause.parent for each in operations}
         self._left += [
             RecordedAction(link.what.rpartition(" ")[2], "", t, t)
             for number, (t, link, _) in past.links.items()

@@ -24,7 +24,7 @@ def belief(t: float, text: str, **more: Any) -> Record:
     return t, "belief", {"agent": "guard", "op": "+", "belief": text, **more}
 
 
-@pytest.mark.parametrize("question", ["stopped", "why did the robot stop?", "Why does robot1 stand still?"])
+@pytest.mark.parametrize("question", ["stopped", "why did the robot stop?", "Why did robot1 stop?"])
 def test_a_stop_is_traced_back_to_the_message(question: str) -> None:
     answer = ask(question)
     assert answer.t == 9.1
@@ -59,7 +59,7 @@ def test_unknown_names_and_words_have_near_ones() -> None:
     with pytest.raises(UsageError, match="unknown plan: `@lo`\n  = help: known plans: @dock, @low, @patrol"):
         ask("plan @lo")
     with pytest.raises(UsageError, match=r"did you mean `stopped`\?"):
-        ask("stoped")
+        ask("stpped")
 
 
 def test_a_command_and_an_operation_are_named() -> None:
@@ -68,9 +68,9 @@ def test_a_command_and_an_operation_are_named() -> None:
         ask("command /led").answer == "no command on `/led` that an agent caused was recorded until 12.000 s"
     )
     answer = ask("operation go")
-    assert answer.answer == "go(kitchen) of /main/wheels began at 0.100 s, still running"
+    assert answer.answer == "guard started `go(kitchen)` at 0.100 s for `!patrol(kitchen)`; it has not ended"
     assert kinds(answer) == ["operation", "act", "event"]
-    assert ask("go").answer.startswith("go(kitchen) of /main/wheels began")
+    assert ask("go").answer == answer.answer
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_an_event_without_a_plan_has_a_reason() -> None:
     ]
     answer = ask("+low")
     assert answer.t is None
-    assert "`low` is the conclusion of a rule; rules cause no events" in answer.text()
+    assert "rules conclude it, and cause no events: low :- " in answer.text()
     answer = explain([*RECORDS, belief(13.0, "alarm(a,b)[source(self)]")], "+alarm(_,_)")
     assert answer.answer == "guard has no relevant plan for `+alarm(a,b)[source(self)]` at 13.000 s"
     assert "does not match: another trigger" in answer.text()
@@ -106,7 +106,7 @@ def test_an_event_without_a_plan_has_a_reason() -> None:
 def test_a_goal_tells_how_it_ended() -> None:
     answer = ask("!patrol(_)")
     assert answer.answer == "guard handled `+!patrol(kitchen)` at 0.100 s with @patrol (guard.asl:5)"
-    assert "!patrol(kitchen) dropped at 9.000 s" in answer.text()
+    assert "!patrol(kitchen) was dropped at 9.000 s" in answer.text()
 
 
 @pytest.mark.parametrize("question", ["plan @low", "why not @low?", "plan guard.asl:8", "low"])
@@ -120,7 +120,7 @@ def test_a_plan_that_was_refused_or_never_considered() -> None:
     answer = ask("plan @low", at=6.0)
     assert answer.answer == "@low of guard (guard.asl:7) did not apply for `+battery(40)` at 5.000 s"
     assert "stops at `B < L` with B=40, L=20" in answer.text()
-    assert "`+battery(B)` was chosen (guard.asl:9)" in answer.text()
+    assert "`+battery(B)`: chosen (guard.asl:9)" in answer.text()
     answer = ask("plan guard.asl:12")
     assert answer.answer == "@dock of guard (guard.asl:11) was never considered"
     assert "no goal `+!dock` happened in guard until 12.000 s" in answer.text()
@@ -135,19 +135,21 @@ def test_a_plan_that_was_refused_or_never_considered() -> None:
 
 def test_what_it_waits_for_and_why_nothing_happens() -> None:
     answer = ask("what is it waiting for?")
-    assert answer.answer == "1 of 1 intentions of all agents wait at 12.000 s"
+    assert answer.answer == "guard waits for 500 ms since 11.500 s, for `!watch`"
     assert answer.facts[0].written() == (
         "guard: intention 3, !watch, waits for 500 ms since 11.500 s, in `.wait(500)` (guard.asl:12)"
     )
     answer = ask("why does nothing happen")
-    assert answer.answer == "every open intention of all agents waits at 12.000 s"
+    assert answer.answer == "guard waits for 500 ms since 11.500 s, for `!watch`"
     assert "the last event `+alarm(fire)` had no applicable plan" in answer.text()
     idle = "no agent has a goal or an event at 10.000 s; the last event was `+alarm(fire)` at 10.000 s"
     assert ask("nothing", at=10.5).answer == idle
     answer = ask("idle", agent="guard", at=10.5).answer
     assert answer.startswith("guard has neither a goal nor an event at 10.000 s")
     ended = [*RECORDS, (13.0, "ended", {"code": 0})]
-    assert explain(ended, "idle").answer == "the run ended at 13.000 s with exit code 0"
+    assert explain(ended, "idle").answer == (
+        "the run ended at 13.000 s with exit code 0; until then, guard waited for 500 ms since 11.500 s, for `!watch`"
+    )
     paused = [*RECORDS, (13.0, "debug", {"state": "paused", "why": "breakpoint guard.asl:8"})]
     assert explain(paused, "idle").answer == "the run is paused: breakpoint guard.asl:8"
 
@@ -170,9 +172,9 @@ def test_where_a_belief_comes_from() -> None:
     )
     answer = ask("belief batery(_)")
     assert answer.t is None
-    assert answer.answer == "no agent ever believed `batery(_)` until 12.000 s"
+    assert answer.answer == "no belief `batery(_)` was recorded until 12.000 s"
     assert answer.facts[0].text == "did you mean `battery`?"
-    assert "it is the conclusion of a rule: low :-" in ask("belief low").text()
+    assert "rules conclude it, and cause no events: low :-" in ask("belief low").text()
 
 
 def test_a_question_of_another_agent() -> None:
@@ -184,7 +186,7 @@ def test_a_question_of_another_agent() -> None:
         assert explain(records, question).answer == "guard has no applicable plan for `+?time(_)` at 1.000 s"
 
 
-@pytest.mark.parametrize("question", ["how are you doing today", "stoped", "+", "plan"])
+@pytest.mark.parametrize("question", ["how are you doing today", "stpped", "+", "plan"])
 def test_an_unknown_question_lists_the_forms(question: str) -> None:
     with pytest.raises(UsageError) as refused:
         ask(question)
@@ -231,9 +233,9 @@ def test_a_stop_at_the_end_of_the_run_is_not_a_decision() -> None:
         cause(6.0, 50, 3, "command", "/cmd_vel", topic="/cmd_vel"),
         (6.0, "ended", {"code": 0}),
     ]
-    assert [fact.text for fact in explain(records, "stopped").facts] == [
-        "the run ended at 6.000 s; robots are stopped then"
-    ]
+    assert explain(records, "stopped").answer == (
+        "the robot stopped at 6.000 s, because the run ended; robots are stopped then"
+    )
 
 
 def test_unnamed_variables_and_annotations_of_percepts_are_not_shown() -> None:
