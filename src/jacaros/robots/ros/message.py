@@ -10,11 +10,14 @@ from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from jacaros.robots.ros.errors import MessageMismatch, NameInvalid
 from jacaros.robots.ros.fields import DURATION, FLOATS, INTEGER_RANGES, TIME, FieldType
 from jacaros.runtime.files.texts import aside
+
+K = TypeVar("K")
+V = TypeVar("V")
 
 TIMES = (TIME, DURATION)
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
@@ -34,6 +37,17 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
 rotations."""
 
 
+class Memo(dict[K, V]):
+    """Values that *make* returned for their keys; it is called on the first use of a key."""
+
+    def __init__(self, make: Callable[[K], V]) -> None:
+        self._make = make
+
+    def __missing__(self, key: K) -> V:
+        made = self[key] = self._make(key)
+        return made
+
+
 class Schema:
     """A family of message classes (of rospy, rclpy or our own), and the messages made of them.
 
@@ -43,8 +57,8 @@ class Schema:
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
         self._roots = tuple(roots)
-        self._fields: dict[str, Mapping[str, FieldType]] = {}
-        self._classes: dict[str, Any] = {}
+        self._fields = Memo(self._read_fields)
+        self._classes = Memo(self._find_class)
 
     def look_in(self, folder: Path) -> None:
         """Search *folder* for definitions, too, from now on."""
@@ -57,17 +71,11 @@ class Schema:
         Raises:
             UnknownInterface: the type is unknown.
         """
-        fields = self._fields.get(type_name)
-        if fields is None:
-            fields = self._fields[type_name] = self._read_fields(type_name)
-        return fields
+        return self._fields[type_name]
 
     def message_class(self, type_name: str) -> Any:
         """Return the class of a message type in full form. Raises `UnknownInterface`."""
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = self._find_class(type_name)
-        return found
+        return self._classes[type_name]
 
     def new(self, type_name: str) -> Any:
         """Make a message with the family's own defaults. Raises `UnknownInterface`."""

@@ -7,14 +7,14 @@ use; all runs of a process share the classes.
 import dataclasses
 import keyword
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import FieldType, MessageDefinition, parse_definition
 from jacaros.robots.ros.interfaces import BUILT_IN, KINDS, PARTS, definition, how_to_define, split
-from jacaros.robots.ros.message import DEFAULTS, Schema, zeros
+from jacaros.robots.ros.message import DEFAULTS, Memo, Schema, zeros
 
 _ZEROS: Mapping[str, object] = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0}
 
@@ -27,7 +27,7 @@ class _Store:
         parts = (part.partition("\n") for part in file.split(f"{'=' * 80}\nMSG: ")[1:])
         self._texts = {name: text for name, _, text in parts}
         self._definitions: dict[str, MessageDefinition] = {}
-        self._classes: dict[str, type] = {}
+        self.classes: Memo[str, type] = Memo(lambda name: _message_class(name, self.definition(name)))
 
     def names(self) -> set[str]:
         return {*self._texts, *self._definitions}
@@ -45,14 +45,8 @@ class _Store:
     def add(self, type_name: str, added: MessageDefinition) -> None:
         self._definitions[type_name] = added
 
-    def message_class(self, type_name: str) -> type:
-        found = self._classes.get(type_name)
-        if found is None:
-            found = self._classes[type_name] = _message_class(type_name, self.definition(type_name))
-        return found
 
-
-@lru_cache(maxsize=1)
+@cache
 def _store() -> _Store:
     return _Store()
 
@@ -88,17 +82,14 @@ class DefinitionSchema(Schema):
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
         super().__init__(roots)
-        self._makers: dict[str, Callable[[], Any]] = {}
+        self._makers = Memo(self._compile)
 
     def new(self, type_name: str) -> Any:
         """Create a message with zeros, empty strings and empty sequences; raises `UnknownInterface`."""
-        return (self._makers.get(type_name) or self.maker(type_name))()
+        return self._makers[type_name]()
 
     def maker(self, type_name: str) -> Callable[[], Any]:
-        maker = self._makers.get(type_name)
-        if maker is None:
-            maker = self._makers[type_name] = self._compile(type_name)
-        return maker
+        return self._makers[type_name]
 
     def load(self, type_name: str) -> None:
         """Load the message types of a service or an action; raises `UnknownInterface`."""
@@ -126,7 +117,7 @@ class DefinitionSchema(Schema):
 
     def _find_class(self, type_name: str) -> Any:
         self._require(type_name)
-        return _store().message_class(type_name)
+        return _store().classes[type_name]
 
     def _require(self, type_name: str) -> None:
         if type_name in _store():
@@ -173,7 +164,7 @@ class DefinitionSchema(Schema):
             repr(defaults[name]) if name in defaults else self._default(field, names)
             for name, field in self.fields(type_name).items()
         ]
-        return f"{_named(_store().message_class(type_name), names)}({', '.join(values)})"
+        return f"{_named(_store().classes[type_name], names)}({', '.join(values)})"
 
     def _default(self, field: FieldType, names: dict[str, Any]) -> str:
         if not field.array:

@@ -18,12 +18,13 @@ import sys
 from array import array
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import DURATION, FLOATS, TIME, FieldType
-from jacaros.robots.ros.message import array_of_numbers
+from jacaros.robots.ros.message import Memo, array_of_numbers
 from jacaros.robots.ros.names import message_type
 from jacaros.robots.ros.typestore import DefinitionSchema, is_stored
 
@@ -52,9 +53,8 @@ class Translator:
 
     def __init__(self, schema: DefinitionSchema) -> None:
         self._schema = schema
-        self._encoders: dict[str, Encoder] = {}
-        self._decoders: dict[str, Decoder] = {}
-        self._packed: dict[str, bool] = {}
+        self._encoders, self._decoders = Memo(self._message_encoder), Memo(self._message_decoder)
+        self._packed = Memo(partial(worth_packing, schema))
         self._version = 2
 
     @property
@@ -70,17 +70,11 @@ class Translator:
 
     def packs(self, type_name: str) -> bool:
         """Return whether messages of a type should be requested as CBOR."""
-        packed = self._packed.get(type_name)
-        if packed is None:
-            packed = self._packed[type_name] = worth_packing(self._schema, type_name)
-        return packed
+        return self._packed[type_name]
 
     def encode(self, type_name: str, message: Any) -> Any:
         """Return *message* as a JSON value."""
-        encoder = self._encoders.get(type_name)
-        if encoder is None:
-            encoder = self._encoders[type_name] = self._message_encoder(type_name)
-        return encoder(message)
+        return self._encoders[type_name](message)
 
     def decode(self, type_name: str, value: Any) -> Any:
         """Make a message from a JSON value; missing fields get their defaults.
@@ -88,10 +82,7 @@ class Translator:
         Raises:
             ValueError: the value does not match the type; the text names the field.
         """
-        decoder = self._decoders.get(type_name)
-        if decoder is None:
-            decoder = self._decoders[type_name] = self._message_decoder(type_name)
-        return decoder(value)
+        return self._decoders[type_name](value)
 
     def _message_encoder(self, type_name: str) -> Encoder:
         renamed = _ROS1_FIELDS.get(type_name, {}) if self._version == 1 else {}

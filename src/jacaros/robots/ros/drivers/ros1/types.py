@@ -14,7 +14,7 @@ from typing import Any
 from jacaros.robots.ros.errors import UnknownInterface
 from jacaros.robots.ros.fields import DURATION, TIME, FieldType, from_ros1
 from jacaros.robots.ros.interfaces import definition, how_to_define, split
-from jacaros.robots.ros.message import DEFAULTS, Schema
+from jacaros.robots.ros.message import DEFAULTS, Memo, Schema
 from jacaros.runtime.files.texts import kept_files
 
 ROS1_PACKAGES = {"example_interfaces/srv/AddTwoInts": "rospy_tutorials"}
@@ -45,15 +45,15 @@ class GenpySchema(Schema):
 
     def __init__(self, roots: Sequence[Path] = ()) -> None:
         super().__init__(roots)
-        self._setters: dict[str, tuple[Callable[[Any], None], ...]] = {}
+        self._setters: Memo[str, tuple[Callable[[Any], None], ...]] = Memo(
+            lambda type_name: tuple(self._find_defaults(type_name, ()))
+        )
+        self._services, self._actions = Memo(self._find_service), Memo(self._find_action)
 
     def new(self, type_name: str) -> Any:
         """Make a message with the defaults of ROS 2, which genpy does not know. Raises `UnknownInterface`."""
         message = super().new(type_name)
-        setters = self._setters.get(type_name)
-        if setters is None:
-            setters = self._setters[type_name] = tuple(self._find_defaults(type_name, ()))
-        for set_default in setters:
+        for set_default in self._setters[type_name]:
             set_default(message)
         return message
 
@@ -63,9 +63,7 @@ class GenpySchema(Schema):
 
     def service_class(self, type_name: str) -> Any:
         """Return the class of a service type in full form. Raises `UnknownInterface`."""
-        if type_name not in self._classes:
-            self._classes[type_name] = self._find_service(type_name)
-        return self._classes[type_name]
+        return self._services[type_name]
 
     def action_class(self, type_name: str, part: str) -> Any:
         """Return the class of one of actionlib's messages of an action.
@@ -78,10 +76,7 @@ class GenpySchema(Schema):
         Raises:
             UnknownInterface: the action is neither installed nor defined.
         """
-        key = f"{type_name}_{part}"
-        if key not in self._classes:
-            self._classes[key] = self._find_action(type_name, part)
-        return self._classes[key]
+        return self._actions[type_name, part]
 
     def _read_fields(self, type_name: str) -> Mapping[str, FieldType]:
         if type_name in _TIME_FIELDS:
@@ -142,7 +137,8 @@ class GenpySchema(Schema):
             )
         return self._generate(generated_service, f"{ros1_package}/{name}", text)
 
-    def _find_action(self, type_name: str, part: str) -> Any:
+    def _find_action(self, wanted: tuple[str, str]) -> Any:
+        type_name, part = wanted
         package, _, name = type_name.split("/")
         if part not in ACTION_SUFFIXES:
             raise UnknownInterface(f"an action has no part {part!r} ({type_name})")
