@@ -52,22 +52,13 @@ class ArtRos(RosArtifact):
 
     def open(self) -> None:
         """Show the connection, and track it."""
-        self._closed = False
         self.define_property("middleware", Atom(self.ros.name))
         self.define_property("node", self.ros.node_name)
         if self.ros.connected:
             self.define_property("connected")
-        self.ros.on_connection(self._connection_changed)
-        self.at_dispose(self._close)
+        self.at_dispose(self.ros.on_connection(lambda present: self.start(self.show_connected, present)))
         if isinstance(self.clock, RosClock):
             self.at_dispose(self.clock.on_jump(lambda by: self.start(self.report_jump, by)))
-
-    def _close(self) -> None:
-        self._closed = True
-
-    def _connection_changed(self, connected: bool) -> None:
-        if not self._closed:
-            self.start(self.show_connected, connected)
 
     @internal_operation
     def show_connected(self, connected: bool) -> None:

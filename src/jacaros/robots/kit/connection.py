@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary, WeakSet
 
 from jacaros.robots.kit.options import ReadOption, one_of, positive
 from jacaros.robots.ros.backend import Backend, GraphContents, TopicInfo, latching
@@ -45,9 +44,9 @@ class PublisherConnection:
     expire: float | None = None
 
     def __post_init__(self) -> None:
-        self.connected = self._closed = False
+        self.connected = False
         self._heard: float | None = None
-        _watch(self.backend, self)
+        self._end = self.backend.on_connection(lambda _: self.look())
         self._look_again()
 
     def hear(self) -> None:
@@ -58,15 +57,14 @@ class PublisherConnection:
 
     def look(self) -> None:
         """Check the present state."""
-        if not self._closed:
-            connected = self._is_connected()
-            if connected != self.connected:
-                self.connected = connected
-                self.changed(connected)
+        connected = self._is_connected()
+        if connected != self.connected:
+            self.connected = connected
+            self.changed(connected)
 
     def close(self) -> None:
         """Stop checking."""
-        self._closed = True
+        self._end()
         self._timer.cancel()
 
     def _is_connected(self) -> bool:
@@ -81,23 +79,6 @@ class PublisherConnection:
         self.look()
         pause = LOOK if self.expire is None else min(LOOK, self.expire)
         self._timer = self.clock.call_later(pause, self._look_again)
-
-
-_watched: WeakKeyDictionary[Backend, WeakSet[PublisherConnection]] = WeakKeyDictionary()
-
-
-def _watch(backend: Backend, connection: PublisherConnection) -> None:
-    """Check a connection immediately when the graph is found or lost. A backend cannot remove such a callback."""
-    connections = _watched.get(backend)
-    if connections is None:
-        connections = _watched[backend] = WeakSet()
-
-        def report(connected: bool, everybody: WeakSet[PublisherConnection] = connections) -> None:
-            for each in list(everybody):
-                each.look()
-
-        backend.on_connection(report)
-    connections.add(connection)
 
 
 @dataclass(eq=False)

@@ -244,9 +244,10 @@ class Node:
         """Run the exit hooks and leave the graph."""
         raise NotImplementedError
 
-    def on_connection(self, callback: Callable[[bool], None]) -> None:
-        """Call *callback* on the loop with the new value whenever `connected` changes."""
+    def on_connection(self, callback: Callable[[bool], None]) -> Callable[[], None]:
+        """Call *callback* on the loop with the new value whenever `connected` changes. Return a function that ends this."""
         self._on_connection.append(callback)
+        return lambda: self._on_connection.remove(callback)
 
     def set_connected(self, connected: bool) -> None:
         """Note that the graph was found or lost, and inform the callbacks; on the loop."""

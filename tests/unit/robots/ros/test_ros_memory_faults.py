@@ -182,7 +182,9 @@ async def test_an_interrupted_graph_is_found_again_without_a_restart(lab: Lab) -
     here, there = await lab.open()
     there.service("/add", ADD, lambda request: {"sum": request.a + request.b})
     connection: list[bool] = []
+    ended: list[bool] = []
     here.on_connection(connection.append)
+    here.on_connection(ended.append)()
     client = here.client("/add", ADD)
     await lab.publish(1)
     lab.graph.interrupt()
@@ -197,7 +199,7 @@ async def test_an_interrupted_graph_is_found_again_without_a_restart(lab: Lab) -
     assert (await call).sum == 3
     await lab.clock.sleep(0.0)
     assert [number for _, number in lab.got] == [0, 2]  # what is latched comes again
-    assert connection == [False, True]
+    assert (connection, ended) == ([False, True], [])
 
 
 async def test_a_short_interruption_does_not_lose_a_goal(lab: Lab) -> None:
