@@ -170,11 +170,14 @@ async def test_the_first_motion_is_announced_before_its_command() -> None:
     backend.subscription("/cmd_vel", TWIST, lambda sample: order.append("sent"))
     wheels = backend.publisher("/cmd_vel", TWIST)
     guarded.watch(wheels)
+    assert wheels.watcher is None, "a run without a guard pays nothing"
     guarded.announce(lambda: order.append("announced"))
     for speed in (0.0, 0.3, 0.3, 0.0):
         wheels.publish({"linear": {"x": speed}})
         order.append(f"driving {guarded.driving}")
         await asyncio.sleep(0.01)
+    guarded.announce(None)
+    assert wheels.watcher is None
     await backend.close()
     assert order == [
         *("driving False", "sent"),
